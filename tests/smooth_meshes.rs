@@ -256,6 +256,62 @@ fn attributes(name: &str, text: &str) -> [Attributes; 2] {
 }
 
 #[test]
+fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
+    let ply = |faces: &str, of_vertices: bool| {
+        let (names, pair) = if of_vertices { ("property float s\nproperty float t\n", " 7 8") } else { ("", "") };
+        let rows: String = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"].map(|row| format!("{row} 0 0 1{pair}\n")).concat();
+        let header: String = ["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\n{header}{names}element face {}\n\
+             property list uchar int vertex_indices\nproperty list uchar float texcoord\nproperty int texnumber\n\
+             end_header\n{rows}{faces}",
+            faces.lines().count()
+        )
+    };
+    let read = |faces: &str, of_vertices: bool| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.ply");
+        std::fs::write(&path, ply(faces, of_vertices)).expect("the file can be written");
+        let mesh = read_smooth_mesh(&path)?;
+        let place = |corner: &u32| mesh.vertices.at(*corner).to_array().map(|x| x as u32);
+        let places: Vec<_> = mesh.faces.iter().flatten().map(place).collect();
+        let pairs: Vec<_> = mesh.faces.iter().flatten().map(|c| mesh.attributes.coordinates[*c as usize]).collect();
+        assert_eq!(mesh.attributes.normals, vec![[0.0, 0.0, 1.0]; mesh.vertices.count()]);
+        Ok::<_, String>((mesh.vertices.count(), places, pairs, mesh.attributes.bare))
+    };
+    // Two triangles with a seam between them, of which one end is the same point of the image.
+    let seam = "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 0.5 1 0.25 1 0\n";
+    let places = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0], [1, 1, 0], [0, 1, 0]];
+    let pairs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [0.5, 1.0], [0.25, 1.0]];
+    for of_vertices in [false, true] {
+        assert_eq!(read(seam, of_vertices), Ok((5, places.to_vec(), pairs.to_vec(), 0)));
+    }
+    let quad = read("4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n", false).expect("one face");
+    let fan = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    assert_eq!((quad.0, &quad.2[..], quad.3), (4, &fan[..], 0));
+    // A face without them shows those of its vertices.
+    let mixed = "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 0 0\n";
+    let [bare, own] = [false, true].map(|of_vertices| read(mixed, of_vertices).expect("two faces"));
+    assert_eq!((bare.0, bare.3, own.0, own.3), (6, 1, 6, 0));
+    assert!(bare.2[3..] == [[0.0, 0.0]; 3] && own.2[3..] == [[7.0, 8.0]; 3] && own.2[..3] == pairs[..3]);
+    // None has them.
+    let none = "3 0 1 2 0 0\n3 0 2 3 0 0\n";
+    assert_eq!(read(none, true).expect("two faces").2, [[7.0, 8.0]; 6]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.ply");
+    std::fs::write(&path, ply(none, false)).expect("the file can be written");
+    let mesh = read_smooth_mesh(&path).expect("two faces");
+    assert!(mesh.attributes.coordinates.is_empty() && mesh.attributes.bare == 0 && mesh.vertices.count() == 4);
+    for (faces, message) in [
+        ("3 0 1 2 6 0 0 1 0 1 1e39 0\n", "texture coordinates at vertex 2 (counted from 0) are not finite"),
+        ("3 0 1 4 6 0 0 1 0 1 1 0\n", "a face asks for vertex 4, but the 4 vertices count from 0"),
+        ("3 0 1 -1 6 0 0 1 0 1 1 0\n", "a face asks for a negative vertex, but the 4 vertices count from 0"),
+    ] {
+        assert_eq!(read(faces, false), Err(message.into()));
+    }
+}
+
+#[test]
 fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_are() {
     let expected = Attributes {
         normals: vec![[0.0, 0.0, 1.0], [0.0, 0.6, 0.8], [0.0, 1.0, 0.0]],
@@ -264,9 +320,13 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
     };
     let flat = Attributes { normals: Vec::new(), ..expected.clone() };
     let rows = ["0 0 0 0 0 1 0 0.25", "1 0 0 0 0.6 0.8 0.5 0.75", "0 1 0 0 1 0 1 0"];
-    for [u, v] in [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]] {
-        let names: String =
-            ["x", "y", "z", "nx", "ny", "nz", u, v].map(|name| format!("property float {name}\n")).concat();
+    // A name alone is of something else.
+    for (more, [u, v]) in
+        [(None, ["u", "v"]), (None, ["s", "t"]), (None, ["texture_u", "texture_v"]), (Some("s"), ["u", "v"])]
+    {
+        let known = ["x", "y", "z", "nx", "ny", "nz", u, v];
+        let names: String = known.into_iter().chain(more).map(|name| format!("property float {name}\n")).collect();
+        let rows = rows.map(|row| row.to_owned() + if more.is_some() { " 9" } else { "" });
         let text = format!(
             "ply\nformat ascii 1.0\nelement vertex 3\n{names}element face 1\nproperty list uchar int vertex_indices\n\
              end_header\n{}\n3 0 1 2\n",

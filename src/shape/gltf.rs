@@ -197,8 +197,9 @@ impl Document {
                 if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= count) {
                     return Err(format!("a face asks for vertex {corner}, but its {count} vertices count from 0"));
                 }
-                if faces.len() + corners.len() > MOST || single.len() + double.len() + count > MOST {
-                    return Err(format!("its nodes place more than {MOST} triangles"));
+                let triangles = cut(&corners, primitive.mode).count();
+                if faces.len() + triangles > MOST || single.len() + double.len() + count > MOST {
+                    return Err(format!("its nodes place more than {MOST} triangles or vertices"));
                 }
                 let mut own = Attributes::default();
                 if let Some(normals) = primitive.attributes.normal.filter(|_| smooth) {
@@ -211,7 +212,7 @@ impl Document {
                     own.coordinates = accessor(coordinates)?.floats()?.into_iter().map(flipped).collect();
                     has_coordinates = true;
                 } else {
-                    attributes.bare += cut(&corners, primitive.mode).count();
+                    attributes.bare += triangles;
                 }
                 let fits = |own: usize| own == 0 || own == count;
                 if !fits(own.normals.len()) || !fits(own.coordinates.len()) {

@@ -37,7 +37,7 @@ pub(super) const SMALL: usize = 1024;
 pub struct MeshReport {
     /// Triangles without area, which were dropped.
     pub degenerate: usize,
-    /// Edges that are not shared by exactly two triangles running opposite ways: 0 in a closed mesh.
+    /// Edges along which triangles do not run as often one way as the other: 0 in a closed mesh.
     pub open_edges: usize,
 }
 

@@ -1,11 +1,11 @@
 //! Triangles from OBJ files (Wavefront 1991, *Advanced Visualizer Manual*, appendix B1).
 
 use std::borrow::Cow;
-use std::collections::HashMap;
 use std::path::Path;
 
 use smallvec::SmallVec;
 
+use super::distinct::Distinct;
 use super::faces::Faces;
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
@@ -46,9 +46,9 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
 /// What stands in a text line by line, without comments, each with the number of its line; a backslash at the end of a
 /// line takes the next one to it.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    // Lines that end with a carriage return and a line feed have white space at their end.
-    let end = if text.contains('\n') { '\n' } else { '\r' };
-    let mut lines = text.split(end).map(|line| line.split('#').next().unwrap_or_default()).zip(1..);
+    // A carriage return ends a line as well, unless a line feed follows it: then it is white space at the line's end.
+    let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
+    let mut lines = lines.map(|line| line.split('#').next().unwrap_or_default()).zip(1..);
     std::iter::from_fn(move || {
         let (mut line, number) = lines.next()?;
         let mut whole = String::new();
@@ -125,9 +125,7 @@ struct Lists {
     places: Vec<[f64; 3]>,
     coordinates: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
-    /// Different corners, in the order in which faces ask for them, and their numbers.
-    corners: Vec<Corner>,
-    numbers: HashMap<Corner, u32>,
+    corners: Distinct<Corner>,
     faces: Faces,
     /// Triangles of faces that leave out texture coordinates.
     bare: usize,
@@ -138,21 +136,16 @@ struct Lists {
 
 impl Lists {
     fn face(&mut self, line: usize, words: &[&str], smooth: bool) -> Result<(), String> {
-        let mut face = Vec::with_capacity(words.len());
+        let (mut face, mut is_bare) = (Vec::with_capacity(words.len()), false);
         for word in words {
             let mut corner = self.corner(line, word)?;
             if !smooth {
                 corner[2] = NONE;
             }
-            let number = *self.numbers.entry(corner).or_insert_with(|| {
-                self.corners.push(corner);
-                self.corners.len() as u32 - 1
-            });
-            face.push(number);
+            is_bare |= corner[1] == NONE;
+            face.push(self.corners.number(corner));
         }
-        if face.iter().any(|&number| self.corners[number as usize][1] == NONE) {
-            self.bare += face.len().saturating_sub(2);
-        }
+        self.bare += if is_bare { face.len().saturating_sub(2) } else { 0 };
         self.faces.push(&face);
         Ok(())
     }
@@ -186,18 +179,18 @@ impl Lists {
                 return Err(format!("the face in line {line} {}", no_such(kind)));
             }
         }
-        let mut attributes = Attributes::default();
-        let has = |kind: usize| counts[kind] > 0 && self.corners.iter().any(|corner| corner[kind] != NONE);
+        let (mut attributes, corners) = (Attributes::default(), self.corners.all());
+        let has = |kind: usize| counts[kind] > 0 && corners.iter().any(|corner| corner[kind] != NONE);
         if has(1) {
             let of = |corner: &Corner| self.coordinates.get(corner[1] as usize).copied().unwrap_or_default();
             attributes.bare = self.bare;
-            attributes.coordinates = self.corners.iter().map(of).collect();
+            attributes.coordinates = corners.iter().map(of).collect();
         }
         if has(2) {
             let of = |corner: &Corner| self.normals.get(corner[2] as usize).copied().unwrap_or_default();
-            attributes.normals = self.corners.iter().map(of).collect();
+            attributes.normals = corners.iter().map(of).collect();
         }
-        let vertices = vertices(self.corners.iter().map(|corner| self.places[corner[0] as usize]));
+        let vertices = vertices(corners.iter().map(|corner| self.places[corner[0] as usize]));
         let (faces, names_materials) = (self.faces.triangles(&vertices)?, self.names_materials);
         Ok(MeshFile { vertices, faces, attributes, names_materials, ignored: Vec::new(), others: Vec::new() })
     }

@@ -9,6 +9,12 @@ pub enum Vertices {
     Double(Vec<DVec3>),
 }
 
+impl Default for Vertices {
+    fn default() -> Self {
+        Self::Single(Vec::new())
+    }
+}
+
 impl Vertices {
     /// How many there are.
     pub fn count(&self) -> usize {

@@ -56,6 +56,9 @@ pub fn ply() -> Vec<Vec<u8>> {
             + &plain
             + "8 0 1 2 3 -1 1 4 2\n",
     );
+    let own = "property list uchar int vertex_indices\nproperty list uchar float texcoord\n";
+    let pairs: String = FACES.iter().map(|f| face(f).trim_end().to_owned() + " 6 0 0 1 0 0 1\n").collect();
+    files.push(header("ascii", own, "") + &plain + &pairs);
     let mut files: Vec<Vec<u8>> = files.into_iter().map(String::into_bytes).collect();
     for big in [false, true] {
         let bytes = |x: u32| if big { x.to_be_bytes() } else { x.to_le_bytes() };

@@ -120,6 +120,11 @@ fn what_a_ply_cannot_say_with_its_faces_is_told() {
         refusal("element face 5\nproperty list uchar int vertex_indices", "element face 0"),
         "the file holds no faces"
     );
+    let (negative, at) = (ply_binary(false, true), ply_binary(false, true).len() - 13);
+    let negative = [&negative[..at], &[255], &negative[at + 1..]].concat();
+    let (_folder, path) = file("a.ply", &negative);
+    let told = read_mesh(&path).err().unwrap_or_default();
+    assert!(told.starts_with("the file ends too early") || told == "its bytes do not fit a PLY file with this header");
     for name in ["a.ply", "a.obj", "a.glb"] {
         let (_folder, path) = file(name, b"\x1f\x8b\x08\0\0\0\0\0");
         assert_eq!(read_mesh(&path).err().as_deref(), Some("it is compressed by gzip: unpack it first"));
@@ -154,6 +159,8 @@ fn all_that_an_obj_may_hold_besides_is_read_or_passed_over() {
         format!("\u{feff}# a pyramid\n{plain}"),
         plain.replace('\n', "\r\n"),
         plain.replace('\n', "\r"),
+        format!("# a comment\r\n{}\r\n", plain.replace('\n', "\r")),
+        plain.replacen('\n', "\r", 3),
         plain.replace('\n', " # a comment\n"),
         plain.replace(" 5\n", " \\\n5\n"),
         plain.replace(' ', " \\  \r\n\t"),

@@ -1,0 +1,31 @@
+//! Numbers for what is different.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// Different values, numbered from 0 in the order in which they came.
+pub(super) struct Distinct<T> {
+    values: Vec<T>,
+    numbers: HashMap<T, u32>,
+}
+
+impl<T> Default for Distinct<T> {
+    fn default() -> Self {
+        Self { values: Vec::new(), numbers: HashMap::new() }
+    }
+}
+
+impl<T: Copy + Eq + Hash> Distinct<T> {
+    /// The number of a value.
+    pub(super) fn number(&mut self, value: T) -> u32 {
+        *self.numbers.entry(value).or_insert_with(|| {
+            self.values.push(value);
+            self.values.len() as u32 - 1
+        })
+    }
+
+    /// All of them, each at the place of its number.
+    pub(super) fn all(self) -> Vec<T> {
+        self.values
+    }
+}

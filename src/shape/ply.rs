@@ -1,0 +1,310 @@
+//! Triangles from PLY files (Turk 1994, *The PLY Polygon File Format*).
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
+
+use super::distinct::Distinct;
+use super::faces::Faces;
+use super::mesh_data::{MeshFile, NO_VERTEX, check_finite, no_such_vertex};
+use super::{Attributes, Vertices};
+
+#[derive(Default)]
+struct Vertex {
+    place: [f64; 3],
+    normal: [f32; 3],
+    /// By each pair of names.
+    coordinates: [[f32; 2]; COORDINATES.len()],
+}
+
+/// Names of a vertex's texture coordinates in use.
+const COORDINATES: [[&str; 2]; 4] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let value = match property {
+            Property::Float(x) => f64::from(x),
+            Property::Double(x) => x,
+            Property::Char(x) => f64::from(x),
+            Property::UChar(x) => f64::from(x),
+            Property::Short(x) => f64::from(x),
+            Property::UShort(x) => f64::from(x),
+            Property::Int(x) => f64::from(x),
+            Property::UInt(x) => f64::from(x),
+            _ => return PropertyAccessResult::Ignored,
+        };
+        match name {
+            "x" => self.place[0] = value,
+            "y" => self.place[1] = value,
+            "z" => self.place[2] = value,
+            "nx" => self.normal[0] = value as f32,
+            "ny" => self.normal[1] = value as f32,
+            "nz" => self.normal[2] = value as f32,
+            _ => {
+                let mut places = self.coordinates.iter_mut().flatten();
+                match COORDINATES.as_flattened().iter().position(|known| *known == name) {
+                    Some(at) => places.nth(at).into_iter().for_each(|place| *place = value as f32),
+                    None => return PropertyAccessResult::Ignored,
+                }
+            }
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+#[derive(Default)]
+struct Face {
+    corners: Vec<u32>,
+    /// A pair for each corner, one after the other.
+    coordinates: Vec<f32>,
+}
+
+/// The list of a face's texture coordinates.
+const OF_CORNERS: &str = "texcoord";
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let index = |i: i64| u32::try_from(i).unwrap_or(NO_VERTEX);
+        match (name, property) {
+            (OF_CORNERS, Property::ListFloat(list)) => self.coordinates = list,
+            (OF_CORNERS, Property::ListDouble(list)) => self.coordinates = list.into_iter().map(|x| x as f32).collect(),
+            ("vertex_indices" | "vertex_index", list) => {
+                self.corners = match list {
+                    Property::ListChar(list) => list.into_iter().map(|i| index(i.into())).collect(),
+                    Property::ListUChar(list) => list.into_iter().map(u32::from).collect(),
+                    Property::ListShort(list) => list.into_iter().map(|i| index(i.into())).collect(),
+                    Property::ListUShort(list) => list.into_iter().map(u32::from).collect(),
+                    Property::ListInt(list) => list.into_iter().map(|i| index(i.into())).collect(),
+                    Property::ListUInt(list) => list,
+                    _ => return PropertyAccessResult::Ignored,
+                }
+            }
+            _ => return PropertyAccessResult::Ignored,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+impl Face {
+    /// The triangles of strips, each of which a negative index ends; two equal corners only lead on to the next
+    /// triangle.
+    fn triangles(&self, mut keep: impl FnMut([u32; 3])) {
+        for strip in self.corners.split(|&corner| corner == NO_VERTEX) {
+            for (number, corners) in strip.windows(3).enumerate() {
+                let &[a, b, c] = corners else { continue };
+                if a != b && b != c && c != a {
+                    keep(if number % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                }
+            }
+        }
+    }
+}
+
+/// Whether an element lists vertices; `name` is what there are several of.
+fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
+    let list = ["vertex_indices", "vertex_index"].iter().find_map(|key| element.properties.get(*key));
+    match list.map(|property| &property.data_type) {
+        _ if element.count == 0 => Ok(()),
+        Some(PropertyType::List(_, ScalarType::Float | ScalarType::Double)) => {
+            Err(format!("the vertex_indices of its {name} are not whole numbers"))
+        }
+        Some(PropertyType::List(..)) => Ok(()),
+        _ => Err(format!("its {name} have no list of vertex_indices")),
+    }
+}
+
+/// What was read of a file so far.
+#[derive(Default)]
+struct Lists {
+    vertices: Vertices,
+    attributes: Attributes,
+    faces: Faces,
+    /// Where faces have texture coordinates of their own: the different corners that faces have, each with its vertex
+    /// and the bits of its coordinates, if it has any.
+    corners: Option<Distinct<(u32, Option<[u32; 2]>)>>,
+}
+
+impl Lists {
+    fn vertices(
+        &mut self,
+        reader: &mut Reader<BufReader<File>>,
+        element: &ElementDef,
+        header: &Header,
+        smooth: bool,
+    ) -> Result<(), String> {
+        for axis in ["x", "y", "z"] {
+            match element.properties.get(axis).map(|property| &property.data_type) {
+                Some(PropertyType::Scalar(ScalarType::Float)) => {}
+                Some(PropertyType::Scalar(_)) => self.vertices = Vertices::Double(Vec::new()),
+                _ => return Err(format!("its vertices have no {axis}")),
+            }
+        }
+        let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
+        let has_normals = smooth && has(&["nx", "ny", "nz"]);
+        let pair = COORDINATES.iter().position(|names| has(names));
+        in_batches(reader, element, header, |vertex: Vertex| {
+            match &mut self.vertices {
+                Vertices::Single(points) => points.push(vertex.place.map(|x| x as f32)),
+                Vertices::Double(points) => points.push(vertex.place.into()),
+            }
+            self.attributes.normals.extend(has_normals.then_some(vertex.normal));
+            self.attributes.coordinates.extend(pair.map(|pair| vertex.coordinates[pair]));
+        })
+    }
+
+    fn push(&mut self, vertices: &[u32], coordinates: &[f32]) {
+        let Some(corners) = &mut self.corners else { return self.faces.push(vertices) };
+        let has_pairs = coordinates.len() == 2 * vertices.len();
+        self.attributes.bare += if has_pairs { 0 } else { vertices.len().saturating_sub(2) };
+        let pair = |i: usize| has_pairs.then(|| [coordinates[2 * i], coordinates[2 * i + 1]].map(f32::to_bits));
+        let number = |(i, &vertex)| corners.number((vertex, pair(i)));
+        self.faces.push(&vertices.iter().enumerate().map(number).collect::<Vec<_>>());
+    }
+
+    /// Makes a vertex of each corner that carries something else. What corners lack they have of their vertices.
+    fn part_corners(&mut self) -> Result<(), String> {
+        let Some(corners) = self.corners.take().map(Distinct::all) else { return Ok(()) };
+        let count = self.vertices.count();
+        if let Some((vertex, _)) = corners.iter().find(|(vertex, _)| *vertex as usize >= count) {
+            return Err(no_such_vertex(*vertex, count));
+        }
+        let Attributes { normals, coordinates, bare } = &mut self.attributes;
+        let has_none = coordinates.is_empty() && corners.iter().all(|(_, bits)| bits.is_none());
+        if has_none || !coordinates.is_empty() {
+            *bare = 0;
+        }
+        let pair = |&(vertex, bits): &(u32, Option<[u32; 2]>)| match bits {
+            Some(bits) => bits.map(f32::from_bits),
+            None => coordinates.get(vertex as usize).copied().unwrap_or_default(),
+        };
+        let pairs: Vec<[f32; 2]> = corners.iter().map(pair).collect();
+        if let Some(corner) = pairs.iter().position(|pair| !pair.iter().all(|x| x.is_finite())) {
+            let (vertex, _) = corners[corner];
+            return Err(format!("texture coordinates at vertex {vertex} (counted from 0) are not finite"));
+        }
+        *coordinates = if has_none { Vec::new() } else { pairs };
+        let vertices = || corners.iter().map(|(vertex, _)| *vertex as usize);
+        *normals = if normals.is_empty() { Vec::new() } else { vertices().map(|vertex| normals[vertex]).collect() };
+        self.vertices = match &self.vertices {
+            Vertices::Single(points) => Vertices::Single(vertices().map(|vertex| points[vertex]).collect()),
+            Vertices::Double(points) => Vertices::Double(vertices().map(|vertex| points[vertex]).collect()),
+        };
+        Ok(())
+    }
+}
+
+/// Reads the triangles of a file, and the normals of its vertices if they are wanted.
+///
+/// A vertex with several texture coordinates becomes several.
+pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
+    let mut file = BufReader::new(File::open(path).map_err(|error| error.to_string())?);
+    // The parser would look for the end of the first line, however far away that is.
+    if !file.fill_buf().map_err(|error| error.to_string())?.starts_with(b"ply") {
+        return Err("a PLY file begins with a line `ply`, and this one does not".into());
+    }
+    let mut reader = Reader::new(file);
+    let header = Parser::<Vertex>::new().read_header(&mut reader).map_err(|error| ply_error(error, true))?;
+    let of_corners = header.elements.get("face").and_then(|faces| faces.properties.get(OF_CORNERS));
+    let mut lists = Lists { corners: of_corners.map(|_| Distinct::default()), ..Lists::default() };
+    // Elements without properties are lines of a text, but nothing at all in a binary file, however many there are.
+    let takes_no_bytes = |e: &ElementDef| e.properties.is_empty() && header.encoding != Encoding::Ascii;
+    for element in header.elements.values() {
+        match element.name.as_str() {
+            "vertex" => lists.vertices(&mut reader, element, &header, smooth)?,
+            _ if takes_no_bytes(element) => {}
+            "face" => {
+                has_corners(element, "faces")?;
+                let keep = |face: Face| lists.push(&face.corners, &face.coordinates);
+                in_batches(&mut reader, element, &header, keep)?;
+            }
+            "tristrips" => {
+                has_corners(element, "tristrips")?;
+                let keep = |strips: Face| strips.triangles(|corners| lists.push(&corners, &[]));
+                in_batches(&mut reader, element, &header, keep)?;
+            }
+            _ => in_batches(&mut reader, element, &header, |_: Vertex| ())?,
+        }
+    }
+    // While vertices have the numbers of the file.
+    check_finite(&lists.vertices, &lists.attributes)?;
+    lists.part_corners()?;
+    let Lists { vertices, attributes, faces, .. } = lists;
+    let faces = faces.triangles(&vertices)?;
+    Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+}
+
+/// Elements that are read at once: each takes several times the memory of what is kept of it.
+const BATCH: usize = 4096;
+
+/// Hands all elements of one kind over, one after the other.
+fn in_batches<E: PropertyAccess>(
+    reader: &mut Reader<BufReader<File>>,
+    element: &ElementDef,
+    header: &Header,
+    mut keep: impl FnMut(E),
+) -> Result<(), String> {
+    let (parser, mut batch) = (Parser::<E>::new(), element.clone());
+    for done in (0..element.count).step_by(BATCH) {
+        batch.count = BATCH.min(element.count - done);
+        let read = parser.read_payload_for_element(reader, &batch, header);
+        let has_lines = header.encoding == Encoding::Ascii;
+        let of_all = |error| count_from(&ply_error(error, has_lines), batch.count, done, element.count);
+        read.map_err(of_all)?.into_iter().for_each(&mut keep);
+    }
+    Ok(())
+}
+
+/// A message about the end of a file with the numbers of all elements instead of those of a batch.
+fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
+    let numbers = message.split_once(&format!("(expected {batch}, got "));
+    let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
+    match numbers {
+        Some((before, (got, after))) => match got.parse::<usize>() {
+            Ok(got) => format!("{before}(expected {all}, got {}){after}", done + got),
+            Err(_) => message.to_owned(),
+        },
+        None => message.to_owned(),
+    }
+}
+
+/// What is wrong with a file, or with a part of it that has lines or none.
+fn ply_error(error: ParseError, has_lines: bool) -> String {
+    let text = error.to_string();
+    let first = text.lines().next().unwrap_or_default().trim_end_matches('.');
+    let message = first.split_once(": ").map_or(first, |(_, message)| message);
+    match (message.strip_prefix("Unexpected end of file"), error.line()) {
+        (Some(place), _) => format!("the file ends too early,{place}"),
+        (None, Some(line)) if has_lines => format!("line {line} does not fit a PLY file with this header"),
+        (None, Some(_)) => "its bytes do not fit a PLY file with this header".into(),
+        (None, None) => message.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_ends_in_a_later_batch_says_how_many_elements_it_has_of_all() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("cut.ply");
+        let header =
+            "ply\nformat ascii 1.0\nelement vertex 10000\nproperty float x\nproperty float y\nproperty float z\n";
+        std::fs::write(&path, header.to_owned() + "end_header\n" + &"0 0 0\n".repeat(5000)).expect("a file");
+        let message = read(&path, false).err().expect("vertices are missing");
+        assert_eq!(message, "the file ends too early, while reading element 'vertex' (expected 10000, got 5000)");
+    }
+}
