@@ -11,12 +11,12 @@ use std::time::Instant;
 use abbe::film::check_writable;
 use abbe::plan::plan;
 use abbe::scene::Source;
-use abbe::{Image, Rendering, Result, Scene, write_plan};
+use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
 
 use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
 use command::keep::{self, Keep};
-use command::outputs::{check_outputs, check_standard, check_words, is_standard};
+use command::outputs::{check_outputs, check_standard, check_words, is_standard, spare};
 use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
 fn main() -> ExitCode {
@@ -43,6 +43,7 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
 
 /// Does one frame after another, until one is stopped.
 fn run(jobs: &Jobs) -> Result<ExitCode> {
+    jobs.keep().catch_signals()?;
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {
         let job = job?;
@@ -52,7 +53,7 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
             none => none.insert(Source::read(&job.scene)?),
         };
         if let Some(frame) = job.frame.filter(|_| count > 1) {
-            messages::say(&format!("frame {frame}, {number} of {count}"));
+            messages::say_frame(frame, number, count);
         }
         let code = do_one(&job, source, &mut warned)?;
         if code != ExitCode::SUCCESS {
@@ -123,6 +124,8 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let checkpoint = job.keep.checkpoint(main);
     let all: Vec<&Path> = outputs.iter().copied().chain(checkpoint.as_deref()).chain(report).collect();
     check_outputs(scene, &all)?;
+    let plan = job.options.plan.as_deref();
+    all.iter().try_for_each(|output| plan.map_or(Ok(()), |plan| spare(plan, "plan that is followed", output)))?;
     check_words("--report", "frame.json", report)?;
     all.iter().try_for_each(|output| check_writable(output))?;
     let mut keep = Keep::new(&job.keep, main, checkpoint)?;
@@ -142,21 +145,50 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let expected = rendering.expected();
     let took = progress.finish(expected);
     let image = rendering.image();
+    let mut written = Written::default();
     match (&part, exr) {
-        (Some(part), _) => rendering.write_part(part)?,
-        (None, Some(exr)) => messages::warn_of_clamped(image.format(), write(&image, exr)?),
+        (Some(part), _) => written.file(Some(part), |part| rendering.write_part(part)),
+        (None, Some(exr)) => written.file(Some(exr), |exr| {
+            messages::warn_of_clamped(image.format(), write(&image, exr)?);
+            Ok(())
+        }),
         (None, None) => {}
     }
-    if let (None, Some(spectral)) = (&part, &spectral) {
-        image.write_spectral_exr(spectral)?;
-    }
-    png.map_or(Ok(()), |png| image.write_png(png, job.exposure))?;
+    let spectral = spectral.as_deref().filter(|_| part.is_none());
+    written.file(spectral, |spectral| image.write_spectral_exr(spectral));
+    written.file(png, |png| image.write_png(png, job.exposure));
     messages::print_report(&image, rendering.plan(), took, expected);
-    if let Some(report) = report {
+    let images = written.files.clone();
+    written.file(report, |report| {
         let (plan, end) = (Event::plan(rendering.plan()), Event::report(&image, took, expected));
-        write_account(report, plan, end, &outputs)?;
+        write_account(report, plan, end, &images)
+    });
+    keep.finish(&rendering, &written.files);
+    written.end()
+}
+
+/// Files of an image that are written: one that cannot be keeps no other from it.
+#[derive(Default)]
+struct Written<'f> {
+    files: Vec<&'f Path>,
+    failed: Vec<Error>,
+}
+
+impl<'f> Written<'f> {
+    fn file(&mut self, file: Option<&'f Path>, write: impl FnOnce(&Path) -> Result<()>) {
+        let Some(file) = file else { return };
+        match write(file) {
+            Ok(()) if is_standard(file) => {}
+            Ok(()) => self.files.push(file),
+            Err(error) => self.failed.push(error),
+        }
     }
-    keep.finish(&rendering, &files)?;
-    files.into_iter().for_each(messages::print_written);
-    Ok(ExitCode::SUCCESS)
+
+    /// Says which are there, and what went wrong.
+    fn end(mut self) -> Result<ExitCode> {
+        self.files.into_iter().for_each(messages::print_written);
+        let last = self.failed.pop();
+        self.failed.iter().for_each(messages::print_error);
+        last.map_or(Ok(ExitCode::SUCCESS), Err)
+    }
 }

@@ -129,7 +129,7 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
     // An image is made and kept all the same.
     for protocol in ["--json", "--progress openjd"] {
         let (code, _, told) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
-        let reason = "error: cannot write all there is to say to stdout: No space left on device (os error 28)\n";
+        let reason = "error: cannot write all there is to say to stdout: the disk is full\n";
         assert!(code == Some(1) && told.ends_with(reason), "{protocol}: {told}");
         assert!(is_image(&folder.path().join("ball.exr")), "{protocol}");
         fs::remove_file(folder.path().join("ball.exr")).expect("it is there");
@@ -240,6 +240,32 @@ fn a_device_that_takes_no_more_is_a_failure() {
     let answer = render(&folder, &["ball.toml", "--exr", "full.exr"]);
     assert_eq!(answer.code, Some(1));
     assert!(answer.stderr.ends_with("error: cannot write full.exr: the disk is full\n"), "{}", answer.stderr);
+}
+
+/// One output that cannot be written keeps no other from being there, nor the checkpoint.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_can_be_written_is_written() {
+    let files = ["full.exr", "full.png", "full.json", "a.exr", "a.png", "a.json"];
+    for failing in 0..3 {
+        let folder = folder();
+        for name in &files[..3] {
+            symlink("/dev/full", folder.path().join(name)).expect("links can be made");
+        }
+        let [exr, png, report] = [0, 1, 2].map(|i| files[if i == failing { i } else { 3 + i }]);
+        let words = ["ball.toml", "--exr", exr, "--png", png, "--report", report, "--checkpoint", "60s"];
+        let answer = render(&folder, &words);
+        assert!(answer.stderr.ends_with(&format!("error: cannot write {}: the disk is full\n", files[failing])));
+        assert_eq!(answer.code, Some(1), "{}", answer.stderr);
+        let written: Vec<&str> = files[3..].iter().copied().filter(|name| folder.path().join(name).is_file()).collect();
+        let told: Vec<&str> = answer.stderr.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
+        assert_eq!((written.len(), &told), (2, &written), "{}", answer.stderr);
+        // What is missing is all that is left to be done.
+        fs::remove_file(folder.path().join(files[failing])).expect("it is there");
+        let resumed = render(&folder, &[&words[..], &["--resume"]].concat());
+        assert!(resumed.code == Some(0) && !resumed.stderr.contains("going on from"), "{}", resumed.stderr);
+        assert!(folder.path().join(files[failing]).is_file());
+    }
 }
 
 /// A scene that includes a file, reads a mesh and an image, and is lit by another one.

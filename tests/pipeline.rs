@@ -288,6 +288,23 @@ fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
 }
 
 #[test]
+fn settings_in_any_language_stand_in_the_file() {
+    let folder = folder();
+    let setting = "film.metadata.owner=\"日本 – groß \u{1f352}\"";
+    let parts = ["1/2", "2/2"].map(|part| format!("--shard={part}"));
+    for more in [&[][..], &[&*parts[0]], &[&*parts[1]]] {
+        let rendered = render(&folder, &[&["scene.toml", "--exr", "a.exr", "--set", setting], more].concat());
+        assert_eq!(rendered.code, Some(0), "{}", rendered.stderr);
+    }
+    let merged = render(&folder, &["merge", "b.exr", "a.1-of-2.part", "a.2-of-2.part"]);
+    assert_eq!(merged.code, Some(0), "{}", merged.stderr);
+    for name in ["a.exr", "b.exr"] {
+        let told = render(&folder, &["info", name]).stdout;
+        assert!(told.lines().any(|line| line.contains("render/set") && line.contains(setting)), "{told}");
+    }
+}
+
+#[test]
 fn frames_are_rendered_one_after_another() {
     let folder = folder();
     folder.write("turn.toml", &SCENE.replace("degrees = 30", "degrees = \"$frame\""));

@@ -9,6 +9,7 @@ Sprague's interpolation, which colour-science would choose, overshoots beside th
 its table an illuminant is 0 and a reflectance is flat.
 """
 
+import argparse
 import math
 import subprocess
 import sys
@@ -223,6 +224,7 @@ def judge_mirrors():
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     failed = judge_charts() + judge_mirrors()
     print("all pass" if not failed else "", *failed, sep="\n  FAILED: ")
     return int(bool(failed))

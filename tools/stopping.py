@@ -193,10 +193,12 @@ def faults(found, renders):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scenes", nargs="*", choices=[*SCENES, []], metavar="SCENE", help=", ".join(SCENES))
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
     parser.add_argument("--renders", type=int, default=40, help="of each scene")
     parser.add_argument("--json", type=Path, help="where the figures go")
     arguments = parser.parse_args()
+    if unknown := [name for name in arguments.scenes if name not in SCENES]:
+        parser.error(f"there is no scene {unknown[0]}: {', '.join(SCENES)}")
     found = {}
     print("scene       asked  ref.    kept   bound  true/asked  worst  true/bound  samples  cost", flush=True)
     with ThreadPoolExecutor(os.cpu_count()) as pool:

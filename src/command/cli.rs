@@ -225,6 +225,11 @@ impl Jobs {
         self.0.frame.map_or(1, Frames::count)
     }
 
+    /// What is kept of them.
+    pub fn keep(&self) -> &keep::Flags {
+        &self.0.keep
+    }
+
     /// Each by itself.
     pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
         let frames = self.0.frame;

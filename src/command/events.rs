@@ -17,6 +17,8 @@ use super::stdout::tell;
 pub enum Event<'e> {
     /// The scene is right.
     Checked { scene: &'e Path, objects: usize },
+    /// A frame begins, the `number`th of `count`.
+    Frame { frame: u32, number: u64, count: u64 },
     /// How it will be rendered.
     Plan(PlanAccount<'e>),
     /// How far it is, in camera samples; a photon counts as the samples that take as long.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use abbe::film::{CameraMatrix, Channel, ExrFile, Part, PixelBounds, Statistics};
 use abbe::look::number;
-use abbe::spectrum::{ColorSpace, Primaries};
+use abbe::spectrum::Primaries;
 use abbe::{Result, film::ExrLayer};
 use clap::Parser;
 
@@ -31,8 +31,6 @@ pub struct Query {
 
 /// Most characters of an attribute that are shown: lists of names can be as long as a book.
 const MOST_SHOWN: usize = 200;
-/// Chromaticities in a file are 32-bit floats, and some programs round them to four digits.
-const SAME_CHROMATICITY: f64 = 1e-4;
 
 /// The lines that answer a query.
 ///
@@ -116,14 +114,9 @@ fn window(full: &PixelBounds, there: &PixelBounds) -> Option<(&'static str, Stri
 }
 
 fn chromaticities(found: &Primaries) -> String {
-    let all = |primaries: &Primaries| [primaries.red, primaries.green, primaries.blue, primaries.white];
-    let near = |space: &ColorSpace| {
-        let pairs = all(found).into_iter().zip(all(&space.primaries()));
-        pairs.into_iter().all(|(a, b)| (0..2).all(|i| (a[i] - b[i]).abs() < SAME_CHROMATICITY))
-    };
-    let known = ColorSpace::ALL.iter().find(|space| near(space));
-    let known = known.map_or(String::new(), |space| format!(" ({})", space.interop_id()));
-    let [red, green, blue, white] = all(found).map(|[x, y]| format!("{x:.4} {y:.4}"));
+    let known = found.space().map_or(String::new(), |space| format!(" ({})", space.interop_id()));
+    let [red, green, blue, white] =
+        [found.red, found.green, found.blue, found.white].map(|[x, y]| format!("{x:.4} {y:.4}"));
     format!("red {red}, green {green}, blue {blue}, white {white}{known}")
 }
 

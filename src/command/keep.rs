@@ -13,7 +13,7 @@ use clap::Args;
 use super::messages::{say, say_last, so_far, warn};
 use super::outputs::refuse;
 use super::problem::problem;
-use super::progress::Progress;
+use super::progress::{self, Progress};
 use super::signals::kept_ignored;
 
 /// What the command line says of it.
@@ -96,6 +96,15 @@ impl Flags {
         Ok(())
     }
 
+    /// Lets Ctrl-C stop the command, at once or after what is done is kept.
+    ///
+    /// # Errors
+    /// If it cannot be caught.
+    pub fn catch_signals(&self) -> Result<()> {
+        let caught = catch(self.checkpoint.or(self.snapshot).is_none() && !self.resume);
+        caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })
+    }
+
     /// Where the checkpoint of a render to a file is, if one is kept.
     pub fn checkpoint(&self, file: &Path) -> Option<PathBuf> {
         let mut name = file.file_stem().unwrap_or(OsStr::new("image")).to_owned();
@@ -122,10 +131,12 @@ pub struct Keep {
 
 /// Whether the command was told to stop.
 static STOPPED: AtomicBool = AtomicBool::new(false);
-/// Whether Ctrl-C is caught; it is once, however many frames are rendered.
-static IS_CAUGHT: AtomicBool = AtomicBool::new(false);
+/// Whether anything is done that could be lost.
+static HAS_BEGUN: AtomicBool = AtomicBool::new(false);
 /// What it says then, if nothing of the render is kept.
 const NOTHING_KEPT: &str = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
+/// The same before there was anything.
+const NOTHING_DONE: &str = "stopped before anything was rendered";
 /// The exit code of a command that was.
 pub const STOPPED_CODE: u8 = 130;
 
@@ -133,7 +144,7 @@ impl Keep {
     /// Of a render to a file, and its checkpoint if one is kept.
     ///
     /// # Errors
-    /// If a checkpoint of an earlier run would be lost, or Ctrl-C cannot be caught.
+    /// If a checkpoint of an earlier run would be lost.
     pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>) -> Result<Self> {
         if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
             let name = there.display();
@@ -144,9 +155,6 @@ impl Keep {
             let help = "add --resume to go on from it, or delete it to begin anew";
             return refuse(&format!("{name} is there from an earlier run"), Some(help));
         }
-        let stops_at_once = checkpoint.is_none() && flags.snapshot.is_none();
-        let caught = if IS_CAUGHT.swap(true, Ordering::Relaxed) { Ok(()) } else { catch(stops_at_once) };
-        caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })?;
         Ok(Self {
             checkpoint,
             checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(OFTEN))),
@@ -202,6 +210,7 @@ impl Keep {
     /// # Errors
     /// If it was stopped, and what is done cannot be kept.
     pub fn run(&mut self, rendering: &mut Rendering, progress: &Progress) -> Result<bool> {
+        HAS_BEGUN.store(true, Ordering::Relaxed);
         let mut looked = rendering.error();
         loop {
             let stops = || STOPPED.load(Ordering::Relaxed);
@@ -218,9 +227,15 @@ impl Keep {
                 looked = error;
             }
             if stops() {
-                self.save(rendering)?;
-                self.take_snapshot(rendering)?;
-                return Ok(false);
+                // One that fails does not keep the other from being written.
+                let (saved, taken) = (self.save(rendering), self.take_snapshot(rendering));
+                let is_lost = saved.is_err() || taken.is_err();
+                if is_lost && self.has_snapshot(rendering) && taken.is_ok() {
+                    progress.say("stopped; the snapshot is kept, and no checkpoint");
+                } else if is_lost {
+                    progress.say("stopped; not all of what is done is kept");
+                }
+                return saved.and(taken).map(|()| false);
             }
             if advance == Advance::Stopped {
                 let kept = self.keep(rendering);
@@ -248,25 +263,26 @@ impl Keep {
         kept
     }
 
-    /// Writes the checkpoint of a finished render and its files, if one is kept.
-    ///
-    /// # Errors
-    /// If it cannot be written.
-    pub fn finish(&self, rendering: &Rendering, outputs: &[&Path]) -> Result<()> {
-        self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, outputs))
+    /// Writes the checkpoint of a finished render and the files that are written of it, if one is kept. Where it cannot
+    /// be written the image is there all the same.
+    pub fn finish(&self, rendering: &Rendering, written: &[&Path]) {
+        let kept = self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written));
+        kept.unwrap_or_else(|error| warn(&format!("the render is finished, but {}", problem(&error))));
     }
 
     fn save(&self, rendering: &Rendering) -> Result<()> {
         self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save(path))
     }
 
-    fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
-        let Some(path) = &self.snapshot else { return Ok(()) };
-        let image = rendering.image();
+    /// Whether there is anything that a snapshot can show.
+    fn has_snapshot(&self, rendering: &Rendering) -> bool {
         // Before the first samples, photons have shown a part of their light.
-        if image.report().samples == 0 {
-            return Ok(());
-        }
+        self.snapshot.is_some() && rendering.image().report().samples > 0
+    }
+
+    fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
+        let Some(path) = self.snapshot.as_ref().filter(|_| self.has_snapshot(rendering)) else { return Ok(()) };
+        let image = rendering.image();
         image.write_exr(path)?;
         image.write_spectral_exr(path.with_extension("spectral.exr"))
     }
@@ -274,12 +290,12 @@ impl Keep {
     /// Says what was kept, and how to go on.
     pub fn say_how_to_resume(&self, rendering: &Rendering) {
         let Some(path) = &self.checkpoint else {
-            if rendering.image().report().samples == 0 {
+            if !self.has_snapshot(rendering) {
                 return say(NOTHING_KEPT);
             }
             return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");
         };
-        let mut words: Vec<String> = std::env::args().map(|word| quoted(&word)).collect();
+        let mut words: Vec<String> = std::env::args_os().map(|word| quoted(&word.to_string_lossy())).collect();
         if !self.resume {
             words.push("--resume".into());
         }
@@ -295,8 +311,10 @@ const ECHO: Duration = Duration::from_millis(500);
 fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
     let mut first = None;
     let stop = move || {
-        if stops_at_once {
-            say_last(NOTHING_KEPT, STOPPED_CODE);
+        let has_begun = HAS_BEGUN.load(Ordering::Relaxed);
+        if stops_at_once || !has_begun {
+            progress::clear();
+            say_last(if has_begun { NOTHING_KEPT } else { NOTHING_DONE }, STOPPED_CODE);
         }
         let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
         if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {

@@ -17,7 +17,7 @@ use clap::ValueEnum;
 
 use super::events::Event;
 use super::openjd;
-use super::problem::problem;
+use super::problem::{problem, reason};
 use super::stdout;
 
 /// To whom it speaks.
@@ -61,6 +61,14 @@ pub fn say(line: &str) {
         Listener::Busy => {}
         Listener::Program => Event::Note { message: line }.tell(),
         Listener::Farm => openjd::status(line),
+    }
+}
+
+/// That one of several frames begins.
+pub fn say_frame(frame: u32, number: u64, count: u64) {
+    match listener() {
+        Listener::Program => Event::Frame { frame, number, count }.tell(),
+        _ => say(&format!("frame {frame}, {number} of {count}")),
     }
 }
 
@@ -142,7 +150,8 @@ pub fn warn_of_clamped(format: &Format, clamped: u64) {
 /// Whether lines for the program that listens were lost, which is said on stderr.
 pub fn has_lost_lines() -> bool {
     let lost = stdout::lost();
-    lost.iter().for_each(|why| print(&format!("error: cannot write all there is to say to stdout: {why}")));
+    lost.iter()
+        .for_each(|why| print(&format!("error: cannot write all there is to say to stdout: {}", reason("write", why))));
     lost.is_some()
 }
 

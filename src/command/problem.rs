@@ -13,7 +13,7 @@ pub fn problem(error: &Error) -> String {
 }
 
 /// What the system said, in plain words where it is terse.
-fn reason(doing: &str, error: &std::io::Error) -> String {
+pub fn reason(doing: &str, error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound if doing == "read" => "there is no such file".into(),
         ErrorKind::NotFound => "its folder does not exist and cannot be made".into(),

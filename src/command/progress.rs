@@ -1,9 +1,9 @@
 //! Progress with time left: a bar on a terminal, a plain line now and then elsewhere.
 
 use std::io::IsTerminal;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
@@ -56,6 +56,11 @@ impl Counts {
         let is_known = self.is_known.load(Ordering::Relaxed) && done > self.before;
         is_known.then(|| left(parts, self.start.elapsed().as_secs_f64()))
     }
+
+    /// The time passed, and that left.
+    fn said(&self) -> String {
+        times(self.start.elapsed().as_secs_f64(), self.left())
+    }
 }
 
 /// Renders shorter than this say nothing where there is no terminal.
@@ -80,8 +85,10 @@ impl Progress {
             is_known: AtomicBool::new(rendering.is_work_known()),
         });
         let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
-        let style = style(rendering.is_work_known());
-        let bar = is_shown.then(|| ProgressBar::new(work).with_position(before).with_style(style));
+        let new = || ProgressBar::new(work).with_position(before).with_style(style()).with_message(counts.said());
+        // There is none on terminals that cannot go back in a line.
+        let bar = is_shown.then(new).filter(|bar| !bar.is_hidden());
+        BAR.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&bar);
         let lines = bar.is_none().then(|| {
             let counts = counts.clone();
             let (first, then) = match listener() {
@@ -103,8 +110,8 @@ impl Progress {
         self.counts.work.store(rendering.work(), Ordering::Relaxed);
         self.counts.is_known.store(is_known, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
-            bar.set_style(style(is_known));
             bar.set_length(self.counts.total());
+            bar.set_message(self.counts.said());
         }
     }
 
@@ -121,6 +128,7 @@ impl Progress {
         self.counts.done.fetch_add(work, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
             bar.set_length(self.counts.total());
+            bar.set_message(self.counts.said());
             bar.inc(work);
         }
     }
@@ -160,10 +168,17 @@ impl Progress {
     }
 }
 
-/// The bar; a time left is shown where it can be told.
-fn style(is_known: bool) -> ProgressStyle {
-    let left = if is_known { ", {eta} left" } else { "" };
-    let style = ProgressStyle::with_template(&format!("{{wide_bar}} {{percent:>3}} %  {{elapsed}} passed{left}"));
+/// The bar on the terminal, if there is one.
+static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// Removes the bar where the command ends at once.
+pub fn clear() {
+    BAR.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(ProgressBar::finish_and_clear);
+}
+
+/// The bar, with what is said of it.
+fn style() -> ProgressStyle {
+    let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %, {msg}");
     style.unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
@@ -228,8 +243,12 @@ impl Drop for Lines {
 /// How far the work is after so many seconds, and how many are left, if that is known.
 fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     let percent = (100.0 * part).floor().min(99.0);
+    format!("{percent} %, {}", times(passed, left))
+}
+
+fn times(passed: f64, left: Option<f64>) -> String {
     let left = left.map_or(String::new(), |left| format!(", about {} left", spoken(left)));
-    format!("{percent} %, {} passed{left}", spoken(passed))
+    format!("{} passed{left}", spoken(passed))
 }
 
 /// A time in the unit in which people would say it.

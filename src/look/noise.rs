@@ -64,7 +64,7 @@ impl<'f> Noisy<'f> {
         };
         let variance = there("variance")?.color()?.to_vec();
         let samples = there("samples").and_then(|layer| layer.channels.first().copied());
-        let (colors, size) = (beauty.values(), beauty.part.bounds.size);
+        let (colors, size) = (beauty.color()?.to_vec(), beauty.part.bounds.size);
         let half = colors.iter().any(|channel| channel.kind() == "half");
         let rounding = if half { ROUNDING_OF_HALF } else { ROUNDING };
         Some(Self { colors, variance, samples, taken, replicates, size, rounding })

@@ -128,7 +128,7 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
 #[test]
 fn parts_that_do_not_make_one_image_are_refused_by_name() {
     let folder = folder();
-    for part in ["1/2", "2/2", "1/3"] {
+    for part in ["1/2", "2/2", "1/3", "2/4294967295"] {
         done(&folder, &format!("s.toml --samples 4 --exr new/folder/s.exr --shard {part}"));
     }
     done(&folder, "s.toml --samples 4 --exr seed.exr --shard 2/2 --seed 8");
@@ -137,12 +137,17 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
     done(&folder, &format!("s.toml --samples 4 {off} --exr off.exr --shard 1/2"));
     done(&folder, &format!("s.toml --samples 5 {off} --exr samples.exr --shard 2/2"));
     done(&folder, "s.toml --samples 4 --exr layers.exr --shard 2/2 --layers N");
-    let [one, two, third] = ["1-of-2", "2-of-2", "1-of-3"].map(|part| format!("new/folder/s.{part}.part"));
+    let [one, two, third, most] =
+        ["1-of-2", "2-of-2", "1-of-3", "2-of-4294967295"].map(|part| format!("new/folder/s.{part}.part"));
     let again = "help: render it again, or leave it out";
     let other = |path: &str, why: &str| format!("error: {path} does not belong to {one}: {why}\n{again}");
     folder.write("old.exr", "an image of last week");
     for (parts, message) in [
         (one.clone(), "error: part 2 of 2 is missing\nhelp: render it: --shard 2/2".into()),
+        (
+            most.clone(),
+            "error: part 1 of 4294967295 is missing, and 4294967293 more\nhelp: render it: --shard 1/4294967295".into(),
+        ),
         (third.clone(), "error: part 2 of 3 is missing, and 1 more\nhelp: render it: --shard 2/3".into()),
         (
             format!("{one} {two} {one}"),
@@ -334,6 +339,51 @@ fn a_snapshot_has_its_spectra_beside_it() {
     for name in ["s.exr", "s.spectral.exr"] {
         let told = done(&folder, &format!("info {name}")).stdout;
         assert!(told.contains("render/complete"), "{name}: {told}");
+    }
+}
+
+/// Arguments may be in any encoding.
+#[cfg(target_os = "linux")]
+#[test]
+fn how_to_go_on_is_said_of_files_of_any_name() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = folder();
+    let name = OsStr::from_bytes(b"sc\xe9ne.toml");
+    fs::rename(folder.path().join("s.toml"), folder.path().join(name)).expect("any name will do");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+    command.current_dir(folder.path()).arg(name).args(["--samples", "2000", "--exr", "s.exr", "--checkpoint", "20ms"]);
+    let mut child = command.stderr(Stdio::piped()).spawn().expect("the command can be started");
+    while !folder.path().join("s.checkpoint").exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("there is kill");
+    assert!(sent.success());
+    let mut said = Vec::new();
+    child.stderr.take().expect("it is piped").read_to_end(&mut said).expect("it ends");
+    let said = String::from_utf8_lossy(&said);
+    assert!(child.wait().expect("it ends").code() == Some(130) && said.contains("Go on with"), "{said}");
+}
+
+/// Before the first sample a signal ends the command at once, whatever would be kept.
+#[cfg(unix)]
+#[test]
+fn a_command_that_has_not_begun_to_render_stops_at_once() {
+    let folder = folder();
+    let made = Command::new("mkfifo").arg(folder.path().join("p.toml")).status().expect("there is mkfifo");
+    assert!(made.success());
+    for more in [&[][..], &["--checkpoint", "60s"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
+        command.current_dir(folder.path()).args(["p.toml", "--exr", "p.exr"]).args(more).stderr(Stdio::piped());
+        let child = command.spawn().expect("the command can be started");
+        // It opens the scene, and waits for its text.
+        let scene = fs::OpenOptions::new().write(true).open(folder.path().join("p.toml")).expect("somebody reads");
+        let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("there is kill");
+        assert!(sent.success());
+        let output = child.wait_with_output().expect("it ends");
+        drop(scene);
+        let said = String::from_utf8(output.stderr).expect("messages are UTF-8");
+        assert_eq!((output.status.code(), &*said), (Some(130), "stopped before anything was rendered\n"));
     }
 }
 

@@ -406,3 +406,14 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     assert_eq!(render(&folder, &["diff", "a.exr"]).code, Some(2));
     assert_eq!(folder.listing(), ["a.exr", "b.exr"]);
 }
+
+#[test]
+fn a_layer_called_beauty_that_is_no_color_has_no_noise() {
+    let names = ["beauty.V", "beauty.W", "beauty.X", "beauty.Y"];
+    let mut channels: Vec<_> = names.map(|name| (name, vec![0.5; 200])).to_vec();
+    channels.extend(VARIANCES.map(|name| (name, vec![1e-4; 200])));
+    let a = Exr::new([20, 10], channels.clone());
+    channels[3].1[7] = 0.6;
+    let b = Exr::new([20, 10], channels);
+    assert!(difference(&a, &b).noise.is_none());
+}

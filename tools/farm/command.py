@@ -104,12 +104,18 @@ def draw(work, path):
     figure.savefig(path, dpi=150)
 
 
+def several(text):
+    if (count := int(text)) < 1:
+        raise ValueError(text)
+    return count
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene", type=Path)
     parser.add_argument("--threads", type=int, default=1, help="of each part; 1 if absent, which is measured best")
     parser.add_argument("--samples", type=int, help="of each pixel, instead of the scene's")
-    parser.add_argument("--verify", type=int, nargs="+", metavar="N", default=[], help="render so many parts and compare")
+    parser.add_argument("--verify", type=several, nargs="+", metavar="N", default=[], help="render so many parts and compare")
     parser.add_argument("--chart", type=Path, metavar="FILE.png", help="draw it")
     options, flags = parser.parse_known_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -50,6 +50,16 @@ def test_the_schema_is_a_schema_and_refuses_what_it_does_not_know():
             jsonschema.validate(wrong, SCHEMA)
 
 
+def test_each_of_several_frames_is_told_before_all_that_is_said_of_it(tmp_path):
+    said = events(TURNTABLE, "--exr", tmp_path / "a%d.exr", "--frame", "3-7x4", *SMALL)
+    frames = [event for event in said if event["kind"] == "frame"]
+    assert frames == [{"kind": "frame", "frame": frame, "number": n, "count": 2} for n, frame in ((1, 3), (2, 7))]
+    told = [event["kind"] for event in said if event["kind"] in ("frame", "plan", "report", "written")]
+    assert told == ["frame", "plan", "report", "written"] * 2
+    one = events(TURNTABLE, "--exr", tmp_path / "a%d.exr", "--frame", "3", *SMALL)
+    assert "frame" not in kinds(one)
+
+
 def test_all_that_is_said_of_a_render_is_in_the_schema(tmp_path):
     exr, png = tmp_path / "a.exr", tmp_path / "a.png"
     said = events(TURNTABLE, "--exr", exr, "--png", png, "--spectral", *SMALL, "--set", "set.spare=1")
