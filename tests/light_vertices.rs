@@ -435,6 +435,26 @@ fn the_plan_weighs_light_vertices() {
     assert!(!plan(&scene(&room(WHITE, "", &[lamp()]))).method.light_vertices, "too small");
 }
 
+/// Of a faint lamp there would be few vertices, and its layer would be too bright or too dark as a whole.
+#[test]
+fn layers_of_faint_lamps_have_no_light_vertices() {
+    let decided = |times: f64, layers: &str| {
+        let faint = body(
+            "faint",
+            &format!("emissive = {{ radiance = {} }}", 8.0 * times),
+            &[&quad([-1.2, 2.9, 1.4], [0.5, 0.0, 0.0], [0.0, 0.0, 0.4])],
+        );
+        let size = format!("width = 384\nheight = 384\nlayers = [{layers}]");
+        plan(&scene(&room(WHITE, "", &[lamp(), faint]).replace("width = 12\nheight = 12", &size)))
+    };
+    for (times, layers, expected) in
+        [(0.1, "", true), (0.1, "\"lights\"", false), (0.5, "\"lights\"", true), (0.0, "\"lights\"", true)]
+    {
+        let decided = decided(times, layers);
+        assert_eq!(decided.method.light_vertices, expected, "{times} {layers}: {:?}", decided.because);
+    }
+}
+
 /// One path in twenty starts from the whole of a huge lamp whose tip is seen, and ends far outside of the room. Such
 /// vertices must not take the place of those that are seen: gains of 1.0 to 1.6 were 2.3 to 2.6 without them, by seeds.
 /// Since the rays of gathered photons count on both sides, those are 1.9 to 2.1.

@@ -261,8 +261,8 @@ pub(super) fn attributes(film: &Film, format: &Format, view: &View, provenance: 
     attributes.other.insert(Text::from("colorInteropID"), text(film.color_space.interop_id()));
     for (key, fact) in &provenance.facts {
         let value = match fact {
-            Fact::Text(value) => text(value),
-            Fact::Count(count) => AttributeValue::I32(i32::try_from(*count).unwrap_or(i32::MAX)),
+            Fact::Text(value) => AttributeValue::Text(utf8(value)),
+            Fact::Count(count) => i32::try_from(*count).map_or(AttributeValue::F64(*count as f64), AttributeValue::I32),
             Fact::Number(number) => AttributeValue::F64(*number),
         };
         attributes.other.insert(Text::new_or_panic(format!("render/{key}")), value);

@@ -75,5 +75,5 @@ fn half(value: f32, clamped: &mut u64) -> f16 {
         return half;
     }
     *clamped += 1;
-    if value > 0.0 { f16::MAX } else { f16::MIN }
+    if value < 0.0 { f16::MIN } else { f16::MAX }
 }

@@ -25,9 +25,9 @@ pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> R
             }
         }));
     });
-    QUIET.set(true);
+    let was_quiet = QUIET.replace(true);
     let answer = catch_unwind(AssertUnwindSafe(decode));
-    QUIET.set(false);
+    QUIET.set(was_quiet);
     match answer {
         Ok(answer) => answer.map_err(|error| error.to_string()),
         Err(_) => Err("its data contradict themselves".into()),

@@ -41,7 +41,7 @@ impl Cone {
 
     /// A direction of the cone, uniform by solid angle.
     pub fn sample_uniform(&self, u: [f64; 2]) -> DVec3 {
-        Frame::about(self.axis).to_world(cone(self.one_minus_cos, u).0)
+        Frame::about(self.axis).to_world(cone(self.one_minus_cos, u))
     }
 
     /// Density per steradian with which `sample_uniform` draws directions.

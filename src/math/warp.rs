@@ -1,6 +1,6 @@
 //! From the unit square to a shape, each with its density.
 
-use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 use super::{DVec2, DVec3};
 
@@ -37,14 +37,14 @@ pub fn one_minus_cos_of_cone(sin_squared: f64) -> f64 {
     sin_squared / (1.0 + (1.0 - sin_squared).max(0.0).sqrt())
 }
 
-/// A direction within a cone about local +z and its constant density per steradian, 1 / (2 pi (1 - cos)).
+/// A direction within a cone about local +z, uniform by solid angle.
 ///
 /// The sine comes from x (2 - x) with x = 1 - cos, so that cones as narrow as a star keep all their digits.
-pub fn cone(one_minus_cos: f64, u: [f64; 2]) -> (DVec3, f64) {
+pub fn cone(one_minus_cos: f64, u: [f64; 2]) -> DVec3 {
     let x = u[0] * one_minus_cos;
     let radius = (x * (2.0 - x)).max(0.0).sqrt();
     let (sin, cos) = libm::sincos(TAU * u[1]);
-    (DVec3::new(radius * cos, radius * sin, 1.0 - x), 1.0 / (2.0 * PI * one_minus_cos))
+    DVec3::new(radius * cos, radius * sin, 1.0 - x)
 }
 
 /// The point (x, y), |x|^2 + |y|^2 < 1, of the unit disk that lies at a place of the square around it, [0, 1]^2; none

@@ -82,7 +82,7 @@ impl Options {
         if self.spectral {
             scene.format.spectral.get_or_insert_default();
         }
-        check_layers(scene)
+        check_layers(scene, self.shard)
     }
 
     /// What replaces a scene's own way to be rendered, and its film.
@@ -108,14 +108,15 @@ const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
 /// Refuses layers that fill all memory, cannot be made or do not fit the format, and lights whose layers' names cannot
 /// be written.
-pub(super) fn check_layers(scene: &Scene) -> Result<()> {
+pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     if let Some((message, help)) = scene.format.objection() {
         return refuse(message, &help);
     }
-    if scene.layer_bytes() > MOST_OF_LAYERS {
-        let gigabytes = scene.layer_bytes() / 1_000_000_000;
+    let bytes = scene.layer_bytes() / u64::from(shard.count());
+    if bytes > MOST_OF_LAYERS {
+        let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
-        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
+        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --shard or --crop");
     }
     if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
         let message = "model = \"rgb\" has no wavelengths to make spectra of".into();

@@ -90,10 +90,11 @@ impl Parts {
             }
             non_finite += head.non_finite;
         }
-        let mut missing = (1..=count).filter(|number| !found.contains_key(number));
-        if let Some(number) = missing.next() {
-            let more = missing.count();
-            let more = if more == 0 { String::new() } else { format!(", and {more} more") };
+        let missing = count - found.len() as u32;
+        if missing > 0 {
+            let gap = (1..).zip(found.keys()).find(|(number, found)| number != *found);
+            let number = gap.map_or(found.len() as u32 + 1, |(number, _)| number);
+            let more = if missing == 1 { String::new() } else { format!(", and {} more", missing - 1) };
             let help = format!("render it: --shard {number}/{count}");
             return Err(refused(format!("part {number} of {count} is missing{more}"), help));
         }

@@ -83,7 +83,7 @@ impl Rendering {
         let mut scene = Cow::Borrowed(scene);
         let is_as_asked = options.instead_of(&scene) == (scene.render.clone(), scene.film);
         if is_as_asked && options.layers.is_none() && !options.spectral {
-            check_layers(&scene)?;
+            check_layers(&scene, options.shard)?;
         } else {
             options.apply(scene.to_mut())?;
         }

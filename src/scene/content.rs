@@ -96,10 +96,10 @@ impl<S> Scene<S> {
         (layers + components * self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
-    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, its
-    /// value in 32, and that again while the file is written.
+    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, and
+    /// its value in 32.
     pub fn layer_bytes(&self) -> u64 {
-        let each = if self.film.filter.is_signed() { 24 } else { 16 };
+        let each = if self.film.filter.is_signed() { 20 } else { 12 };
         each * self.layer_channels() * self.film.window().pixels()
     }
 

@@ -21,7 +21,7 @@ pub struct FilmSettings {
 impl FilmSettings {
     /// Most pixels in a row or column, with the overscan.
     pub const MAX_SIDE: u32 = 65_536;
-    /// Most pixels, with the overscan: at 20 bytes each, and as many again while the file is written, 10 GB.
+    /// Most pixels, with the overscan: 19 GB of sums and values, without layers.
     pub const MAX_PIXELS: u64 = 1 << 28;
 
     /// The part of the image that is made.

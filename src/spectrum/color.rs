@@ -51,11 +51,14 @@ impl Primaries {
         columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
     }
 
-    /// Whether they are those of a space, to the four digits with which most are published.
-    fn are_of(self, space: ColorSpace) -> bool {
+    /// The space whose primaries they are, to the four digits with which most are published.
+    pub fn space(self) -> Option<ColorSpace> {
         let list = |it: Self| [it.red, it.green, it.blue, it.white];
-        let (ours, theirs) = (list(self), list(space.primaries()));
-        ours.as_flattened().iter().zip(theirs.as_flattened()).all(|(a, b)| (a - b).abs() <= 5e-5)
+        let near = |space: &ColorSpace| {
+            let (ours, theirs) = (list(self), list(space.primaries()));
+            ours.as_flattened().iter().zip(theirs.as_flattened()).all(|(a, b)| (a - b).abs() < 1e-4)
+        };
+        ColorSpace::ALL.into_iter().find(near)
     }
 
     /// Color to linear Rec.709, adapted to its white; none of primaries that lie on one line, or a white without light.
@@ -78,8 +81,7 @@ impl Primaries {
 /// # Errors
 /// Why it cannot be told what they mean.
 pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
-    let like = |primaries: Primaries| ColorSpace::ALL.into_iter().find(|space| primaries.are_of(*space));
-    if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| like(primaries?)) {
+    if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| primaries?.space()) {
         return Ok(space.to_rec709());
     }
     match (primaries, interop_id.filter(|id| *id != "unknown")) {
@@ -92,9 +94,8 @@ pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) ->
 
 /// What messages call the colors of a file: the space that it names or that has its primaries, or the primaries.
 pub fn space_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> String {
-    let like = |primaries: Primaries| ColorSpace::ALL.into_iter().find(|space| primaries.are_of(*space));
     let point = |[x, y]: [f64; 2]| format!("({}, {})", x as f32, y as f32);
-    match (interop_id, primaries.and_then(like), primaries) {
+    match (interop_id, primaries.and_then(Primaries::space), primaries) {
         (Some(id), ..) => format!("the color space {id}"),
         (None, Some(space), _) => format!("the primaries of {}", space.interop_id()),
         (None, None, Some(primaries)) => {

@@ -40,6 +40,11 @@ pub struct Method {
 }
 
 impl Method {
+    /// Whether light is left out that surfaces send on more often than they may.
+    pub(super) fn has_limits(&self) -> bool {
+        self.max_bounces < u32::MAX || self.diffuse_bounces < u32::MAX
+    }
+
     /// One sample of each pixel by paths of any length from the camera alone, without polarization.
     pub fn of_paths(basis: Basis, transport: Transport, seed: u64) -> Self {
         Self {

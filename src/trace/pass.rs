@@ -100,6 +100,20 @@ impl Stage {
         self
     }
 
+    /// After so many more samples of one replicate alone.
+    pub(super) fn after_alone(self, samples: u32) -> Self {
+        let Self { before, size, taken, .. } = self;
+        if taken + samples < size {
+            return Self { taken: taken + samples, ..self };
+        }
+        Self { before: before + size, ..Self::default() }
+    }
+
+    /// Whether the next one is yet to be begun.
+    pub(super) fn is_over(self) -> bool {
+        self.size == 0
+    }
+
     /// Samples of a pixel that a replicate has, but for the pass under way.
     pub(super) fn samples_of(self, replicate: u32) -> u32 {
         self.before

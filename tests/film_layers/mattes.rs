@@ -3,7 +3,7 @@
 use abbe::Image;
 use abbe::film::Layer;
 
-use super::{rendered, rgb};
+use super::{id, rendered, rgb};
 
 const PIXELS: usize = 36;
 const SAMPLES: usize = 256;
@@ -155,4 +155,62 @@ fn a_shadow_catcher_seen_through_a_lamp_that_the_camera_does_not_see_shows_the_s
                 material = \"black\"\nvisible_to_camera = false\n";
     let expected = (0.0625 / 1.0625) / 0.2;
     assert!((shadow(disc) - expected).abs() < 0.005, "{} for {expected}", shadow(disc));
+}
+
+/// The camera sees `count` sheets, one behind the other, and a wall. Each sheet and the wall have the coverage of what
+/// reaches them, whatever the light that comes from there.
+fn sheets_before_a_wall(count: u32, opacity: f64, more: &str) -> Image {
+    let sheet = |number: u32| {
+        format!(
+            "[[object]]\nname = \"sheet {number}\"\nmaterial = \"veil\"\n\
+             shape.quad = {{ center = [0, 0, {}], u = [3, 0, 0], v = [0, 3, 0] }}\n",
+            -0.1 * f64::from(number)
+        )
+    };
+    let text = format!(
+        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 20 }}\n\
+         film = {{ width = 6, height = 6 }}\nrender = {{ samples = {SAMPLES}{more} }}\n[material]\n\
+         white.diffuse.reflectance = 0.5\nveil.mask = {{ material = \"white\", opacity = {opacity} }}\n\
+         {}[[object]]\nname = \"wall\"\nshape.quad = {{ center = [0, 0, -5], u = [9, 0, 0], v = [0, 9, 0] }}\n\
+         material = \"white\"\n[[light]]\npoint = {{ position = [1, 1, 4], intensity = 10 }}\n",
+        (0..count).map(sheet).collect::<String>()
+    );
+    rendered(&text, &[Layer::CryptoObject, Layer::Normal, Layer::Residual])
+}
+
+#[test]
+fn what_is_behind_many_holes_is_met_as_often_as_it_is_seen() {
+    for (count, opacity, more) in [(1, 0.98, ""), (5, 0.5, ""), (12, 0.5, ""), (5, 0.3, ", max_bounces = 0")] {
+        let image = sheets_before_a_wall(count, opacity, more);
+        let alpha = image.layer("A").expect("every image has it");
+        assert!(alpha.iter().all(|&alpha| alpha == 1.0), "{count} of {opacity}: {alpha:?}");
+        if more.is_empty() {
+            assert!(image.layer("N.Z").expect("it was asked for").iter().all(|&z| (z - 1.0).abs() < 1e-6));
+        }
+        // No more objects have a rank.
+        for number in 0..=count.min(5) {
+            let name = if number == count { "wall".into() } else { format!("sheet {number}") };
+            let reached = (1.0 - opacity).powi(number as i32);
+            let share = reached * if number == count { 1.0 } else { opacity };
+            let found = mean((0..PIXELS).map(|pixel| coverage_of(&image, &name, pixel)));
+            assert!((found - share).abs() < five_sigma(share), "{name} of {count}: {found} for {share}");
+        }
+        // What chance adds to a sample and takes from another is nothing on the average. A limit leaves out all.
+        let left_out = if more.is_empty() { 0.0 } else { 1.0 };
+        let left = rgb(&image, "residual");
+        let left = left.iter().map(|rgb| rgb[1]).sum::<f64>() / left.len() as f64;
+        assert!((left - left_out).abs() < 0.02, "{count} of {opacity}: {left}");
+    }
+}
+
+/// The coverage of an object in a pixel.
+fn coverage_of(image: &Image, name: &str, pixel: usize) -> f64 {
+    let bits = id(name);
+    let rank = |rank: usize, half: usize| {
+        let names = [["r", "g"], ["b", "a"]][half];
+        let layer = |channel: &str| image.layer(&format!("CryptoObject0{rank}.{channel}"));
+        names.map(|channel| layer(channel).map_or(0.0, |values| values[pixel]))
+    };
+    let pairs = (0..3).flat_map(|number| [rank(number, 0), rank(number, 1)]);
+    pairs.filter(|[id, _]| id.to_bits() == bits).map(|[_, coverage]| f64::from(coverage)).sum()
 }

@@ -103,21 +103,37 @@ fn by_chance_the_mean_is_nothing() {
 /// diffuse bounces have not.
 #[test]
 fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
-    let room = |render: &str| {
-        let text = format!(
+    let text = |render: &str, layers: &str| {
+        format!(
             "camera = {{ position = [0, 0, 2.9], look_at = [0, 0, 0], vertical_fov = 60 }}\n\
-             film = {{ width = 16, height = 16, layers = [\"residual\"] }}\nrender = {{ samples = 64{render} }}\n\
+             film = {{ width = 16, height = 16, layers = [{layers}] }}\nrender = {{ samples = 64{render} }}\n\
              material.wall.diffuse.reflectance = 0.7\n\
              material.lamp.emissive = {{ radiance = 4, sides = \"front\" }}\n\
              [[object]]\nshape.cube = {{ center = [0, 0, 0], size = 6 }}\nmaterial = \"wall\"\n\
              [[object]]\nshape.quad = {{ center = [0, 2.9, 0], u = [1, 0, 0], v = [0, 0, 1] }}\nmaterial = \"lamp\"\n"
-        );
-        let scene = Scene::parse(&text, "").expect("the scene is valid");
+        )
+    };
+    let room = |render: &str| {
+        let scene = Scene::parse(&text(render, "\"residual\""), "").expect("the scene is valid");
         let world = trace::prepare(&scene, Method { light_vertices: true, ..plan(&scene).method });
         let film = trace::render(&world, &|_| ()).0;
         let numbers: Vec<f64> = film.layers[0].values.iter().map(|&x| f64::from(x)).collect();
         mean_and_z(numbers.as_chunks().0)
     };
+    // The report has it without a layer, by some of the paths.
+    let stopped = |render: &str, light_vertices: bool| {
+        let scene = Scene::parse(&text(render, ""), "").expect("the scene is valid");
+        let method = Method { light_vertices, ..plan(&scene).method };
+        trace::render(&trace::prepare(&scene, method), &|_| ()).1.stopped
+    };
+    for limit in [", diffuse_bounces = 0", ", diffuse_bounces = 2", ", max_bounces = 1", ", max_bounces = 4"] {
+        let [with, without] = [true, false].map(|light_vertices| stopped(limit, light_vertices));
+        let residual = room(limit);
+        let residual = residual.iter().map(|(mean, _)| mean).sum::<f64>() / 3.0;
+        assert!((with / without - 1.0).abs() < 0.05, "{limit}: {with} with light vertices, {without} without");
+        assert!((residual / without - 1.0).abs() < 0.05, "{limit}: {residual} in the layer, {without} in the report");
+    }
+    assert_eq!([true, false].map(|light_vertices| stopped("", light_vertices)), [0.0; 2]);
     let unlimited = room("");
     assert!(unlimited.iter().all(|(_, z)| z.abs() <= 3.0), "{unlimited:?}");
     // What leaves the first wall is 0.7 of what arrives, and nothing may leave it. The lamp takes what meets it.

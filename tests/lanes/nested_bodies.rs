@@ -3,7 +3,7 @@
 use abbe::math::DVec3;
 
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, SPLITTING, body, environment, image, view};
 use abbe::trace::{MOST_MEDIA, Transport};
 
 /// Reflectance over transmittance of one interface at normal incidence.
@@ -250,5 +250,47 @@ fn as_many_bodies_as_there_is_room_for_lie_in_one_another_and_more_are_told_of()
         assert!((shown - expected).abs() < 1e-6, "from {position:?}: {shown}, not {expected}");
         let (_, report) = seen(MOST_MEDIA as u32 + 1);
         assert!(report.unmatched > 0 && report.has_many_media, "from {position:?}");
+    }
+}
+
+/// A camera in a sea sees a lamp through bodies that the sea has taken the place of.
+#[test]
+fn hidden_bodies_are_no_surfaces_of_what_is_seen_through_them() {
+    let lamp = "quad = { center = [0, 0, -5], u = [3, 0, 0], v = [0, 3, 0] }";
+    for hidden in 0..4 {
+        for max_bounces in [0, 1, 9] {
+            for seen in [true, false] {
+                let ball = |number: i32| format!("sphere = {{ center = [0, 0, {}], radius = 0.4 }}", 2 - number);
+                let balls: Vec<String> = (0..hidden).map(ball).collect();
+                let balls: Vec<&str> = balls.iter().map(String::as_str).collect();
+                let ball = body("glass", "dielectric = { index = 1.5, priority = 0 }", &balls);
+                let lamp = body("lamp", "emissive = { radiance = 1 }", &[lamp]);
+                let text = view([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 2.0, 4)
+                    + &format!("[render]\nsamples = 4\nmax_bounces = {max_bounces}\n")
+                    + &body(
+                        "water",
+                        "dielectric = { index = 1.33, priority = 1 }",
+                        &["sphere = { center = [0, 0, 0], radius = 20 }"],
+                    )
+                    + &ball
+                    + &lamp
+                    + if seen { "" } else { "visible_to_camera = false\n" };
+                for transport in [EVERY_BRANCH, SPLITTING, SINGLE_PATH] {
+                    let (film, _) = image(&text, transport);
+                    for pixel in &film.pixels {
+                        let told = format!("{hidden} {max_bounces} {seen}: {pixel:?}");
+                        if seen {
+                            // As far as light goes, the factor of radiance aside.
+                            assert!((pixel.rgb[0] - 1.0).abs() < 1e-5, "{told}");
+                            assert!((pixel.depth - 10.0).abs() < 1e-3 && pixel.alpha == 1.0, "{told}");
+                        } else if max_bounces == 0 {
+                            assert!(pixel.rgb[0] == 0.0, "{told}");
+                        } else {
+                            assert!(pixel.rgb[0] < 0.5, "{told}");
+                        }
+                    }
+                }
+            }
+        }
     }
 }

@@ -139,15 +139,15 @@ fn what_is_wrong_with_a_radiance_picture_is_said() {
         (with("-Y 1 +X few", &[9; 4]), "its size is \"-Y 1 +X few\", and only -Y height +X width is read"),
         (with("-Y 0 +X 1", &[]), "it has no pixels"),
         (with("-Y 2 +X 1", &[9; 7]), "it ends too early"),
-        (with("-Y 2 +X 1", &[9, 9, 9, 9, 1, 1, 1, 1]), "row 1 is not as long as the image is wide"),
-        (with("-Y 1 +X 3", &[9, 9, 9, 9, 1, 1, 1, 3]), "row 0 is not as long as the image is wide"),
+        (with("-Y 2 +X 1", &[9, 9, 9, 9, 1, 1, 1, 1]), "row 1 (counted from 0) is not as long as the image is wide"),
+        (with("-Y 1 +X 3", &[9, 9, 9, 9, 1, 1, 1, 3]), "row 0 (counted from 0) is not as long as the image is wide"),
         (
             with("-Y 1 +X 3", &[&[9; 4][..], &[1, 1, 1, 0].repeat(9)].concat()),
-            "row 0 is not as long as the image is wide",
+            "row 0 (counted from 0) is not as long as the image is wide",
         ),
-        (with("-Y 1 +X 9", &[2, 2, 0, 8]), "row 0 is not as long as the image is wide"),
-        (packed(&[128 + 9, 5]), "row 0 is not as long as the image is wide"),
-        (packed(&[128 + 8, 5, 9, 1, 2, 3]), "row 0 is not as long as the image is wide"),
+        (with("-Y 1 +X 9", &[2, 2, 0, 8]), "row 0 (counted from 0) is not as long as the image is wide"),
+        (packed(&[128 + 9, 5]), "row 0 (counted from 0) is not as long as the image is wide"),
+        (packed(&[128 + 8, 5, 9, 1, 2, 3]), "row 0 (counted from 0) is not as long as the image is wide"),
         (packed(&[128 + 8, 5, 8, 1, 2, 3]), "it ends too early"),
     ];
     for (bytes, said) in cases {

@@ -86,7 +86,7 @@ pub(in crate::scene) enum Unreadable {
     Factors(String, String),
     #[error("its size is {0:?}, and only -Y height +X width is read")]
     Size(String),
-    #[error("row {0} is not as long as the image is wide")]
+    #[error("row {0} (counted from 0) is not as long as the image is wide")]
     Row(usize),
 }
 

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::numbers::{FURTHER_LIGHTS, MORE_DIGITS};
 use super::sensor::Sensor;
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
@@ -65,11 +66,6 @@ struct ShadowRay<const N: usize> {
     /// The factor on both, where bounces are not guided.
     factor: f64,
 }
-
-/// Random numbers for the second light and those after it.
-const FURTHER_LIGHTS: u32 = 16;
-/// Random digits for choices among many, and the choice of a side.
-const MORE_DIGITS: u32 = 3;
 
 impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
@@ -181,9 +177,9 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     }
 }
 
-/// A random number with more digits: choosing among many lights uses up those of the sequences, 24 bits.
+/// A random number with more digits: choosing among many lights uses up those of the sequences, 23 bits.
 fn finer(u: f64, more: f64) -> f64 {
-    const STEPS: f64 = (1 << 24) as f64;
+    const STEPS: f64 = (1 << 23) as f64;
     ((u * STEPS).floor() + more) / STEPS
 }
 
@@ -216,4 +212,24 @@ fn power_heuristic(this: f64, other: f64) -> f64 {
     }
     let ratio = other / this;
     1.0 / (1.0 + ratio * ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::BranchKey;
+
+    /// Numbers of the sequences have 23 bits: what is added to one fills the whole step to the next.
+    #[test]
+    fn finer_numbers_leave_no_gaps() {
+        let mut upper = 0;
+        for sample in 0..4096 {
+            let sampler = Sampler::of_pixel(5, [1, 2], sample);
+            let (u, more) = (sampler.four(BranchKey::CAMERA, 1)[0], sampler.four_plain(BranchKey::CAMERA, 1)[0]);
+            assert_eq!(u, finer(u, 0.0));
+            assert!((u..u + 1.0 / f64::from(1 << 23)).contains(&finer(u, more)));
+            upper += u32::from(libm::fmod(finer(u, more) * f64::from(1 << 23), 1.0) >= 0.5);
+        }
+        assert!((upper as i32 - 2048).abs() < 5 * 32, "{upper} of 4096 lie in the upper halves of steps");
+    }
 }

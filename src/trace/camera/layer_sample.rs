@@ -1,5 +1,6 @@
 //! What one camera sample leaves in the layers.
 
+use super::numbers::ALBEDO;
 use crate::film::{FirstSurface, Layer};
 use crate::material::{Branch, Straight};
 use crate::math::Sampler;
@@ -11,9 +12,6 @@ use crate::trace::layers::Layers;
 use crate::trace::photon::{Gathered, Part, PartSpectrum};
 use crate::trace::spectrum_sample::SpectrumSample;
 use crate::trace::walk::{Among, Audit, Interaction, Meeting, Path, Polarization, shading};
-
-/// Use of the random numbers by which albedo is found.
-const ALBEDO: u32 = 7;
 
 /// A row of numbers, filled by one camera sample after another.
 pub struct LayerSample<'a, const N: usize> {

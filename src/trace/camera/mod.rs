@@ -7,6 +7,8 @@ mod numbers;
 mod path_tracer;
 mod resampling;
 mod sensor;
+mod shining;
+mod surface;
 
 pub use layer_sample::Left;
 pub use path_tracer::PathTracer;

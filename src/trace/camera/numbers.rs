@@ -7,12 +7,22 @@
 use crate::math::{BranchKey, Sampler};
 use crate::trace::walk::Path;
 
-/// Use of the camera's numbers.
+/// Use of the camera's numbers, which have the first vertex's key: the place in the pixel, and that on the lens.
 const PLACE: u32 = 0;
-/// Another of them. The first vertex has 1, 2 and those from 16.
 const LENS: u32 = 3;
-/// Use of the numbers at a vertex.
+/// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, what the camera
+/// meets.
 const SCATTER: u32 = 1;
+/// Which vertices of light paths are looked at.
+pub const VERTEX: u32 = 5;
+/// Whether a path ends where its light was looked for there.
+pub const COMPLEMENT: u32 = 6;
+/// The directions by which albedo is found.
+pub const ALBEDO: u32 = 7;
+/// More digits of what chooses a light; these are plain numbers, and those of the lens are not.
+pub const MORE_DIGITS: u32 = 3;
+/// Directions to further lights, two to each use from this one on.
+pub const FURTHER_LIGHTS: u32 = 16;
 /// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
 /// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;

@@ -3,15 +3,17 @@
 use std::rc::Rc;
 
 use super::aimed::{may_aim, scatter_aimed};
-use super::direct::{DirectLighting, weight_of_meeting};
+use super::direct::DirectLighting;
 use super::layer_sample::{LayerSample, Met};
 use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Bounce, Observer, Sensor};
+use super::shining::Shining;
+use super::surface::{First, Leaving, Surface};
 use crate::film::{Layer, Sample};
-use crate::light::{Light, LightId};
+use crate::light::LightId;
 use crate::material::{Material, Straight};
-use crate::math::{DVec2, DVec3, Sampler};
+use crate::math::{DVec2, Sampler};
 use crate::scene::Sight;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
@@ -39,16 +41,9 @@ pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
     excitations: Vec<Rc<Excitation<N, P>>>,
 }
 
-/// Where a path has hit a light.
-struct Lit<'a, P> {
-    /// The unit normal of the surface that shines, on its front; none of a sky.
-    normal: Option<DVec3>,
-    /// How the path is polarized there.
-    polarization: &'a P,
-}
-
-/// Use of random numbers: those that end paths whose light is looked for at light vertices.
-const COMPLEMENT: u32 = 6;
+/// Of the paths whose light is found at light vertices, those that go on where bounces are limited: they tell how much
+/// the limits leave out.
+const ACCOUNTED: f64 = 1.0 / 16.0;
 
 impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn new(world: &'a World) -> Self {
@@ -171,21 +166,29 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.walker.stats.stopped += path.weight(draw);
             return;
         }
+        self.sensor.is_deaf = path.unlit;
         let before = self.sensor.rgb;
         let Some(meeting) = self.walker.meet(path, draw) else {
             self.background(path, draw);
             self.tell(path, draw, f64::INFINITY, before);
             return;
         };
+        let boundary = match self.walker.boundary(path, &meeting) {
+            Ok(boundary) => boundary,
+            Err(hidden) => {
+                self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
+                return self.walker.go_on_past(path, &meeting, &hidden);
+            }
+        };
         let mut onward = self.walker.straight(path, draw, &meeting);
         let is_held_out =
-            world.hides_objects && path.kind == PathKind::Camera && world.sight(meeting.hit.object) == Sight::Holdout;
+            world.hides_objects && path.kind.is_from_camera() && world.sight(meeting.hit.object) == Sight::Holdout;
         if is_held_out {
             // What lies behind a pane is cut out with it, and what lies behind a hole is not.
             onward.iter_mut().for_each(|onward| onward.straight = onward.straight.through_holes());
             onward = onward.filter(|onward| !onward.straight.holes.is_zero());
         }
-        if world.has_mattes && path.vertices == 0 && first.is_none() {
+        if world.has_mattes && path.surfaces() == 0 && first.is_none() {
             self.choose(path, draw, sampler, &mut onward);
         }
         let Meeting { hit, point } = &meeting;
@@ -201,26 +204,39 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
             return self.walker.go_on_in_part(path, point, onward.as_ref());
         }
-        let is_met_first = path.vertices == 1 && first.is_none() && {
-            let (is_met, chance) = straight::is_met(world, draw, sampler, path, onward.as_ref());
-            self.sensor.layers.iter_mut().for_each(|layers| layers.choose(chance));
-            is_met
-        };
-        if is_met_first {
-            *first = Some(*point);
-            if let Some(layers) = &mut self.sensor.layers {
-                layers.meet_object(hit.object);
-            }
-        }
-        self.emission(path, draw, &meeting);
-        if path.vertices > world.method.max_bounces {
+        let is_first = path.surfaces() == 1 && first.is_none();
+        let met = is_first.then(|| self.first_met(path, draw, sampler, &meeting, onward.as_ref(), first));
+        self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
+        if path.surfaces() > world.method.max_bounces {
             self.cut(path, draw, &meeting, onward.as_ref());
             return;
         }
-        self.scatter(path, draw, sampler, &meeting, onward.as_ref(), is_met_first);
+        let surface = Surface { meeting: &meeting, boundary, onward: onward.as_ref(), first: met };
+        self.scatter(path, draw, sampler, &surface);
         if onward.is_none() {
             self.tell(path, draw, hit.crossing.t, before);
         }
+    }
+
+    /// What the camera ray meets: a surface, which becomes the first, or what is behind its holes.
+    fn first_met(
+        &mut self,
+        path: &Path<N, P>,
+        draw: &Draw<N>,
+        sampler: &Sampler,
+        meeting: &Meeting,
+        onward: Option<&Onward<N, P>>,
+        first: &mut Option<SurfacePoint>,
+    ) -> First {
+        let (is_met, chance) = straight::is_met(self.walker.world, draw, sampler, path, onward);
+        if let Some(layers) = &mut self.sensor.layers {
+            layers.choose(chance);
+            if is_met {
+                layers.meet_object(meeting.hit.object);
+            }
+        }
+        *first = is_met.then_some(meeting.point);
+        if is_met { First::Here } else { First::Beyond }
     }
 
     /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
@@ -259,52 +275,27 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let world = self.walker.world;
         self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
-        for &id in &world.scene.infinite_lights {
-            let light = &world.scene.lights[id];
-            let is_hidden = path.kind == PathKind::Camera && world.scene.hidden_lights.contains(&id);
-            if is_hidden || self.is_found_otherwise(path, id) {
-                continue;
+        for &light in &world.scene.infinite_lights {
+            let is_hidden = path.kind.is_from_camera() && world.scene.hidden_lights.contains(&light);
+            if !is_hidden {
+                self.receive(path, draw, Shining::of_sky(world, draw, path, light));
             }
-            let factor = match light {
-                Light::Sun(sun) if sun.pdf(&path.ray).is_some() => sun.radiance_factor(),
-                Light::Sun(_) => continue,
-                _ => 1.0,
-            };
-            let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, None);
-            let mut shone = light.toward(draw, path.ray.direction, [0.0; 2]);
-            let polarization = path.polarization.lit_by(light, path.ray.direction, &mut shone);
-            let lanes = &path.throughput.scaled(weight * factor).of(shone);
-            let lit = Lit { normal: None, polarization: polarization.as_ref().unwrap_or(&path.polarization) };
-            self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
         }
     }
 
-    /// Hands the light of a surface that shines by itself to the sensor.
-    fn emission(&mut self, path: &Path<N, P>, draw: &Draw<N>, Meeting { hit, point }: &Meeting) {
-        let world = self.walker.world;
-        let object = &world.scene.objects[hit.object as usize];
-        let Some(id) = object.light else { return };
-        let Light::Area(area) = &world.scene.lights[id] else { return };
-        if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) || self.is_found_otherwise(path, id) {
+    /// Hands light that a path has met to the sensor, unless it is found otherwise.
+    fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<Shining<N, P>>) {
+        let Some(Shining { light, lanes, normal, polarization }) = met else { return };
+        if self.is_found_otherwise(path, light) {
             return;
         }
-        let weight = weight_of_meeting(world, id, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
-        let uv = object.uv(&hit.crossing, point);
-        let lanes = &path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
-        let lit = Lit { normal: Some(point.normal), polarization: &path.polarization };
-        self.receive(path, &lit, &Arrived { source: id, draw, lanes, parted: path.parted });
-    }
-
-    /// Hands light that a path has hit to the sensor.
-    fn receive(&mut self, path: &Path<N, P>, lit: &Lit<P>, arrived: &Arrived<N>) {
+        let arrived = Arrived { source: light, draw, lanes: &lanes, parted: path.parted };
         let excitation = self.excitation(path);
-        let met = MetLight::new(self.walker.world, arrived, excitation.as_deref());
-        let rgb = met.rgb;
-        let Lit { normal, polarization } = *lit;
-        let moved = polarization.moved_of_met(&met);
-        let (light, found) = (Some(arrived.source), Found::Hit { normal, scattered: path.scatter.is_some() });
+        let met = MetLight::new(self.walker.world, &arrived, excitation.as_deref());
+        let (rgb, moved) = (met.rgb, polarization.moved_of_met(&met));
+        let (light, found) = (Some(light), Found::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, parted: dispersed, first, .. } = *path;
-        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, polarization);
+        self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
@@ -313,12 +304,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path: &mut Path<N, P>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        meeting: &Meeting,
-        onward: Option<&Onward<N, P>>,
-        is_met_first: bool,
+        &Surface { meeting, boundary, onward, first }: &Surface<N, P>,
     ) {
         let world = self.walker.world;
-        let Some(boundary) = self.walker.boundary(path, meeting) else { return };
         if path.resampled && world.ends_light_paths(meeting.hit.object) {
             path.resampled = false;
         }
@@ -330,14 +318,16 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let at = Interaction::new(world, draw, &path.arriving(), meeting, boundary);
         if let Some(layers) = &mut self.sensor.layers {
             let straight = onward.map(|onward| &onward.straight);
+            let is_met_first = first == Some(First::Here);
             layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
         }
-        match self.excite(path, &at, sampler) {
+        let leaving = Leaving { onward, is_awaited: first == Some(First::Beyond), gathers: !ends };
+        match self.excite(path, &at, sampler, leaving.is_awaited) {
             0.0 => {}
-            1.0 => self.scatter_at(path, &at, sampler, onward, !ends),
+            1.0 => self.scatter_at(path, &at, sampler, leaving),
             factor => {
                 let throughput = path.throughput.scaled(factor);
-                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, onward, !ends);
+                self.scatter_at(&Path { throughput, ..*path }, &at, sampler, leaving);
             }
         }
     }
@@ -348,20 +338,23 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path.excitation.map(|number| self.excitations[number as usize].clone())
     }
 
-    /// Follows what excites the dyes of a surface, and answers the factor on what the surface scatters by itself.
+    /// Follows what excites the dyes of a surface, and answers the factor on what the surface scatters by itself; that
+    /// is 1 where it is awaited.
     #[inline]
-    fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> f64 {
+    fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, is_awaited: bool) -> f64 {
         let world = self.walker.world;
         let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
             return 1.0;
         };
-        let (all, seen) = (self.walker.follows_all(path, at.arrival.draw), self.excitation(path));
+        let all = is_awaited || self.walker.follows_all(path, at.arrival.draw);
+        let seen = self.excitation(path);
         let ways = Exciting { world, dyes, path, at, all, seen: seen.as_deref() }.ways(sampler);
         for (way, excitation) in ways.of_dyes {
             let excitation = Rc::new(excitation);
             let path = Path { excitation: Some(self.excitations.len() as u32), ..way };
             self.excitations.push(excitation.clone());
-            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, None, true);
+            let leaving = Leaving { onward: None, is_awaited: false, gathers: true };
+            self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, leaving);
         }
         ways.scattered
     }
@@ -372,8 +365,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path: &Path<N, P>,
         at: &Interaction<N>,
         sampler: &Sampler,
-        onward: Option<&Onward<N, P>>,
-        gathers: bool,
+        Leaving { onward, is_awaited, gathers }: Leaving<N, P>,
     ) {
         let (world, draw) = (self.walker.world, at.arrival.draw);
         let material = at.material;
@@ -397,9 +389,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let resampled = goes_on && self.resample(path, at, sampler);
             let (pdf, from, normal, passed) = (0.0, at.point.position, at.flat, false);
             scatter = Some(ScatterSample { pdf, from, normal, chance, all_lights, passed, resampled });
-            if !goes_on && onward.is_none() && !at.lobes.has_delta() && self.walker.audit.is_none() {
-                return;
-            }
         }
         self.walker.branches.clear();
         match &aiming {
@@ -408,10 +397,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.walker.polarize(path, at);
         self.walker.account(path, at, onward.map(|onward| &onward.straight));
+        let mut departure = Departure::new(world, path, at).with(scatter.as_ref(), onward).awaiting(is_awaited);
         if !goes_on {
-            self.walker.keep_single();
+            self.walker.keep_single(&departure);
         }
-        let mut departure = Departure::new(world, path, at).with(scatter.as_ref(), onward);
         self.walker.follow(&mut departure, sampler);
     }
 
@@ -430,7 +419,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer. For light
-    /// that they do not carry it goes on.
+    /// that they do not carry it goes on, and for none at all to tell how much a limit of bounces leaves out.
     fn ends_at_light_vertices(
         &mut self,
         path: &mut Path<N, P>,
@@ -443,13 +432,23 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return false;
         }
         let chance = vertices.complement((meeting.point.position - scatter.from).length_squared());
-        let ends = sampler.four_plain(path.key, COMPLEMENT)[0] >= chance;
+        let u = sampler.four_plain(path.key, numbers::COMPLEMENT);
+        let ends = u[0] >= chance;
         if !vertices.carry_all() {
             path.resampled |= ends;
             return ends;
         }
-        self.walker.audit.iter_mut().filter(|_| ends).for_each(|audit| audit.end(path, draw));
-        ends
+        if !ends || path.unlit {
+            return ends;
+        }
+        let goes_on = if self.walker.audit.is_some() { 1.0 } else { ACCOUNTED };
+        if self.walker.world.method.has_limits() && u[1] < goes_on {
+            (path.resampled, path.unlit) = (true, true);
+            path.throughput = path.throughput.scaled(1.0 / goes_on);
+        } else {
+            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
+        }
+        true
     }
 
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
@@ -476,7 +475,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// before.
     #[inline]
     fn tell(&self, path: &Path<N, P>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
-        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {
+        let observer = self.sensor.observer.filter(|_| !path.unlit);
+        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (observer, path.scatter) {
             let light = self.walker.world.amount(std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
             observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });
@@ -487,9 +487,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     fn is_found_otherwise(&self, path: &Path<N, P>, light: LightId) -> bool {
         let world = self.walker.world;
         let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
-        let found_at = self.found_at(path);
         (is_smooth && world.is_found_by_photons(light, &path.ray))
-            || found_at.is_some_and(|at| at.carry(world, light, &path.ray))
+            || self.found_at(path).is_some_and(|at| at.carry(world, light, &path.ray))
     }
 
     /// The light vertices whose light was looked for before, and does not count on the path any more.

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::numbers::VERTEX;
 use super::sensor::Sensor;
 use crate::math::{Ray, Sampler, gamma, unit};
 use crate::scene::Ends;
@@ -22,9 +23,6 @@ pub struct Resampling<'a, const N: usize, P> {
     pub last_occluder: &'a Cell<Option<u32>>,
 }
 
-/// Use of the random numbers that choose vertices.
-const VERTEX: u32 = 5;
-
 impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
     /// Hands the light of two vertices to the sensor, where they are seen.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) {
@@ -42,7 +40,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
     /// Hands the light of a vertex to the sensor; answers nothing if it is not seen.
     fn connect(&self, vertex: &LightVertex<N>, factor: f64, sensor: &mut Sensor<N>) -> Option<()> {
         let (world, at) = (self.world, self.at);
-        let bounces = self.path.vertices.saturating_add(vertex.vertices);
+        let bounces = self.path.surfaces().saturating_add(vertex.surfaces);
         if bounces > world.method.max_bounces || vertex.diffuse > self.path.diffuse_left {
             return None;
         }
@@ -79,7 +77,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let met = MetLight::new(world, &arrived, None);
         let rgb = met.rgb;
         let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
-        let (bounces, dispersed) = (self.path.bounces + 1 + vertex.vertices, self.path.parted);
+        let (bounces, dispersed) = (self.path.bounces + 1 + vertex.surfaces, self.path.parted);
         let first = at.first_lobe(world, self.path.lobe(), direction, false);
         let light = Some(vertex.light);
         let found = if vertex.is_of_photon { Found::Gathered } else { Found::Connected };

@@ -36,6 +36,8 @@ pub trait Observer {
 
 /// The sink of all light that one camera sample after another finds.
 pub struct Sensor<'a, const N: usize> {
+    /// Whether what comes is not to be received.
+    pub is_deaf: bool,
     /// What the sample at hand has received.
     pub rgb: [f64; 3],
     /// How much of that polarization may change.
@@ -49,7 +51,7 @@ pub struct Sensor<'a, const N: usize> {
 
 impl<const N: usize> Sensor<'_, N> {
     pub fn new() -> Self {
-        Self { rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
+        Self { is_deaf: false, rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
     }
 
     /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
@@ -60,6 +62,9 @@ impl<const N: usize> Sensor<'_, N> {
         light: &MetLight<N, P>,
         polarization: &P,
     ) {
+        if self.is_deaf {
+            return;
+        }
         if let Some(layers) = &mut self.layers {
             let MetLight { world, arrived, excitation, .. } = *light;
             match excitation {
@@ -75,6 +80,9 @@ impl<const N: usize> Sensor<'_, N> {
 
     /// Receives light of photons that were gathered.
     pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
+        if self.is_deaf {
+            return;
+        }
         if let Some(layers) = &mut self.layers {
             layers.receive_gathered(gathered, draw);
         }
@@ -83,6 +91,9 @@ impl<const N: usize> Sensor<'_, N> {
 
     /// Learns the blur of light that was gathered, from what was gathered by a kernel that blurs half as much.
     pub fn blur_by(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
+        if self.is_deaf {
+            return;
+        }
         add(&mut self.blur, std::array::from_fn(|i| 2.0 * (gathered[i] - by_half[i])));
     }
 

@@ -12,6 +12,7 @@ use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 use crate::trace::media::Media;
+use crate::trace::photon_targets::ball_around_all;
 
 /// Rays in all, and the fewest and most of a light toward a target.
 const RAYS: usize = 4096;
@@ -196,7 +197,7 @@ impl Pair<'_> {
                 Some(area.shape.point(back, &crossing).leave(-back.direction))
             }
             light if light.is_infinite() => {
-                let world = scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)?;
+                let world = ball_around_all(scene)?;
                 let out = (world.center - back.origin).length() + 2.0 * world.radius;
                 let start = Ray { origin: back.at(out), ..*back };
                 let hidden = scene.is_occluded(&start, f64::INFINITY, None, &Cell::new(None));

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::noise::Outlier;
+use super::stopping::doubled;
 use crate::math::Sampler;
 use crate::trace::World;
 use crate::trace::camera::{Observer, PathTracer};
@@ -57,9 +58,14 @@ fn brightest<const N: usize, P: Polarization<N>>(
 ) -> Option<RareLight> {
     let brightest = Brightest { world, found: Cell::new(None), amount: Cell::new(0.0) };
     let pixel = outlier.pixel.map(|place| place as i32);
-    let (mut all, mut before) = (0.0, 0);
-    while before < each {
-        let stage = Stage::of_replicate(outlier.replicate, before, each - before);
+    let (mut all, mut stage) = (0.0, Stage::default());
+    while stage.before < each {
+        // The stages of the render: what light a pass has depends on how long it is. One that the time cut short is
+        // mostly the last.
+        if stage.is_over() {
+            let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, stage.before));
+            stage = Stage::of_replicate(outlier.replicate, stage.before, size.min(each - stage.before));
+        }
         let pass = stage.pass(world, 0, most_at_once);
         let light = PassLight::<N, P>::new(world, &pass);
         let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
@@ -69,7 +75,7 @@ fn brightest<const N: usize, P: Polarization<N>>(
             let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);
             all += world.amount(sample.rgb);
         }
-        before = pass.numbers.end;
+        stage = stage.after_alone(pass.numbers.len() as u32);
     }
     let found = brightest.found.get().filter(|_| brightest.amount.get() > MUCH * all)?;
     let name = found.light.map(|light| world.scene.light_groups[light].clone());

@@ -89,18 +89,22 @@ fn most(stop: &Stop) -> u32 {
     stop.most / REPLICATES as u32
 }
 
+/// How many samples each replicate takes after so many, if there is room and time for them.
+pub fn doubled(stop: &Stop, each: u32) -> u32 {
+    match (each, stop.time) {
+        (0, None) => FIRST,
+        (0, Some(_)) => 1,
+        _ => each,
+    }
+}
+
 /// How many samples each replicate takes in the next stage; none if enough are taken.
 pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     if is_enough(stop, progress.measured.as_ref()) {
         return 0;
     }
     let each = progress.stage.before;
-    let doubled = match (each, stop.time) {
-        (0, None) => FIRST,
-        (0, Some(_)) => 1,
-        _ => each,
-    };
-    let size = doubled.min(most(stop) - each.min(most(stop)));
+    let size = doubled(stop, each).min(most(stop) - each.min(most(stop)));
     match stop.time {
         Some(time) if each > 0 => {
             let left = clock.left(time);

@@ -152,25 +152,28 @@ fn advance<const N: usize, P: Polarization<N>>(
             _ => {}
         }
     }
+    let boundary = match walker.boundary(path, &meeting) {
+        Ok(boundary) => boundary,
+        Err(hidden) => return walker.go_on_past(path, &meeting, &hidden),
+    };
     path.vertices += 1;
     if over != Surfaces::Smooth && world.ends_light_paths(meeting.hit.object) {
         return;
     }
-    let Some(boundary) = walker.boundary(path, &meeting) else { return };
     let at = Interaction::new(world, draw, &path.arriving(), &meeting, boundary);
     if over != Surfaces::Smooth && path.vertices == 1 && !at.lobes.is_diffuse() {
         // From the camera, a path has to leave the next diffuse surface to reach this one. It leaves none for a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
     // As often as light may leave surfaces on its way from the camera.
-    let allowed = path.vertices <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
+    let allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown {
         land(walker, &Landing { path, at: &at, light, emitted, early });
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
-    } else if allowed && path.vertices < world.method.max_bounces {
+    } else if allowed && path.surfaces() < world.method.max_bounces {
         scatter(walker, path, &at, sampler);
     }
 }
@@ -263,7 +266,7 @@ fn bounce<const N: usize, P: Polarization<N>>(
     let at = at.by_normal(plain);
     let Interaction { material, point, arrival, .. } = &at;
     let goes_on = at.lobes.has_delta() && arrival.wo.dot(arrival.normal) > 0.0;
-    if !goes_on || path.vertices >= walker.world.method.max_bounces {
+    if !goes_on || path.surfaces() >= walker.world.method.max_bounces {
         return;
     }
     walker.branches.clear();

@@ -247,7 +247,7 @@ impl Place<'_> {
         position: DVec3,
         photon: &Landed<T, L>,
     ) -> Option<f64> {
-        let short = path.vertices + photon.vertices - 1 <= self.world.method.max_bounces;
+        let short = path.surfaces() + photon.surfaces - 1 <= self.world.method.max_bounces;
         if !short || !self.goes_on(position, photon.flat, photon.front) {
             return None;
         }

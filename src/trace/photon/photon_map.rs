@@ -30,7 +30,7 @@ pub struct Landed<T, L = Polarized> {
     /// Whether that is the front.
     pub front: bool,
     /// Surfaces it met, the last one included.
-    pub vertices: u32,
+    pub surfaces: u32,
     /// How its light is polarized.
     pub polarization: L,
     pub carries: T,
@@ -130,7 +130,7 @@ fn keep<const N: usize, P: Polarization<N>>(
         back: arrival.wo,
         flat: *flat,
         front: flat.dot(point.normal) > 0.0,
-        vertices: path.vertices,
+        surfaces: path.surfaces(),
         polarization: path.polarization.landed(at),
         carries: (),
     };
@@ -150,8 +150,8 @@ fn keep<const N: usize, P: Polarization<N>>(
 
 impl<L> Landed<(), L> {
     fn with<T>(&self, polarization: L, carries: T) -> Landed<T, L> {
-        let Self { back, flat, front, vertices, .. } = *self;
-        Landed { back, flat, front, vertices, polarization, carries }
+        let Self { back, flat, front, surfaces, .. } = *self;
+        Landed { back, flat, front, surfaces, polarization, carries }
     }
 }
 

@@ -31,10 +31,11 @@ const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7375_6e73;
 
-/// The world with light vertices; none where there is no light that can be followed forward.
+/// The world with light vertices; none where there is no light that can be followed forward, or they would spoil the
+/// layer of a faint lamp.
 pub fn with_light_vertices(world: &World) -> Option<World> {
     let world = can_be_followed(world).then(|| world.with_light_vertices(sunlit_places(world)))?;
-    LightPaths::new(&world, world.method.seed).is_some().then_some(world)
+    LightPaths::new(&world, world.method.seed).is_some_and(|paths| !paths.starve_a_layer()).then_some(world)
 }
 
 /// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some. The format

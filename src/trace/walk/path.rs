@@ -26,6 +26,8 @@ pub struct Path<const N: usize, P = Polarized> {
     pub key: BranchKey,
     /// Surfaces met so far.
     pub vertices: u32,
+    /// How many of them were those of bodies that are hidden inside others.
+    pub hidden: u32,
     /// How far the light has to go along it.
     pub length: f64,
     /// What kind of path it is so far.
@@ -44,6 +46,8 @@ pub struct Path<const N: usize, P = Polarized> {
     pub among: Among,
     /// Whether light was looked for at light vertices before: what they carry does not count any more.
     pub resampled: bool,
+    /// Whether all of its light is found otherwise, and it goes on to be accounted for alone.
+    pub unlit: bool,
     /// Which of the walk's excitations it follows: its lanes are then what excites a dye.
     pub excitation: Option<u32>,
     /// By which lobe the first surface sends its light to the camera, if layers tell that apart.
@@ -64,6 +68,9 @@ pub enum Among {
 pub enum PathKind {
     /// Straight from the camera.
     Camera,
+    /// Straight from the camera, through surfaces of bodies that are hidden inside others: photons that are shown to
+    /// the camera are not seen through these.
+    PastHidden,
     /// Scattered widely by a surface from which photons are shown to the camera or gathered.
     Wide,
     /// After that over smooth surfaces alone; `aimed` says whether photons are sent to the last one.
@@ -73,6 +80,20 @@ pub enum PathKind {
 }
 
 impl PathKind {
+    /// Whether the camera sees what it meets next.
+    pub fn is_from_camera(self) -> bool {
+        matches!(self, Self::Camera | Self::PastHidden)
+    }
+
+    /// After the surface of a body that is hidden inside another; `aimed` as below.
+    pub fn past_hidden(self, aimed: impl FnOnce() -> bool) -> Self {
+        match self {
+            Self::Camera | Self::PastHidden => Self::PastHidden,
+            Self::Wide | Self::Smooth { .. } => Self::Smooth { aimed: aimed() },
+            Self::Other => Self::Other,
+        }
+    }
+
     /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons
     /// are sent to its object; none if light cannot be followed forward the same way. Photons are shown from the first
     /// surface alone, and gathered from all others if they are at all.
@@ -109,6 +130,13 @@ impl ScatterSample {
     /// Toward a direction that was sampled with a density, which may lead beyond the surface.
     pub fn toward(self, pdf: f64, crosses: bool) -> Self {
         Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
+    }
+}
+
+impl<const N: usize, P> Path<N, P> {
+    /// Surfaces met so far that are there for light: `max_bounces` limits them.
+    pub fn surfaces(&self) -> u32 {
+        self.vertices - self.hidden
     }
 }
 
@@ -151,6 +179,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             parted: false,
             key: BranchKey::CAMERA,
             vertices: 0,
+            hidden: 0,
             length: 0.0,
             kind,
             diffuse_left: world.method.diffuse_bounces,
@@ -160,6 +189,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             is_seen: true,
             among: Among::All,
             resampled: false,
+            unlit: false,
             excitation: None,
             first: None,
         }

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::audit::Audit;
 use super::interaction::{Interaction, Meeting};
-use super::path::{Among, Path, PathKind, ScatterSample};
+use super::path::{Among, Path, ScatterSample};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use super::roulette::{LONG, survival};
@@ -66,11 +66,11 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     #[inline(always)]
     pub fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<Meeting> {
         self.stats.rays += 1;
-        let is_past_hidden = self.world.hides_objects && path.kind == PathKind::Camera && path.among == Among::All;
+        let is_past_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.among == Among::All;
         let hit = match path.among {
             Among::All if is_past_hidden => self.world.scene.intersect_seen(&path.ray, path.left),
             Among::All => self.world.scene.intersect_from(&path.ray, path.left),
-            Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind == PathKind::Camera),
+            Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind.is_from_camera()),
         };
         let before = path.throughput;
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
@@ -92,32 +92,34 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
     }
 
-    /// The media at the surface that a path has met; none where the path goes on as if nothing were there, through the
-    /// surface of a body that is hidden inside another of higher priority.
+    /// The media at the surface that a path has met; none where the surface is that of a body that is hidden inside
+    /// another of higher priority.
     #[inline(always)]
-    pub fn boundary(&mut self, path: &Path<N, P>, meeting: &Meeting) -> Option<Boundary> {
+    pub fn boundary(&mut self, path: &Path<N, P>, meeting: &Meeting) -> Result<Boundary, Hidden> {
         let Meeting { hit, point } = meeting;
         let number = self.world.scene.objects[hit.object as usize].material;
         let enters = point.normal.dot(path.ray.direction) < 0.0;
         let (boundary, fits) = path.media.at_surface(&self.world.scene, number, enters);
         self.stats.unmatched += u64::from(!fits);
-        if boundary.here == boundary.beyond && self.world.scene.material_of(hit.object).medium().is_some() {
-            // No light was sampled through this surface, so what the path meets beyond counts in full.
-            let (ray, key) = (point.leave(path.ray.direction), path.key.child(0));
-            let kind = path.kind.then(self.world.has_map(), false, || Some(self.world.is_photon_target(hit.object)));
-            let next = self.pending.add(|| *path);
-            *next = *path;
-            (next.ray, next.key, next.scatter, next.kind) = (ray, key, None, kind);
-            next.media = path.media.beyond(&boundary);
-            return None;
-        }
-        Some(boundary)
+        let is_hidden = boundary.here == boundary.beyond && self.world.scene.material_of(hit.object).medium().is_some();
+        if is_hidden { Err(Hidden(boundary)) } else { Ok(boundary) }
+    }
+
+    /// Makes the path pending that goes on through a hidden surface as if nothing were there.
+    #[cold]
+    pub fn go_on_past(&mut self, path: &Path<N, P>, meeting: &Meeting, Hidden(boundary): &Hidden) {
+        let kind = path.kind.past_hidden(|| self.world.is_photon_target(meeting.hit.object));
+        let next = self.pending.add(|| *path);
+        // No light was sampled through this surface, so what the path meets beyond counts in full.
+        *next = Path { scatter: None, key: path.key.child(0), media: path.media.beyond(boundary), kind, ..*path };
+        next.ray = meeting.point.leave(path.ray.direction);
+        (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
     }
 
     /// Makes the path pending that goes straight on through a surface that it has met, if any light does.
     pub fn go_on_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, onward: Option<&Onward<N, P>>) {
         if let Some(onward) = onward {
-            *self.pending.add(|| *path) = path.passed_in_part(point, onward);
+            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, onward) };
         }
     }
 
@@ -127,8 +129,11 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         path.polarization.split(at, &mut self.branches, &mut self.ways);
     }
 
-    /// Leaves the branches alone that smooth surfaces have.
-    pub fn keep_single(&mut self) {
+    /// Leaves the branches alone that smooth surfaces have: diffuse surfaces may send light on no more.
+    pub fn keep_single(&mut self, departure: &Departure<N, P>) {
+        let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
+        let left_out = wide.map(|branch| departure.weight(branch)).sum::<f64>();
+        self.stats.stopped += left_out / departure.siblings();
         self.ways.keep(|number| self.branches[number].pdf.is_none());
         self.branches.retain(|branch| branch.pdf.is_none());
     }
@@ -148,6 +153,11 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
         self.stats.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         departure.branches = self.branches.len();
+        if departure.is_awaited
+            && let Some(onward) = self.branches.pop()
+        {
+            departure.send(self.branches.len(), &onward, None, 1.0, &mut self.pending);
+        }
         match self.rule() {
             Transport::Deterministic { cutoff, .. } => {
                 for (number, branch) in self.branches.iter().enumerate() {
@@ -225,6 +235,9 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 }
 
+/// The surface of a body that is hidden inside another of higher priority, and what crossing it does.
+pub struct Hidden(Boundary);
+
 /// A path that leaves a surface.
 pub struct Departure<'a, const N: usize, P = Polarized> {
     world: &'a World,
@@ -234,12 +247,14 @@ pub struct Departure<'a, const N: usize, P = Polarized> {
     scatter: Option<&'a ScatterSample>,
     /// What goes straight on: the last branch.
     onward: Option<&'a Onward<N, P>>,
+    /// Whether that is followed for certain.
+    is_awaited: bool,
     branches: usize,
 }
 
 impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
-        Self { world, path, at, scatter: None, onward: None, branches: 0 }
+        Self { world, path, at, scatter: None, onward: None, is_awaited: false, branches: 0 }
     }
 
     /// With lights sampled here, and what goes straight on.
@@ -247,9 +262,19 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         Self { scatter, onward, ..self }
     }
 
+    /// With what goes straight on followed for certain, for it is where the camera ray meets something.
+    pub fn awaiting(self, is_awaited: bool) -> Self {
+        Self { is_awaited, ..self }
+    }
+
     /// Whether a branch is what goes straight on.
     fn is_onward(&self, number: usize) -> bool {
         self.onward.is_some() && number + 1 == self.branches
+    }
+
+    /// How many paths together stand for this one.
+    fn siblings(&self) -> f64 {
+        self.at.arrival.draw.siblings(self.path.parted)
     }
 
     /// The weight of the path along a branch.
@@ -293,7 +318,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.media = if crosses { path.media.beyond(&at.boundary) } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
         next.key = path.key.child(number);
-        next.vertices = path.vertices;
+        (next.vertices, next.hidden) = (path.vertices, path.hidden);
         next.length = path.length;
         next.kind = path.kind.then(world.has_map(), wide, aimed);
         next.diffuse_left = path.diffuse_left - u32::from(wide && at.lobes.is_diffuse());
@@ -303,6 +328,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.is_seen = path.is_seen && !wide && !at.lobes.is_wide();
         next.among = path.among;
         next.resampled = path.resampled;
+        next.unlit = path.unlit;
         next.excitation = path.excitation;
         next.first = match path.bounces {
             0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
