@@ -138,22 +138,20 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let progress = progress::Progress::new(&rendering);
     let is_finished = keep.run(&mut rendering, &progress)?;
     if !is_finished {
-        progress.stop();
-        keep.say_how_to_resume(&rendering);
+        drop(progress);
+        keep.say_how_to_resume();
         return Ok(ExitCode::from(keep::STOPPED_CODE));
     }
     let expected = rendering.expected();
     let took = progress.finish(expected);
-    let image = rendering.image();
     let mut written = Written::default();
-    match (&part, exr) {
-        (Some(part), _) => written.file(Some(part), |part| rendering.write_part(part)),
-        (None, Some(exr)) => written.file(Some(exr), |exr| {
-            messages::warn_of_clamped(image.format(), write(&image, exr)?);
-            Ok(())
-        }),
-        (None, None) => {}
-    }
+    // The image may take much memory: the part's is gone before there is another.
+    written.file(part.as_deref(), |part| rendering.write_part(part));
+    let image = rendering.image();
+    written.file(exr.filter(|_| part.is_none()), |exr| {
+        messages::warn_of_clamped(image.format(), write(&image, exr)?);
+        Ok(())
+    });
     let spectral = spectral.as_deref().filter(|_| part.is_none());
     written.file(spectral, |spectral| image.write_spectral_exr(spectral));
     written.file(png, |png| image.write_png(png, job.exposure));

@@ -1,5 +1,6 @@
 //! Renders that lose nothing: checkpoints, snapshots, and what happens on Ctrl-C.
 
+use std::cell::Cell;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -126,6 +127,8 @@ pub struct Keep {
     /// The image that is kept fresh, if one is.
     snapshot: Option<PathBuf>,
     snapshots: Timer,
+    /// Whether it shows the samples so far.
+    has_snapshot: Cell<bool>,
     resume: bool,
 }
 
@@ -160,6 +163,7 @@ impl Keep {
             checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(OFTEN))),
             snapshot: flags.snapshot.map(|_| file.to_owned()),
             snapshots: Timer::new(flags.snapshot),
+            has_snapshot: Cell::new(false),
             resume: flags.resume,
         })
     }
@@ -229,13 +233,17 @@ impl Keep {
             if stops() {
                 // One that fails does not keep the other from being written.
                 let (saved, taken) = (self.save(rendering), self.take_snapshot(rendering));
-                let is_lost = saved.is_err() || taken.is_err();
-                if is_lost && self.has_snapshot(rendering) && taken.is_ok() {
-                    progress.say("stopped; the snapshot is kept, and no checkpoint");
-                } else if is_lost {
-                    progress.say("stopped; not all of what is done is kept");
-                }
-                return saved.and(taken).map(|()| false);
+                let told = match (&saved, &taken) {
+                    (Ok(()), Err(error)) if self.checkpoint.is_some() => format!("warning: {}", problem(error)),
+                    (Err(_), Ok(())) if self.has_snapshot.get() => {
+                        "stopped; the snapshot is kept, and no checkpoint".into()
+                    }
+                    (Err(_), Err(error)) => format!("stopped; {}", problem(error)),
+                    (Err(_), _) | (_, Err(_)) => "stopped; what is done is not kept".into(),
+                    _ => return Ok(false),
+                };
+                progress.say(&told);
+                return saved.and(if self.checkpoint.is_some() { Ok(()) } else { taken }).map(|()| false);
             }
             if advance == Advance::Stopped {
                 let kept = self.keep(rendering);
@@ -274,28 +282,27 @@ impl Keep {
         self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save(path))
     }
 
-    /// Whether there is anything that a snapshot can show.
-    fn has_snapshot(&self, rendering: &Rendering) -> bool {
-        // Before the first samples, photons have shown a part of their light.
-        self.snapshot.is_some() && rendering.image().report().samples > 0
-    }
-
     fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
-        let Some(path) = self.snapshot.as_ref().filter(|_| self.has_snapshot(rendering)) else { return Ok(()) };
+        let Some(path) = &self.snapshot else { return Ok(()) };
         let image = rendering.image();
-        image.write_exr(path)?;
-        image.write_spectral_exr(path.with_extension("spectral.exr"))
+        // Before the first samples, photons have shown a part of their light.
+        if image.report().samples == 0 {
+            return Ok(());
+        }
+        let (colors, spectra) = (image.write_exr(path), image.write_spectral_exr(path.with_extension("spectral.exr")));
+        self.has_snapshot.set(colors.is_ok());
+        colors.and(spectra.map(|_| ()))
     }
 
     /// Says what was kept, and how to go on.
-    pub fn say_how_to_resume(&self, rendering: &Rendering) {
+    pub fn say_how_to_resume(&self) {
         let Some(path) = &self.checkpoint else {
-            if !self.has_snapshot(rendering) {
+            if !self.has_snapshot.get() {
                 return say(NOTHING_KEPT);
             }
             return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");
         };
-        let mut words: Vec<String> = std::env::args_os().map(|word| quoted(&word.to_string_lossy())).collect();
+        let mut words: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
         if !self.resume {
             words.push("--resume".into());
         }
@@ -318,6 +325,7 @@ fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
         }
         let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
         if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {
+            progress::clear();
             std::process::exit(STOPPED_CODE.into());
         }
     };
@@ -338,7 +346,16 @@ fn more_than(taken: u32, times: f64, most: u32) -> Option<u32> {
 }
 
 /// A word as the shell takes it.
-fn quoted(word: &str) -> String {
+fn quoted(word: &OsStr) -> String {
+    let Some(word) = word.to_str() else {
+        // Shells take $'\xe9' for a byte.
+        let of_byte = |&byte: &u8| match byte {
+            b'\'' | b'\\' => format!("\\{}", char::from(byte)),
+            b' '..=b'~' => char::from(byte).into(),
+            _ => format!("\\x{byte:02x}"),
+        };
+        return format!("$'{}'", word.as_encoded_bytes().iter().map(of_byte).collect::<String>());
+    };
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "_-./=,:+%@".contains(letter);
     if !word.is_empty() && word.chars().all(is_plain) {
         word.into()
@@ -360,6 +377,7 @@ mod tests {
 
     #[test]
     fn a_word_is_quoted_where_the_shell_would_split_it() {
-        assert_eq!(["a/b.toml", "a b", "it's", ""].map(quoted), ["a/b.toml", "'a b'", "'it'\\''s'", "''"]);
+        let words = ["a/b.toml", "a b", "it's", ""].map(|word| quoted(OsStr::new(word)));
+        assert_eq!(words, ["a/b.toml", "'a b'", "'it'\\''s'", "''"]);
     }
 }

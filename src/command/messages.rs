@@ -315,7 +315,8 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
         return;
     }
     if report.dropped + report.stopped > 0.0 {
-        say(&format!("branches that were not followed: {:.1e} of the weight", report.dropped + report.stopped));
+        let share = percent(report.dropped + report.stopped);
+        say(&format!("paths that were not followed to their ends: {share} of the weight"));
     }
     // Where the plan has measured it, a bound has no more to say.
     if report.polarization_of_tile > TOLD && plan.polarization_error.is_none() {

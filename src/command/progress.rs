@@ -139,7 +139,7 @@ impl Progress {
     }
 
     /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
-    pub fn finish(self, expected: Duration) -> Duration {
+    pub fn finish(mut self, expected: Duration) -> Duration {
         let (start, before, work) = (self.counts.start, self.counts.before, self.counts.work.load(Ordering::Relaxed));
         let left = work.saturating_sub(before) as f64 / work.max(1) as f64;
         let expected = expected.mul_f64(left);
@@ -160,11 +160,17 @@ impl Progress {
     }
 
     /// Removes the bar.
-    pub fn stop(self) {
-        drop(self.lines);
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+    pub fn stop(&mut self) {
+        drop(self.lines.take());
+        if self.bar.take().is_some() {
+            clear();
         }
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.stop();
     }
 }
 
@@ -173,7 +179,7 @@ static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 /// Removes the bar where the command ends at once.
 pub fn clear() {
-    BAR.lock().unwrap_or_else(PoisonError::into_inner).iter().for_each(ProgressBar::finish_and_clear);
+    BAR.lock().unwrap_or_else(PoisonError::into_inner).take().iter().for_each(ProgressBar::finish_and_clear);
 }
 
 /// The bar, with what is said of it.

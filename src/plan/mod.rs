@@ -144,7 +144,7 @@ fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String>
     let Window { width, height, .. } = scene.film.window();
     let film = takes(format!("film: {width} x {height} pixels"), bytes_of_film(scene, method));
     let channels = scene.layer_channels();
-    let layers = takes(format!("layers: {channels} channels beside the image"), scene.layer_bytes());
+    let layers = takes(format!("layers: {channels} channels beside the image"), scene.layer_bytes(1));
     film.into_iter().chain(layers)
 }
 
@@ -173,8 +173,12 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
     if let Some(bounces) = scene.render.max_bounces {
         lines.push(format!("max_bounces {bounces}: light of longer paths is left out; the report says how much"));
     }
-    if scene.render.diffuse_bounces == Some(0) && wide(true) {
-        lines.push("diffuse_bounces 0: diffuse surfaces are lit straight from the lights alone".into());
+    match scene.render.diffuse_bounces.filter(|_| wide(true)) {
+        Some(0) => lines.push("diffuse_bounces 0: diffuse surfaces are lit straight from the lights alone".into()),
+        Some(bounces) => lines.push(format!(
+            "diffuse_bounces {bounces}: light that diffuse surfaces send on more often is left out; the report says how much"
+        )),
+        None => {}
     }
     lines
 }

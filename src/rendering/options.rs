@@ -112,11 +112,11 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     if let Some((message, help)) = scene.format.objection() {
         return refuse(message, &help);
     }
-    let bytes = scene.layer_bytes() / u64::from(shard.count());
+    let bytes = scene.layer_bytes(shard.count());
     if bytes > MOST_OF_LAYERS {
         let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
-        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --shard or --crop");
+        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
     }
     if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
         let message = "model = \"rgb\" has no wavelengths to make spectra of".into();

@@ -315,7 +315,7 @@ impl Rendering {
 /// Refuses a film that is known not to fit in memory before the first sample is taken: an allocation that fails later
 /// ends the process without a word. What is small always fits.
 fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
-    let bytes = (bytes_of_film(scene, method) + scene.layer_bytes()) / u64::from(shard.count());
+    let bytes = bytes_of_film(scene, method) / u64::from(shard.count()) + scene.layer_bytes(shard.count());
     let is_there = || Vec::<u8>::new().try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX)).is_ok();
     if bytes < 1_000_000_000 || is_there() {
         return Ok(());

@@ -96,11 +96,12 @@ impl<S> Scene<S> {
         (layers + components * self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
-    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, and
-    /// its value in 32.
-    pub fn layer_bytes(&self) -> u64 {
-        let each = if self.film.filter.is_signed() { 20 } else { 12 };
-        each * self.layer_channels() * self.film.window().pixels()
+    /// Bytes of memory that layers take where one of so many parts of the image is made: of each number a sum in 64
+    /// bits, another where a filter subtracts samples, and its value in 32, for which all of the image has room.
+    pub fn layer_bytes(&self, parts: u32) -> u64 {
+        let sums = if self.film.filter.is_signed() { 16 } else { 8 };
+        let numbers = self.layer_channels() * self.film.window().pixels();
+        sums * numbers / u64::from(parts) + 4 * numbers
     }
 
     /// The light that fills the whole sky, if there is one.

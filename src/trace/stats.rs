@@ -11,7 +11,7 @@ pub(super) struct Stats {
     pub(super) rays: u64,
     /// Weight of the branches that deterministic transport did not follow.
     pub(super) dropped: f64,
-    /// Weight of paths that met more surfaces than any path should.
+    /// Weight of paths that were cut by limits of bounces, or met more surfaces than any path should.
     pub(super) stopped: f64,
     /// Surfaces of bodies that were left without having been entered.
     pub(super) unmatched: u64,

@@ -314,17 +314,21 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
     let folder = folder();
     for signal in ["-INT", "-TERM"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
-        command.current_dir(folder.path()).args(["s.toml", "--samples", "1000000"]).stderr(Stdio::piped());
+        command.current_dir(folder.path()).args(["s.toml", "--samples", "1000000", "--json"]).stdout(Stdio::piped());
         let mut child = command.spawn().expect("the command can be started");
-        let mut said = BufReader::new(child.stderr.take().expect("it is piped"));
-        // Its first line is the plan's, which is there before the render begins.
-        said.read_line(&mut String::new()).expect("messages are UTF-8");
+        let mut said = BufReader::new(child.stdout.take().expect("it is piped"));
+        // It tells its progress once a second.
+        let mut line = String::new();
+        while !line.contains("\"kind\":\"progress\"") {
+            line.clear();
+            assert!(said.read_line(&mut line).expect("messages are UTF-8") > 0, "it renders");
+        }
         let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("there is kill");
         assert!(sent.success());
         let mut rest = String::new();
         said.read_to_string(&mut rest).expect("messages are UTF-8");
-        let told = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept\n";
-        assert!(rest.ends_with(told), "{rest}");
+        let told = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
+        assert!(rest.lines().any(|line| line.contains("\"note\"") && line.contains(told)), "{rest}");
         assert_eq!(child.wait().expect("it ends").code(), Some(130));
         assert_eq!(folder.listing(), ["s.toml"]);
     }
@@ -362,7 +366,10 @@ fn how_to_go_on_is_said_of_files_of_any_name() {
     let mut said = Vec::new();
     child.stderr.take().expect("it is piped").read_to_end(&mut said).expect("it ends");
     let said = String::from_utf8_lossy(&said);
-    assert!(child.wait().expect("it ends").code() == Some(130) && said.contains("Go on with"), "{said}");
+    assert!(
+        child.wait().expect("it ends").code() == Some(130) && said.contains(" $'sc\\xe9ne.toml' --samples"),
+        "{said}"
+    );
 }
 
 /// Before the first sample a signal ends the command at once, whatever would be kept.

@@ -177,6 +177,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             Ok(boundary) => boundary,
             Err(hidden) => {
                 self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
+                self.tell(path, draw, meeting.hit.crossing.t, before);
                 return self.walker.go_on_past(path, &meeting, &hidden);
             }
         };
@@ -438,11 +439,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             path.resampled |= ends;
             return ends;
         }
-        if !ends || path.unlit {
-            return ends;
+        if !ends {
+            return false;
         }
         let goes_on = if self.walker.audit.is_some() { 1.0 } else { ACCOUNTED };
-        if self.walker.world.method.has_limits() && u[1] < goes_on {
+        // A pilot that looks on wants to know of light alone.
+        let is_asked = self.walker.world.method.has_limits() && self.sensor.observer.is_none();
+        if is_asked && u[1] < goes_on {
             (path.resampled, path.unlit) = (true, true);
             path.throughput = path.throughput.scaled(1.0 / goes_on);
         } else {
@@ -475,8 +478,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// before.
     #[inline]
     fn tell(&self, path: &Path<N, P>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
-        let observer = self.sensor.observer.filter(|_| !path.unlit);
-        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (observer, path.scatter) {
+        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {
             let light = self.walker.world.amount(std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
             observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });

@@ -60,8 +60,8 @@ fn brightest<const N: usize, P: Polarization<N>>(
     let pixel = outlier.pixel.map(|place| place as i32);
     let (mut all, mut stage) = (0.0, Stage::default());
     while stage.before < each {
-        // The stages of the render: what light a pass has depends on how long it is. One that the time cut short is
-        // mostly the last.
+        // The stages of the render: what light a pass has depends on how long it is. Those after one that the time cut
+        // short may be others.
         if stage.is_over() {
             let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, stage.before));
             stage = Stage::of_replicate(outlier.replicate, stage.before, size.min(each - stage.before));

@@ -42,7 +42,7 @@ pub struct Report {
     pub first_non_finite: Option<[i64; 3]>,
     /// Mean weight per camera sample of the branches that deterministic transport dropped.
     pub dropped: f64,
-    /// Mean weight per camera sample of paths stopped because they would not end.
+    /// Mean weight per camera sample of paths that limits of bounces cut, or that would not end.
     pub stopped: f64,
     /// Surfaces of clear bodies that were left without having been entered: open meshes.
     pub unmatched: u64,

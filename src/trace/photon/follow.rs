@@ -161,8 +161,9 @@ fn advance<const N: usize, P: Polarization<N>>(
         return;
     }
     let at = Interaction::new(world, draw, &path.arriving(), &meeting, boundary);
-    if over != Surfaces::Smooth && path.vertices == 1 && !at.lobes.is_diffuse() {
-        // From the camera, a path has to leave the next diffuse surface to reach this one. It leaves none for a light.
+    if over != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden > 0 || !at.lobes.is_diffuse()) {
+        // From the camera, a path has to leave the next diffuse surface to reach this one, or a light that a hidden
+        // surface keeps from being sampled. It leaves none for a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
     // As often as light may leave surfaces on its way from the camera.

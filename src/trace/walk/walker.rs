@@ -92,8 +92,10 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
     }
 
-    /// The media at the surface that a path has met; none where the surface is that of a body that is hidden inside
-    /// another of higher priority.
+    /// The media at the surface that a path has met.
+    ///
+    /// # Errors
+    /// [`Hidden`] where the surface is that of a body that is hidden inside another of higher priority.
     #[inline(always)]
     pub fn boundary(&mut self, path: &Path<N, P>, meeting: &Meeting) -> Result<Boundary, Hidden> {
         let Meeting { hit, point } = meeting;
