@@ -15,6 +15,7 @@ Cryptomatte specification 1.2.0.
 
 import itertools
 import json
+import math
 import re
 import sys
 from typing import NamedTuple
@@ -279,7 +280,10 @@ def surfaces(file):
 
 
 def statistics(file):
-    """Variance is not negative; as many samples as were asked for, but for those that were not finite."""
+    """Variance is not negative; as many samples as were asked for, but for those that were not finite.
+
+    Adaptive sampling takes half, twice or four times as many of a pixel.
+    """
     variance, samples = file.layer("variance"), file.layer("samples")
     if variance is not None and not (variance >= 0).all():
         yield f"layer 'variance': {np.count_nonzero(~(variance >= 0))} values negative"
@@ -290,10 +294,12 @@ def statistics(file):
     asked, lost = file.header.get("render/samples"), file.header.get("render/nonFinite")
     if type(asked) is not int:
         return
-    if (samples > asked).any():
-        yield f"layer 'samples': up to {samples.max():g}, more than {asked}"
-    elif lost == 0 and (samples != asked).any():
-        yield f"layer 'samples': down to {samples.min():g} of {asked}, and none was lost"
+    rates = (math.ceil(asked / 2), asked, 2 * asked, 4 * asked)
+    odd = samples[~np.isin(samples, rates)] if lost == 0 else samples[samples > rates[-1]]
+    if (odd > asked).any():
+        yield f"layer 'samples': up to {odd.max():g}, more than {asked}"
+    elif odd.size:
+        yield f"layer 'samples': down to {odd.min():g} of {asked}, and none was lost"
 
 
 def luminance(file, channels):

@@ -96,6 +96,8 @@ def changed(before, after):
 
 def write(parts, before, out):
     """Under another name at first, so that there is never half a file."""
+    # A link stays one.
+    out = out.resolve()
     partial = out.with_name(f"{out.name}.partial")
     try:
         OpenEXR.File(parts).write(str(partial))

@@ -102,7 +102,7 @@ pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64
 /// Share of diffuse light that crosses a smooth boundary to a relative index m.
 ///
 /// 1 - R for the closed form of R by Walsh 1926, in Duntley 1942, equation 49. It cancels near 1, where R is
-/// (m - 1) / 3 - 3 (m - 1)^2 to 1e-8. Below 1, T(m) = m^2 T(1 / m), for light takes the same ways in and out.
+/// (m - 1) / 3 - 3 (m - 1)^2 to 1e-7. Below 1, T(m) = m^2 T(1 / m), for light takes the same ways in and out.
 pub fn diffuse_transmittance(m: f64) -> f64 {
     if m < 1.0 {
         return m * m * diffuse_transmittance(1.0 / m);

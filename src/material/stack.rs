@@ -81,7 +81,7 @@ impl PolarizedShare {
 pub struct StackShares {
     /// What is reflected.
     pub reflected: PolarizedShare,
-    /// What crosses, as flux: radiance changes by (n1 / n2)^2 besides. 0 where the medium beyond absorbs.
+    /// What crosses, as flux: radiance changes by (n1 / n2)^2 besides. Of a medium that absorbs, what goes into it.
     pub refracted: PolarizedShare,
 }
 

@@ -41,7 +41,9 @@ impl Sampler {
     /// The numbers of one sample of anything that two numbers tell from all others, under a seed.
     pub fn new(seed: u64, key: [u32; 2], sample: u32) -> Self {
         let place = (u64::from(key[1]) << 32) | u64::from(key[0]);
-        let pixel = mix(mix(seed) ^ place).wrapping_add(u64::from(sample / SEQUENCE));
+        // Far apart, as uses lie side by side.
+        let sequence = u64::from(sample / SEQUENCE).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let pixel = mix(mix(seed) ^ place).wrapping_add(sequence);
         Self { pixel, index: sample % SEQUENCE }
     }
 
@@ -143,6 +145,19 @@ mod tests {
                 let plain = sobol_burley::sample_4d(index, dimensions, seed).map(f64::from);
                 assert_eq!(sobol(index, dimensions as usize, [seed; 2]), plain, "{index} {seed}");
             }
+        }
+    }
+
+    /// No sequence has the scramble of another use in the one before it.
+    #[test]
+    fn sequences_share_no_scrambles() {
+        for pixel in 0..64 {
+            let seeds = |sequence: u32| {
+                let sampler = Sampler::of_pixel(7, [pixel, 5], sequence * SEQUENCE);
+                (0..32).map(|purpose| sampler.seed(BranchKey::CAMERA, purpose)).collect::<Vec<_>>()
+            };
+            let known = seeds(0);
+            assert!((1..8).all(|sequence| seeds(sequence).iter().all(|seed| !known.contains(seed))), "{pixel}");
         }
     }
 

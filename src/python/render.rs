@@ -28,7 +28,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 #[pyfunction]
 pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> PyResult<(String, usize)> {
     let (scene, options) = (scene.0.clone(), options(asked)?);
-    let threads = options.threads.or_else(|| std::thread::available_parallelism().map(usize::from).ok()).unwrap_or(1);
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = options.threads.unwrap_or(processors).clamp(1, processors);
     let planned = move || -> Result<String> {
         let mut scene = (*scene).clone();
         options.apply(&mut scene)?;

@@ -24,8 +24,9 @@ impl WavelengthBands {
     /// Bands whose centers lie `step_nm` apart, from the first to the last that is not beyond `to_nm`; none unless the
     /// step is positive, and they are 1 to [`MOST`](Self::MOST).
     pub fn new(from_nm: f64, to_nm: f64, step_nm: f64) -> Option<Self> {
-        // A last band that only rounding puts beyond the end is one of them.
-        let steps = ((to_nm - from_nm) / step_nm * (1.0 + 4.0 * f64::EPSILON)).floor();
+        // A last band that only rounding of the ends puts beyond the last one is one of them.
+        let rounding = 4.0 * f64::EPSILON * (from_nm.abs() + to_nm.abs());
+        let steps = ((to_nm - from_nm + rounding) / step_nm).floor();
         let fits = step_nm > 0.0 && (0.0..Self::MOST as f64).contains(&steps);
         fits.then(|| Self { first_nm: from_nm, step_nm, count: steps as usize + 1 })
     }
@@ -82,6 +83,18 @@ mod tests {
             let centers: Vec<f64> = bands.centers_nm().collect();
             assert!(centers.iter().enumerate().all(|(band, &nm)| bands.of(nm) == Some(band)));
             assert!(centers[centers.len() - 1] <= to + 1e-9 && centers[centers.len() - 1] + step > to);
+        }
+    }
+
+    #[test]
+    fn rounding_takes_no_last_band() {
+        for tenths in 3000..8000_u32 {
+            for (step, steps) in [(1, 2), (1, 5), (1, 500), (3, 7), (11, 50), (25, 4)] {
+                let [from, to, step] = [tenths, tenths + step * steps, step].map(|tenth| f64::from(tenth) / 10.0);
+                let bands = WavelengthBands::new(from, to, step).unwrap();
+                assert_eq!(bands.count(), steps as usize + 1, "{from} to {to} by {step}");
+                assert_eq!(WavelengthBands::new(from, to - 1e-9, step).unwrap().count(), steps as usize);
+            }
         }
     }
 

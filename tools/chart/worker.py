@@ -28,7 +28,7 @@ def main() -> None:
     renderer = importlib.import_module(f"peers.{module}").Renderer(variant, Path(scene), "flat-lamp" in flags)
     print("ready", file=answers, flush=True)
     for line in sys.stdin:
-        samples, seed, out = line.split()
+        samples, seed, out = line.rstrip("\n").split(" ", 2)
         before = seconds_used()
         picture = renderer.picture(int(samples), int(seed))
         seconds = seconds_used() - before

@@ -10,6 +10,7 @@ To add a material, add its line to tools/tabulate/materials.py.
 """
 
 import argparse
+import collections
 import sys
 from importlib.metadata import version
 from pathlib import Path
@@ -38,8 +39,7 @@ def in_order(lines):
     for line in lines:
         key, aliases = line.split("|")[:2]
         names += {key.lower(), *aliases.lower().split(",")} - {""}
-    twice = sorted({name for name in names if names.count(name) > 1}) if len(lines) < 1000 else []
-    if twice or len(lines) != len({line.split("|")[0].lower() for line in lines}):
+    if twice := sorted(name for name, count in collections.Counter(names).items() if count > 1):
         sys.exit(f"these names stand for more than one entry: {twice}")
     return sorted(lines, key=lambda line: line.split("|")[0].lower())
 

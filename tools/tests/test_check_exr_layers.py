@@ -239,6 +239,11 @@ def found_in_parts(tmp_path):
     return write_and_check
 
 
+@pytest.mark.parametrize("taken", [2, 4, 8, 16])
+def test_adaptive_sampling_takes_half_or_four_times_as_many(found, taken):
+    assert found(header(**matte_attributes()), {**layered(), **changed("samples.V", taken)}) == []
+
+
 @pytest.mark.parametrize("half", [False, True])
 def test_a_good_file_of_several_parts_breaks_no_rule(found_in_parts, half):
     assert found_in_parts(several_parts(half)) == []

@@ -423,6 +423,13 @@ def test_files_are_read_as_others_read_them(tmp_path):
     assert np.array_equal(file["albedo"], image["albedo"]) and np.array_equal(file["albedo.G"], channels["albedo.G"])
     assert (file.corner, file.format) == ((2, 3), (20, 12))
     assert file.attributes["render/samples"] == "4"
+    several = tmp_path / "several.exr"
+    abbe.render(with_(film={**SCENE["film"], "multipart": True}), layers=["albedo", "N"]).write_exr(several)
+    for name in ("colorInteropID", "render/samples", "screenWindowWidth"):
+        assert abbe.read_exr(several).attributes.get(name) == file.attributes.get(name), name
+    assert np.array(image, np.float64).dtype == np.float64
+    with pytest.raises(ValueError, match="copy"):
+        np.array(image, np.float64, copy=False)
     assert repr(file) == "<abbe.ExrImage of 10 x 6 pixels: " + ", ".join(file.layers) + ">"
     file.to_png(tmp_path / "file.png", exposure=1)
     image.to_png(tmp_path / "image.png", exposure=1)

@@ -55,8 +55,8 @@ class ExrImage(Layers):
 
     @property
     def attributes(self) -> dict[str, str]:
-        """What the file says of itself, as words."""
-        return dict(self._core.attributes)
+        """What the file says of itself, as words. What parts say otherwise is as the first of them has it."""
+        return dict(reversed(self._core.attributes))
 
     def to_png(self, path: Path, exposure: float = 0.0) -> None:
         """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the file has."""

@@ -40,6 +40,8 @@ class Layers:
         return f"<abbe.{type(self).__name__} of {self.width} x {self.height} pixels: {', '.join(self.layers)}>"
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        if copy is False and dtype is not None and dtype != np.float32:
+            raise ValueError("other numbers than float32 are a copy")
         return np.array(self.rgb, dtype) if copy else np.asarray(self.rgb, dtype)
 
     def _ipython_key_completions_(self) -> list[str]:
