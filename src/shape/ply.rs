@@ -177,6 +177,8 @@ impl Lists {
     /// Makes a vertex of each corner that carries something else. What corners lack they have of their vertices.
     fn part_corners(&mut self) -> Result<(), String> {
         let Some(corners) = self.corners.take().map(Distinct::all) else { return Ok(()) };
+        // While vertices have the numbers of the file.
+        check_finite(&self.vertices, &self.attributes)?;
         let count = self.vertices.count();
         if let Some((vertex, _)) = corners.iter().find(|(vertex, _)| *vertex as usize >= count) {
             return Err(no_such_vertex(*vertex, count));
@@ -238,8 +240,6 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
             _ => in_batches(&mut reader, element, &header, |_: Vertex| ())?,
         }
     }
-    // While vertices have the numbers of the file.
-    check_finite(&lists.vertices, &lists.attributes)?;
     lists.part_corners()?;
     let Lists { vertices, attributes, faces, .. } = lists;
     let faces = faces.triangles(&vertices)?;
