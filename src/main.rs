@@ -46,6 +46,10 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
     jobs.keep().catch_signals()?;
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {
+        if keep::begin_image() {
+            messages::say("stopped between two frames");
+            return Ok(ExitCode::from(keep::STOPPED_CODE));
+        }
         let job = job?;
         let source = match &mut read {
             Some(source) => source,
@@ -67,7 +71,8 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
 fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<ExitCode> {
     let began = Instant::now();
     let mut scene = source.compile_with(&job.set)?;
-    if let Output::Image { exr: None, .. } = job.output {
+    // A plan is of the spectra as well.
+    if let (Output::Image { exr: None, .. }, None) = (&job.output, &job.options.plan) {
         scene.format.spectral = None;
     }
     job.options.apply(&mut scene)?;
@@ -128,7 +133,8 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     all.iter().try_for_each(|output| plan.map_or(Ok(()), |plan| spare(plan, "plan that is followed", output)))?;
     check_words("--report", "frame.json", report)?;
     all.iter().try_for_each(|output| check_writable(output))?;
-    let mut keep = Keep::new(&job.keep, main, checkpoint)?;
+    let way = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
+    let mut keep = Keep::new(&job.keep, main, checkpoint, way)?;
     let mut rendering = Rendering::new(scene, &job.options)?.since(began);
     messages::print_plan(rendering.plan());
     let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
@@ -177,7 +183,10 @@ impl<'f> Written<'f> {
         let Some(file) = file else { return };
         match write(file) {
             Ok(()) if is_standard(file) => {}
-            Ok(()) => self.files.push(file),
+            Ok(()) => {
+                keep::note_written();
+                self.files.push(file);
+            }
             Err(error) => self.failed.push(error),
         }
     }

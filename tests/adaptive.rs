@@ -6,7 +6,7 @@
 
 use abbe::film::{Film, Window};
 use abbe::plan::{Plan, plan};
-use abbe::trace::{Method, SampleDensity, Stop, World, adaptive, prepare, render};
+use abbe::trace::{LightPass, Method, SampleDensity, Stop, World, adaptive, prepare, render};
 
 use crate::support::scenes::{SPLITTING, body, method, moments, scene, standard_errors, view};
 
@@ -119,15 +119,29 @@ fn the_density_of_samples_changes_no_mean() {
     let vertices = |method| Method { light_vertices: true, ..method };
     let stop = |method| Method { stop: Some(Stop { noise: None, time: None, most: 32 }), ..method };
     let plain: Change = |method| method;
+    let photons =
+        |method| Method { light_pass: Some(LightPass { photons: 4096, lights: vec![0, 1], map: None }), ..method };
     let sharp = lit([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");
-    let cases: [(&str, String, Change); 4] = [
+    let lit_around = lit([12, 12], 24, "").replace("diffuse_bounces = 0", "diffuse_bounces = 2")
+        + &body(
+            "wall",
+            "diffuse = { reflectance = 0.8 }",
+            &["quad = { center = [0, 2, -2], u = [4, 0, 0], v = [0, 2, 0] }"],
+        );
+    let over_glass = lit([12, 12], 24, "")
+        + &body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0.9, 1.2, 0.8], radius = 0.4 }"]);
+    let cases: [(&str, String, Change); 5] = [
         ("one render", lit([12, 12], 24, ""), plain),
-        ("light vertices", lit([12, 12], 24, ""), vertices),
+        ("light vertices", lit_around, vertices),
+        ("photons", over_glass, photons),
         ("replicates", lit([12, 12], 24, ""), stop),
         ("a filter", sharp, plain),
     ];
     for (name, text, change) in &cases {
         let [even, uneven] = [None, Some(density())].map(|density| films(text, density.as_ref(), change, SEEDS));
+        if *name != "one render" {
+            assert!(even[0] != films(text, None, plain, 1)[0], "{name}: it is another image");
+        }
         for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
             let of = |films: &[Film]| {
                 let mean = |film: &Film| {
@@ -139,7 +153,8 @@ fn the_density_of_samples_changes_no_mean() {
             };
             let [(a, of_a), (b, of_b)] = [of(&even), of(&uneven)];
             let off = (a - b).abs() / (of_a + of_b).sqrt();
-            let bound = standard_errors(12 * cases.len());
+            // Means of 24 films have the tails of Student's t.
+            let bound = 1.2 * standard_errors(12 * cases.len());
             assert!(off < bound, "{name}: quarter {quarter}, band {band}: {b} for {a}, off by {off:.1} sigma");
         }
     }

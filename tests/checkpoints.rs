@@ -327,6 +327,19 @@ fn a_part_that_follows_a_plan_from_a_file_has_the_same_bytes() {
     }
 }
 
+/// A part is expected to take as long as its pixels do.
+#[test]
+fn a_part_of_an_image_is_expected_to_take_a_part_of_the_time() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = GLASS.replace("width = 37, height = 21", "width = 370, height = 210");
+    let scene = scene(&text.replace("seed = 3", "seed = 3, caustics = \"off\""));
+    let options = planned(&scene, &Options { samples: Some(4), ..Options::default() }, folder.path());
+    let expected = |options: &Options| rendering(&scene, options, 1).expected().as_secs_f64();
+    let shard = Shard::new(2, 4).expect("there is such a part");
+    let share = expected(&Options { shard, ..options.clone() }) / expected(&options);
+    assert!((0.2..0.3).contains(&share), "{share}");
+}
+
 /// Renders with some samples to the end and goes on with others.
 fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Image, Resumed), Error> {
     let folder = tempfile::tempdir().expect("a folder");

@@ -9,7 +9,7 @@ mod suns;
 
 use std::f64::consts::PI;
 
-use abbe::film::Film;
+use abbe::film::{Film, Layer};
 use abbe::plan::plan;
 use abbe::trace::{Method, World, pilot_noise, prepare, render, with_light_vertices};
 
@@ -231,6 +231,22 @@ fn rooms() -> Vec<(&'static str, String)> {
             "two diffuse bounces by rough metal",
             room(WHITE, "diffuse_bounces = 2", &[up(), screen("conductor = { metal = \"gold\", roughness = 0.4 }")]),
         ),
+        (
+            "one diffuse bounce by smooth plastic",
+            room(
+                WHITE,
+                "diffuse_bounces = 1",
+                &[
+                    up(),
+                    screen("plastic = { reflectance = 0.3, index = 2.5 }"),
+                    body(
+                        "cover",
+                        "plastic = { reflectance = 0.2, index = 3 }",
+                        &[&quad([-0.8, 2.9, -0.4], [0.9, 0.0, 0.0], [0.0, 0.0, 0.9])],
+                    ),
+                ],
+            ),
+        ),
         ("a gap", with(&[wall_with_gap, beyond])),
         ("planes without end", open),
         ("a room of a picometer", scaled(1e-12)),
@@ -309,12 +325,38 @@ fn assert_same(
         let error = libm::hypot(of_a, of_b);
         let off = (a - b).abs() / error;
         assert!(
-            off < standard_errors(12 * claims),
+            // Means of 16 films have the tails of Student's t.
+            off < 1.25 * standard_errors(12 * claims),
             "{what}: quarter {quarter}, band {band}: {b} for {a} +- {error:.1e}, off by {off:.1} sigma"
         );
         worst = worst.max(off);
     }
     worst
+}
+
+/// Light whose wavelengths part before a light vertex is dispersed, as that which parts before the camera.
+#[test]
+fn light_vertices_know_what_is_dispersed() {
+    let glass = body(
+        "glass",
+        "dielectric = { index = { rgb = [1.4, 1.6, 1.8] } }",
+        &["cube = { center = [0.3, 2.2, -0.4], size = [1.6, 0.4, 1.6] }"],
+    );
+    let text = room(WHITE, "model = \"rgb\"", &[lamp(), glass]);
+    let text = text.replace("height = 12\n", "height = 12\nlayers = [\"dispersed\"]\n");
+    let share = |with: Option<&dyn Fn(&World) -> World>| {
+        let films = films(&text, &|_| {}, with, SEEDS);
+        moments(films.iter().map(|film| {
+            let layer = film.layers.iter().find(|layer| layer.layer == Layer::Dispersed).expect("it was asked for");
+            let mean = |numbers: &mut dyn Iterator<Item = f32>| numbers.map(f64::from).sum::<f64>();
+            mean(&mut layer.values.iter().copied()) / mean(&mut film.pixels.iter().flat_map(|pixel| pixel.rgb))
+        }))
+    };
+    let [plain, resampled] = [share(None), share(Some(&looking))];
+    let error = ((plain.1 + resampled.1) / SEEDS as f64).sqrt();
+    println!("dispersed: {} and {} +- {error:.1e}", plain.0, resampled.0);
+    assert!(plain.0 > 0.1 && error < 0.02 * plain.0, "{plain:?}");
+    assert!((plain.0 - resampled.0).abs() < 1.25 * standard_errors(1) * error, "{resampled:?} for {plain:?}");
 }
 
 /// Quarters of images of all rooms have the same means with light vertices and without.

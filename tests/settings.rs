@@ -132,6 +132,9 @@ fn a_doubled_dollar_is_a_dollar_and_unused_variables_are_told() {
     assert_eq!(with(&text, &[]).objects[0].name, "$angle");
     let text = SCENE.replace("name = \"ball\"", "name = \"$5\"");
     assert_eq!(with(&text, &[]).objects[0].name, "$5");
+    let text = SCENE.replace("name = \"ball\"", "name = \"$label\"") + "\n[set]\nlabel = \"$$5\"\n";
+    assert_eq!(with(&text, &[]).objects[0].name, "$5");
+    assert_eq!(with(&text, &["label=\"$$6\""]).objects[0].name, "$6");
     let scene = with(&format!("{SCENE}\n[set]\nangle = 3\nframe = 1\n"), &[]);
     assert!(scene.warnings.contains(&"variable angle is not used".to_owned()), "{:?}", scene.warnings);
     assert!(!scene.warnings.iter().any(|warning| warning.contains("frame")), "{:?}", scene.warnings);
@@ -174,6 +177,18 @@ fn included_files_stand_in_the_scene_as_if_they_were_written_there() {
     assert_eq!(shown(whole), shown(with(SCENE, &[])));
     fs::write(folder.path().join("gold.toml"), format!("{gold}# other\n")).expect("files can be written");
     assert_ne!(read(&folder).hash, hash);
+}
+
+/// A text of a program is called `scene.toml`, and is no file: one that has that name is another.
+#[test]
+fn a_text_includes_a_file_called_scene() {
+    let gold = "material.gold.conductor.metal = \"Au\"\n";
+    let folder = folder_with(&[("scene.toml", gold)]);
+    let text = format!("include = [\"scene.toml\"]\n{}", SCENE.replace(gold, ""));
+    let scene = Scene::parse(&text, folder.path()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.files.len(), 1, "{:?}", scene.files);
+    let alone = Scene::parse("include = [\"scene.toml\"]", "").err().map(|error| error.to_string());
+    assert!(alone.is_some_and(|told| told.contains("scene.toml") && !told.contains("includes itself")));
 }
 
 #[test]

@@ -295,6 +295,11 @@ pub enum Request {
     Answer(String),
 }
 
+/// Whether a farm listens, of words that may be wrong otherwise.
+fn asks_for_farm(words: &[OsString]) -> bool {
+    words.iter().filter_map(|word| word.to_str()).any(|word| word.split('=').next() == Some("--progress"))
+}
+
 /// Reads the command line; prints clap's own errors by itself and exits.
 pub fn parse() -> Result<Request> {
     let words: Vec<OsString> = std::env::args_os().collect();
@@ -304,7 +309,12 @@ pub fn parse() -> Result<Request> {
         Some("info") => read(rest, Request::Info),
         Some("view") => read(rest, Request::View),
         Some("diff") => read(rest, Request::Diff),
-        Some("merge") => read(rest, Request::Merge),
+        Some("merge") => {
+            if asks_for_farm(&words) {
+                speak_to(Listener::Farm);
+            }
+            read(rest, Request::Merge)
+        }
         Some("completions") => read(rest, |query| Request::Answer(manual::completions(&query, whole()))),
         Some("man") => read(rest, |manual::Manual {}| Request::Answer(manual::page(whole()))),
         _ => {
@@ -314,7 +324,7 @@ pub fn parse() -> Result<Request> {
                 Ok(arguments) if arguments.json => Listener::Program,
                 Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
                 Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
-                Err(_) if words.iter().any(|word| word == "--progress") => Listener::Farm,
+                Err(_) if asks_for_farm(&words) => Listener::Farm,
                 _ => Listener::Person,
             });
             if let Err(said) = &parsed

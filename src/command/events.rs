@@ -6,7 +6,7 @@ use std::time::Duration;
 use abbe::film::replace_file;
 use abbe::plan::Plan;
 use abbe::{Diagnostic, Error, Image, PlanAccount, RenderAccount, Result};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::problem::problem;
 use super::stdout::tell;
@@ -16,7 +16,11 @@ use super::stdout::tell;
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event<'e> {
     /// The scene is right.
-    Checked { scene: &'e Path, objects: usize },
+    Checked {
+        #[serde(serialize_with = "shown")]
+        scene: &'e Path,
+        objects: usize,
+    },
     /// A frame begins, the `number`th of `count`.
     Frame { frame: u32, number: u64, count: u64 },
     /// How it will be rendered.
@@ -26,7 +30,10 @@ pub enum Event<'e> {
     /// What rendering noticed.
     Report(Box<RenderAccount<'e>>),
     /// A file that was written.
-    Written { path: &'e Path },
+    Written {
+        #[serde(serialize_with = "shown")]
+        path: &'e Path,
+    },
     /// Words for people.
     Note { message: &'e str },
     /// Something to know that stops nothing.
@@ -41,7 +48,12 @@ struct Account<'e> {
     plan: Event<'e>,
     report: Event<'e>,
     /// The files that were written.
-    written: &'e [&'e Path],
+    written: Vec<String>,
+}
+
+/// A path as people read it: one that is no text has no other form.
+fn shown<S: Serializer>(path: &Path, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }
 
 /// Writes all that is known of a render as JSON: what `--json` says of its plan and its end.
@@ -49,6 +61,7 @@ struct Account<'e> {
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched.
 pub fn write_account(path: &Path, plan: Event, report: Event, written: &[&Path]) -> Result<()> {
+    let written = written.iter().map(|file| file.display().to_string()).collect();
     let text = serde_json::to_string_pretty(&Account { plan, report, written });
     let text = text.map_err(|error| Error::Encode { path: path.to_owned(), message: error.to_string() })?;
     replace_file(path, format!("{text}\n").as_bytes())

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use abbe::film::Shard;
+use abbe::film::{Shard, remove_unfinished};
 use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
@@ -103,7 +103,7 @@ impl Flags {
     /// If it cannot be caught.
     pub fn catch_signals(&self) -> Result<()> {
         let caught = catch(self.checkpoint.or(self.snapshot).is_none() && !self.resume);
-        caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })
+        caught.map_err(cannot_catch)
     }
 
     /// Where the checkpoint of a render to a file is, if one is kept.
@@ -130,25 +130,43 @@ pub struct Keep {
     /// Whether it shows the samples so far.
     has_snapshot: Cell<bool>,
     resume: bool,
+    /// What the files of a finished render depend on beside its samples.
+    way: String,
 }
 
 /// Whether the command was told to stop.
 static STOPPED: AtomicBool = AtomicBool::new(false);
 /// Whether anything is done that could be lost.
 static HAS_BEGUN: AtomicBool = AtomicBool::new(false);
+/// Whether any file of the image is written.
+static HAS_WRITTEN: AtomicBool = AtomicBool::new(false);
 /// What it says then, if nothing of the render is kept.
 const NOTHING_KEPT: &str = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
 /// The same before there was anything.
-const NOTHING_DONE: &str = "stopped before anything was rendered";
+const NOTHING_DONE: &str = "stopped before anything of this image was rendered";
+/// The same when some of its files are there.
+const NOT_ALL_WRITTEN: &str = "stopped before all files of this image were written";
 /// The exit code of a command that was.
 pub const STOPPED_CODE: u8 = 130;
 
+/// Notes that a file of the image is written.
+pub fn note_written() {
+    HAS_WRITTEN.store(true, Ordering::Relaxed);
+}
+
+/// Begins another image; answers whether the command was told to stop during the last one.
+pub fn begin_image() -> bool {
+    HAS_BEGUN.store(false, Ordering::Relaxed);
+    HAS_WRITTEN.store(false, Ordering::Relaxed);
+    STOPPED.load(Ordering::Relaxed)
+}
+
 impl Keep {
-    /// Of a render to a file, and its checkpoint if one is kept.
+    /// Of a render to a file, and its checkpoint if one is kept; `way` is what its files depend on beside its samples.
     ///
     /// # Errors
     /// If a checkpoint of an earlier run would be lost.
-    pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>) -> Result<Self> {
+    pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>, way: String) -> Result<Self> {
         if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
             let name = there.display();
             if !is_checkpoint(there)? {
@@ -165,6 +183,7 @@ impl Keep {
             snapshots: Timer::new(flags.snapshot),
             has_snapshot: Cell::new(false),
             resume: flags.resume,
+            way,
         })
     }
 
@@ -181,7 +200,7 @@ impl Keep {
         }
         let name = path.display();
         let resumed = rendering.resume(path)?;
-        let missing = outputs.iter().find(|output| !rendering.has_written(output));
+        let missing = outputs.iter().find(|output| !rendering.has_written(output, &self.way));
         match resumed {
             Resumed::Continues => {
                 let share = rendering.done() as f64 / rendering.work().max(1) as f64;
@@ -231,26 +250,35 @@ impl Keep {
                 looked = error;
             }
             if stops() {
-                // One that fails does not keep the other from being written.
-                let (saved, taken) = (self.save(rendering), self.take_snapshot(rendering));
-                let told = match (&saved, &taken) {
-                    (Ok(()), Err(error)) if self.checkpoint.is_some() => format!("warning: {}", problem(error)),
-                    (Err(_), Ok(())) if self.has_snapshot.get() => {
-                        "stopped; the snapshot is kept, and no checkpoint".into()
-                    }
-                    (Err(_), Err(error)) => format!("stopped; {}", problem(error)),
-                    (Err(_), _) | (_, Err(_)) => "stopped; what is done is not kept".into(),
-                    _ => return Ok(false),
-                };
-                progress.say(&told);
-                return saved.and(if self.checkpoint.is_some() { Ok(()) } else { taken }).map(|()| false);
+                return self.keep_at_last(rendering, progress).map(|()| false);
             }
             if advance == Advance::Stopped {
                 let kept = self.keep(rendering);
                 // The render is worth more than what could not be kept of it, and may yet be written.
-                kept.unwrap_or_else(|error| warn(&format!("the render goes on, but {}", problem(&error))));
+                kept.unwrap_or_else(|error| {
+                    progress.warn(&format!("the render goes on, but {}", problem(&error)));
+                });
             }
         }
+    }
+
+    /// Keeps what is done of a render that was stopped. One that fails does not keep the other from being written.
+    fn keep_at_last(&self, rendering: &Rendering, progress: &Progress) -> Result<()> {
+        let (saved, taken) = (self.save(rendering), self.take_snapshot(rendering));
+        if self.checkpoint.is_some() && saved.is_ok() {
+            // The render can go on without its snapshot.
+            taken.err().iter().for_each(|error| progress.warn(&problem(error)));
+            return Ok(());
+        }
+        match (&saved, &taken) {
+            (Ok(()), Ok(())) => {}
+            (Err(_), Err(error)) => progress.say(&format!("stopped; {}", problem(error))),
+            (Err(_), Ok(())) if self.has_snapshot.get() => {
+                progress.say("stopped; the snapshot is kept, and no checkpoint");
+            }
+            _ => progress.say("stopped; what is done is not kept"),
+        }
+        saved.and(taken)
     }
 
     /// Writes what is due.
@@ -274,7 +302,7 @@ impl Keep {
     /// Writes the checkpoint of a finished render and the files that are written of it, if one is kept. Where it cannot
     /// be written the image is there all the same.
     pub fn finish(&self, rendering: &Rendering, written: &[&Path]) {
-        let kept = self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written));
+        let kept = self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written, &self.way));
         kept.unwrap_or_else(|error| warn(&format!("the render is finished, but {}", problem(&error))));
     }
 
@@ -321,15 +349,42 @@ fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
         let has_begun = HAS_BEGUN.load(Ordering::Relaxed);
         if stops_at_once || !has_begun {
             progress::clear();
-            say_last(if has_begun { NOTHING_KEPT } else { NOTHING_DONE }, STOPPED_CODE);
+            remove_unfinished();
+            say_last(
+                match (has_begun, HAS_WRITTEN.load(Ordering::Relaxed)) {
+                    (false, _) => NOTHING_DONE,
+                    (true, false) => NOTHING_KEPT,
+                    (true, true) => NOT_ALL_WRITTEN,
+                },
+                STOPPED_CODE,
+            );
         }
         let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
         if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {
             progress::clear();
+            remove_unfinished();
             std::process::exit(STOPPED_CODE.into());
         }
     };
     kept_ignored(|| ctrlc::set_handler(stop))
+}
+
+/// Lets Ctrl-C end a command that keeps nothing, without what it has begun to write.
+///
+/// # Errors
+/// If it cannot be caught.
+pub fn catch_plainly() -> Result<()> {
+    let caught = kept_ignored(|| {
+        ctrlc::set_handler(|| {
+            remove_unfinished();
+            say_last("stopped", STOPPED_CODE);
+        })
+    });
+    caught.map_err(cannot_catch)
+}
+
+fn cannot_catch(error: ctrlc::Error) -> Error {
+    Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None }
 }
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use abbe::film::check_writable;
-use abbe::{Error, Parts, Result};
+use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
+use super::keep::catch_plainly;
 use super::messages::{Listener, Protocol, say, speak_to, warn, warn_of_clamped};
 use super::outputs::{ends_in, refuse, spare};
 use super::problem::problem;
@@ -54,6 +55,7 @@ pub fn run(query: &Query) -> Result<()> {
         return refuse(&message, Some("for instance: render merge out.exr *.part"));
     }
     parts.iter().try_for_each(|part| spare(part, "part", path))?;
+    catch_plainly()?;
     let image = Parts::open(parts)?;
     check_writable(path)?;
     warn_of_clamped(image.format(), image.write_exr(path)?);
@@ -71,11 +73,13 @@ pub fn run(query: &Query) -> Result<()> {
     Ok(())
 }
 
-/// Deletes a part and the checkpoint of the render that made it, if it is there.
+/// Deletes a part and the checkpoint of the render that made it, if it is there. That of a part which has got another
+/// name is not known.
 fn delete_part(part: &Path) -> Result<()> {
     let checkpoint = part.with_extension("checkpoint");
-    let there = [part, &checkpoint].into_iter().filter(|path| path.exists());
-    for path in there {
+    let has_its_name = part.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("-of-"));
+    let is_of_part = has_its_name && is_checkpoint(&checkpoint)?;
+    for path in [Some(part), is_of_part.then_some(&*checkpoint)].into_iter().flatten() {
         std::fs::remove_file(path).map_err(|source| Error::Io { doing: "delete", path: path.to_owned(), source })?;
     }
     Ok(())

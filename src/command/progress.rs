@@ -11,7 +11,7 @@ use abbe::Rendering;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::events::Event;
-use super::messages::{Listener, listener, say};
+use super::messages::{Listener, listener, say, warn};
 use super::openjd;
 
 /// How far a render is.
@@ -120,6 +120,14 @@ impl Progress {
         match &self.bar {
             Some(bar) => bar.suspend(|| say(line)),
             None => say(line),
+        }
+    }
+
+    /// Warns of something while it goes on.
+    pub fn warn(&self, message: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| warn(message)),
+            None => warn(message),
         }
     }
 

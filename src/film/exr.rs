@@ -69,7 +69,7 @@ pub struct Provenance {
 pub enum Fact {
     /// A string attribute.
     Text(String),
-    /// An int attribute; counts beyond 2^31 - 1 are written as that.
+    /// An int attribute; one beyond 2^31 - 1 is written as a double.
     Count(u64),
     /// A double attribute.
     Number(f64),

@@ -20,6 +20,8 @@ use crate::spectrum::Primaries;
 
 /// Most bytes of a file: 4 GiB.
 const MOST_BYTES: u64 = 1 << 32;
+/// Most pixels: as many as the largest film has.
+const MOST_PIXELS: usize = 1 << 28;
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// An OpenEXR file, with all its parts.
@@ -72,7 +74,7 @@ impl ExrFile {
         let mut all = 0u64;
         for header in &described.headers {
             let [width, height] = [header.layer_size.width(), header.layer_size.height()];
-            if let Some(said) = too_large(width, height) {
+            if let Some(said) = too_large(width, height, MOST_PIXELS) {
                 return Err(exr::error::Error::NotSupported(said.into()));
             }
             all = all
@@ -195,11 +197,15 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     let read = File::open(path).and_then(|mut file| {
         (&mut file).take(MAGIC.len() as u64).read_to_end(&mut start)?;
         if start == MAGIC {
-            file.take(MOST_BYTES).read_to_end(&mut start)?;
+            file.take(MOST_BYTES - MAGIC.len() as u64 + 1).read_to_end(&mut start)?;
         }
         Ok(())
     });
     match read.map_err(|error| (error.kind(), error)) {
+        Ok(()) if start.len() as u64 > MOST_BYTES => {
+            let message = "it has more than 4 GiB, which is the most that is read".into();
+            Err(Error::Decode { path: path.to_owned(), message })
+        }
         Ok(()) if start.starts_with(&MAGIC) => Ok(start),
         Ok(()) => Err(decode_error(path, "it does not begin as one does")),
         Err((ErrorKind::NotFound | ErrorKind::NotADirectory, _)) => {

@@ -1,8 +1,10 @@
 //! Files that appear whole or not at all.
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::{Error, Result};
 
@@ -88,6 +90,10 @@ enum Target {
 
 impl Target {
     fn of(path: &Path) -> io::Result<Self> {
+        let name = path.file_name().map(OsStr::as_encoded_bytes);
+        if !name.is_some_and(|name| path.as_os_str().as_encoded_bytes().ends_with(name)) {
+            return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is the name of a folder"));
+        }
         match fs::metadata(path) {
             Ok(found) if found.is_dir() => return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
             Ok(found) if !found.is_file() => return Ok(Self::Device),
@@ -119,6 +125,18 @@ fn is_pipe(_: &Path) -> bool {
 /// A file of a short name of its own, which is removed unless it becomes another.
 struct Temporary(PathBuf);
 
+/// Those that are being written.
+static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn being_written() -> MutexGuard<'static, Vec<PathBuf>> {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what is there so far of files that are being written, where the process is about to end.
+pub fn remove_unfinished() {
+    being_written().drain(..).for_each(|path| drop(fs::remove_file(path)));
+}
+
 impl Temporary {
     /// In the folder of the target.
     fn beside(target: &Path) -> io::Result<(File, Self)> {
@@ -126,24 +144,30 @@ impl Temporary {
         loop {
             let path = target.with_file_name(format!(".abbe-{}-{number}", std::process::id()));
             match File::create_new(&path) {
-                Ok(file) => return Ok((file, Self(path))),
+                Ok(file) => {
+                    being_written().push(path.clone());
+                    return Ok((file, Self(path)));
+                }
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < MOST_LEFT_BEHIND => number += 1,
                 Err(error) => return Err(error),
             }
         }
     }
 
-    fn become_file(mut self, target: &Path) -> io::Result<()> {
+    fn become_file(self, target: &Path) -> io::Result<()> {
+        let mut unfinished = being_written();
         fs::rename(&self.0, target)?;
-        self.0 = PathBuf::new();
+        unfinished.retain(|path| *path != self.0);
         Ok(())
     }
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // The error before is the one to report; a temporary file that cannot be removed either changes nothing.
-        if !self.0.as_os_str().is_empty() {
+        let mut unfinished = being_written();
+        if let Some(place) = unfinished.iter().position(|path| *path == self.0) {
+            unfinished.swap_remove(place);
+            // The error before is the one to report; a temporary file that cannot be removed either changes nothing.
             let _ = fs::remove_file(&self.0);
         }
     }

@@ -32,6 +32,9 @@ pub struct Format {
     pub comments: Option<String>,
 }
 
+/// Last parts of the names of channels that DWA packs with loss (OpenEXR 3.3, ImfDwaCompressor.cpp).
+const COLORS_OF_DWA: [&str; 6] = ["R", "G", "B", "Y", "BY", "RY"];
+
 impl Format {
     /// Asks for some layers in place of others.
     pub fn ask_for(&mut self, layers: &[Layer]) {
@@ -57,9 +60,13 @@ impl Format {
         if !self.compression.is_lossy() || self.multipart {
             return None;
         }
-        // DWA packs what it does not take for a color without loss, and so a depth; PXR24 rounds all of 32 bits.
-        let depth = Some("Z").filter(|_| !self.compression.is_of_16_bits());
-        let layers = self.layers.iter().filter(|layer| !layer.is_color()).map(|layer| layer.name());
+        // DWA packs what it does not take for a color by its channel's name without loss, and so a depth; PXR24 rounds
+        // all of 32 bits.
+        let is_dwa = self.compression.is_of_16_bits();
+        let depth = Some("Z").filter(|_| !is_dwa);
+        let takes_for_color = |layer: &Layer| layer.channels().iter().any(|name| COLORS_OF_DWA.contains(name));
+        let is_spoiled = |layer: &&Layer| !layer.is_color() && (!is_dwa || takes_for_color(layer));
+        let layers = self.layers.iter().filter(is_spoiled).map(|layer| layer.name());
         let spoiled: Vec<&str> = depth.into_iter().chain(layers).collect();
         (!spoiled.is_empty()).then(|| {
             let message = format!("the compression {name} changes what is no color: {}", spoiled.join(", "));

@@ -37,10 +37,10 @@ pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> R
 /// Most texels of an image: 16384 x 8192.
 pub(crate) const MOST_TEXELS: usize = 1 << 27;
 
-/// What is said of an image that has more texels than are read.
-pub(crate) fn too_large(width: usize, height: usize) -> Option<String> {
-    let said = || format!("its {width} x {height} pixels are more than {MOST_TEXELS}");
-    (width.saturating_mul(height) > MOST_TEXELS).then(said)
+/// What is said of an image that has more pixels than are read.
+pub(crate) fn too_large(width: usize, height: usize, most: usize) -> Option<String> {
+    let said = || format!("its {width} x {height} pixels are more than {most}");
+    (width.saturating_mul(height) > most).then(said)
 }
 
 /// Bytes of texels that a file of any length may ask for.

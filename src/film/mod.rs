@@ -34,7 +34,7 @@ pub use exr_file::ExrFile;
 pub use exr_layer::{BEAUTY, ExrLayer};
 pub use exr_part::{Channel, Part, PixelBounds, Statistics};
 pub use exr_spectral::write_spectral_exr;
-pub use file::{check_writable, replace_file};
+pub use file::{check_writable, remove_unfinished, replace_file};
 pub use filter::Filter;
 pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};

@@ -132,7 +132,7 @@ pub fn conductor_reflectance(n1: f64, n: f64, k: f64, c: f64) -> [f64; 2] {
     let modulus = (t0 * t0 + 4.0 * eta * eta * kappa * kappa).sqrt();
     let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
     let (t1, t2) = (modulus + c2, 2.0 * a * c);
-    let r_s = (t1 - t2) / (t1 + t2);
+    let r_s = if t1 + t2 == 0.0 { 1.0 } else { (t1 - t2) / (t1 + t2) };
     let (t3, t4) = (c2 * modulus + s2 * s2, t2 * s2);
     let r_p = if t3 + t4 == 0.0 { 1.0 } else { r_s * (t3 - t4) / (t3 + t4) };
     [r_s, r_p]

@@ -86,7 +86,8 @@ impl Block<f64> {
         let u = (0.5 * (modulus + t0)).max(0.0).sqrt();
         let b = (0.5 * (modulus - t0)).max(0.0).sqrt();
         let squared = |u: f64, v: f64| u * u + v * v;
-        let s = (modulus + c2 - 2.0 * u * cos) / (modulus + c2 + 2.0 * u * cos);
+        let over = modulus + c2 + 2.0 * u * cos;
+        let s = if over == 0.0 { 1.0 } else { (modulus + c2 - 2.0 * u * cos) / over };
         let (uc, bc) = (u * cos, b * cos);
         let below = squared(uc + s2, bc);
         if below == 0.0 {

@@ -96,7 +96,11 @@ fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
         CurveKind::Texture(texture) if thickest => number(f64::from(texture.image.brightest().1)),
         CurveKind::Texture(texture) => number(texture.image.mean()[0]),
         CurveKind::Checker { cells, .. } => {
-            let [a, b] = cells.each_ref().map(|cell| cell.scale * cell.kind.rgb().map_or(0.0, |rgb| rgb[0]));
+            let of_cell = |cell: &Curve| {
+                let even = even(cell, thickest);
+                even.scale * even.kind.rgb().map_or(0.0, |rgb| rgb[0])
+            };
+            let [a, b] = cells.each_ref().map(of_cell);
             number(if thickest { a.max(b) } else { 0.5 * (a + b) })
         }
         _ => Cow::Borrowed(thickness),

@@ -65,7 +65,12 @@ impl Image {
         let film = self.image.film();
         let spectral = film.spectral.as_ref()?;
         let bands = spectral.bands.count();
-        let place = packed(film, &spectral.values, spectral.numbers(), 0..bands);
+        let mut place = packed(film, &spectral.values, spectral.numbers(), 0..bands);
+        // A single band is one still.
+        if bands == 1 {
+            place.shape.push(1);
+            place.strides.push(size_of::<f32>());
+        }
         Some((spectral.bands.centers_nm().collect(), Plane::of::<f32, f32>(self.image.clone(), place)))
     }
 

@@ -142,10 +142,12 @@ impl Job {
         let began = self.state.begin(before, rendering.work());
         let mut warnings = self.scene.warnings.clone();
         let is_finished = self.advance(&mut rendering, &mut warnings)?;
-        kept.map_or(Ok(()), |kept| rendering.save(&kept.path))?;
+        let saved = kept.map_or(Ok(()), |kept| rendering.save(&kept.path));
         if !is_finished {
-            return Ok(None);
+            return saved.map(|()| None);
         }
+        // The image is there all the same.
+        warnings.extend(saved.err().map(|error| format!("the render is finished, but {error}")));
         let (took, work) = (began.elapsed(), rendering.work());
         let expected = rendering.expected().mul_f64(work.saturating_sub(before) as f64 / work.max(1) as f64);
         let image = rendering.image();

@@ -36,7 +36,7 @@ const REAL: [&str; 3] = ["points", "normals", "uv"];
 /// # Errors
 /// If it is nothing that a scene may have; `key` says where it is.
 pub(super) fn value(key: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
-    let mut writer = Writer { path: vec![Step::Key(key.to_owned())], ..Writer::default() };
+    let mut writer = Writer { path: vec![Step::Key(key.to_owned())], is_alone: true, ..Writer::default() };
     writer.value(value)?;
     writer.finish(Path::new("set")).map(|(text, _)| text)
 }
@@ -52,6 +52,8 @@ struct Writer {
     text: String,
     /// Arrays that the text has a mark of.
     rows: Vec<Rows>,
+    /// Whether it is a value by itself, which has no arrays beside it.
+    is_alone: bool,
     path: Vec<Step>,
     mistakes: Vec<Diagnostic>,
 }
@@ -170,6 +172,7 @@ impl Writer {
     /// The list that it writes, if that is one of a mesh in the scene itself.
     fn list_of_mesh(&self) -> Option<&str> {
         match self.path.as_slice() {
+            _ if self.is_alone => None,
             [Step::Key(first), .., Step::Key(mesh), Step::Key(list)] if first == "object" && mesh == "mesh" => {
                 Some(list.as_str()).filter(|list| *list == FACES || REAL.contains(list))
             }

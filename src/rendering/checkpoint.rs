@@ -12,7 +12,7 @@ use crate::film::{BlockReader, Kind, write_blocks};
 use crate::trace;
 
 /// The first bytes of a checkpoint.
-const CHECKPOINT: Kind = *b"AbbeCkp2";
+const CHECKPOINT: Kind = *b"AbbeCkp3";
 
 /// What came of a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,13 +31,15 @@ pub(super) struct Written {
     name: String,
     length: u64,
     modified: SystemTime,
+    /// How it was written.
+    way: String,
 }
 
 impl Written {
-    /// A file as it is now; none if it is not there.
-    pub(super) fn of(path: &Path) -> Option<Self> {
+    /// A file as it is now, written in some way; none if it is not there.
+    pub(super) fn of(path: &Path, way: &str) -> Option<Self> {
         let (name, found) = (path.file_name()?.to_string_lossy().into_owned(), fs::metadata(path).ok()?);
-        Some(Self { name, length: found.len(), modified: found.modified().ok()? })
+        Some(Self { name, length: found.len(), modified: found.modified().ok()?, way: way.to_owned() })
     }
 }
 

@@ -10,9 +10,10 @@ use crate::scene::{FilmSettings, Scene};
 use crate::trace::{LightPass, Method, Stop};
 
 /// What two runs must have in common to add to one image, each with its name.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Identity(Vec<(String, String)>);
 
+const VERSION: &str = "version";
 const SCENE: &str = "scene";
 const PLAN: &str = "plan";
 
@@ -23,7 +24,7 @@ impl Identity {
         let Format { layers, first, spectral, .. } = &scene.format;
         let names: Vec<&str> = layers.iter().map(|layer| layer.name()).collect();
         let facts = [
-            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            (VERSION, env!("CARGO_PKG_VERSION").to_owned()),
             (SCENE, scene.hash.clone()),
             ("size", format!("{width} x {height} pixels")),
             ("overscan", overscan_text(overscan)),
@@ -47,6 +48,13 @@ impl Identity {
     /// The same of all parts of an image.
     pub(super) fn of_all_parts(&self) -> Self {
         Self(self.0.iter().filter(|(name, _)| name != "part").cloned().collect())
+    }
+
+    /// Why what follows it in a file is not read: another version may have other data there.
+    pub(super) fn objection(&self) -> Option<String> {
+        let made_by = self.0.iter().find_map(|(name, value)| (name == VERSION).then_some(value))?;
+        (made_by != env!("CARGO_PKG_VERSION"))
+            .then(|| format!("its {VERSION} is {made_by}, not {}", env!("CARGO_PKG_VERSION")))
     }
 
     /// What differs in another run, if anything does.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::error::{Error, Result};
 use crate::film::{LONGEST_NAME, Layer, Overscan, Shard, Window, light_layer_name};
-use crate::scene::{FilmSettings, ModelText, RenderText, Scene};
+use crate::scene::{FilmSettings, ModelText, PolarizationText, RenderText, Scene};
 
 /// What replaces the scene's own settings. By default nothing does.
 ///
@@ -117,6 +117,10 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
         let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
         return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
+    }
+    if scene.format.has_stokes() && scene.render.polarization == PolarizationText::Off {
+        let message = "Stokes vectors are asked for, and the scene turns polarization off".into();
+        return refuse(message, "leave `polarization` out of its [render], or ask for no S1, S2, S3 and polarization");
     }
     if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
         let message = "model = \"rgb\" has no wavelengths to make spectra of".into();

@@ -20,6 +20,8 @@ const PART: Kind = *b"AbbePrt1";
 /// What stands before the tiles.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Head {
+    /// Read by itself, and first: what is of another version may not be read further.
+    #[serde(skip)]
     identity: Identity,
     pub(super) shard: Shard,
     /// The image without its pixels.
@@ -56,6 +58,7 @@ pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64,
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
     let head = Head { identity, shard, film, format, view, provenance, non_finite };
     write_blocks(path, PART, &|blocks| {
+        blocks.block(&head.identity)?;
         blocks.block(&head)?;
         shard.tiles(window).try_for_each(|tile| {
             blocks.block(&Tile {
@@ -79,7 +82,11 @@ pub(super) fn open(path: &Path) -> Result<(Head, BlockReader)> {
     let Some(mut blocks) = BlockReader::open(path, PART)? else {
         return Err(refused(format!("{} is no part of an image", path.display()), made));
     };
-    let head: Head = blocks.block()?;
+    let identity: Identity = blocks.block()?;
+    if let Some(objection) = identity.objection() {
+        return Err(refused(format!("{} cannot be read: {objection}", path.display()), "merge it with that version"));
+    }
+    let head = Head { identity, ..blocks.block()? };
     let Film { width, height, .. } = head.film;
     let fits = u64::from(width) * u64::from(height) <= FilmSettings::MAX_PIXELS;
     if fits { Ok((head, blocks)) } else { Err(blocks.damaged()) }

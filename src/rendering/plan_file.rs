@@ -82,7 +82,11 @@ pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     let Some(mut blocks) = BlockReader::open(path, PLAN)? else {
         return refuse(&format!("{} is no plan", path.display()), AGAIN);
     };
-    let (head, plan): (Head, Plan) = (blocks.block()?, blocks.block()?);
+    let head: Head = blocks.block()?;
+    if let Some(objection) = head.identity.objection() {
+        return refuse(&format!("cannot follow {}: {objection}", path.display()), AGAIN);
+    }
+    let plan: Plan = blocks.block()?;
     blocks.end()?;
     let is_of_whole = scene.render.is_part && (head.error.is_some() || head.time.is_some());
     match Head::new(scene, &plan).difference(&head) {

@@ -151,7 +151,7 @@ impl Rendering {
 
     /// How long all its [work](Self::work) will take, about, if nothing else keeps the processors busy.
     pub fn expected(&self) -> Duration {
-        let part = self.work() as f64 / self.passes.planned_work().max(1) as f64;
+        let part = self.work() as f64 / self.passes.work_of_all_parts().max(1) as f64;
         self.plan.processor_time.mul_f64(part / self.threads.current_num_threads() as f64)
     }
 
@@ -220,18 +220,19 @@ impl Rendering {
     }
 
     /// Writes the checkpoint of a finished render that has written its files: so [`has_written`](Self::has_written)
-    /// knows of them when it is resumed.
+    /// knows of them when it is resumed. `way` says how they were written, such as with which exposure.
     ///
     /// # Errors
     /// As of [`save`](Self::save).
-    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path]) -> Result<()> {
-        let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file)).collect();
+    pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
+        let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file, way)).collect();
         checkpoint::save(path.as_ref(), &self.identity, &written, &self.passes)
     }
 
-    /// Whether the finished render that this was resumed from has written a file, which nobody has changed since.
-    pub fn has_written(&self, file: impl AsRef<Path>) -> bool {
-        Written::of(file.as_ref()).is_some_and(|file| self.written.contains(&file))
+    /// Whether the finished render that this was resumed from has written a file in the same way, and nobody has
+    /// changed it since.
+    pub fn has_written(&self, file: impl AsRef<Path>, way: &str) -> bool {
+        Written::of(file.as_ref(), way).is_some_and(|file| self.written.contains(&file))
     }
 
     /// Goes on from a checkpoint of the same scene, seed, image, layers and plan; more samples may be asked for.

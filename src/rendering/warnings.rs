@@ -9,14 +9,14 @@ use crate::trace::{MOST_MEDIA, RareLight, Report};
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
     let mut warnings: Vec<String> =
         error.into_iter().flat_map(|error| [outlier(error), missed(error)]).flatten().collect();
-    if let Some([x, y, sample]) = report.first_non_finite {
-        let count = report.non_finite;
-        let first = format!("the first is sample {sample} of pixel ({x}, {y})");
-        warnings.push(match count {
-            1 => format!("1 sample was not finite and is left out: sample {sample} of pixel ({x}, {y})"),
-            _ => format!("{count} samples were not finite and are left out; {first}"),
-        });
-    }
+    let place = report.first_non_finite.map(|[x, y, sample]| format!("sample {sample} of pixel ({x}, {y})"));
+    warnings.extend(match (report.non_finite, place) {
+        (0, _) => None,
+        (1, None) => Some("1 sample was not finite and is left out".into()),
+        (1, Some(place)) => Some(format!("1 sample was not finite and is left out: {place}")),
+        (count, None) => Some(format!("{count} samples were not finite and are left out")),
+        (count, Some(place)) => Some(format!("{count} samples were not finite and are left out; the first is {place}")),
+    });
     if report.unmatched > 0 {
         let times = if report.unmatched == 1 { "once".into() } else { format!("{} times", report.unmatched) };
         let times = format!("{times} light left a clear body it had not entered");

@@ -94,7 +94,7 @@ impl Source {
     /// As [`compile`](Self::compile). A mistake in a setting is told of a file called `--set`, in which each has a
     /// line.
     pub fn compile_with(&self, settings: &[String]) -> Result<Scene> {
-        self.compile_by(Place::Line, settings, Vec::new())
+        self.compile_by(Place::Line, settings, Vec::new(), true)
     }
 
     /// The same of a text that a program has written, with rows of numbers beside it. Each mistake in it is told with
@@ -117,11 +117,11 @@ impl Source {
     /// # Errors
     /// As [`compile_with`](Self::compile_with).
     pub fn compile_written(&self, settings: &[String], rows: Vec<Rows>) -> Result<Scene> {
-        self.compile_by(Place::Key, settings, rows)
+        self.compile_by(Place::Key, settings, rows, false)
     }
 
-    fn compile_by(&self, place: Place, given: &[String], rows: Vec<Rows>) -> Result<Scene> {
-        let Included { mut texts, parts, mistakes, mut files, .. } = Included::of(&self.path, &self.text);
+    fn compile_by(&self, place: Place, given: &[String], rows: Vec<Rows>, is_file: bool) -> Result<Scene> {
+        let Included { mut texts, parts, mistakes, mut files, .. } = Included::of(&self.path, &self.text, is_file);
         (texts.rows, texts.told_by) = (rows, place);
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
@@ -214,7 +214,12 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`]; the file is called `scene.toml` in messages.
     pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
-        Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() }.compile()
+        Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() }.compile_by(
+            Place::Line,
+            &[],
+            Vec::new(),
+            false,
+        )
     }
 
     /// Reads a scene that a program has built: a value that means what a scene file with the same keys means.

@@ -86,7 +86,7 @@ impl Ellipsoid {
         4.0 * PI * axes[0] * axes[0] * libm::pow(mean, 1.0 / p)
     }
 
-    pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn sample_surface(&self, u: [f64; 2]) -> DVec3 {
         self.point_at(ball_surface(u)).position
     }
 

@@ -220,15 +220,15 @@ impl Shape {
 
     /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
     ///
-    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, other shapes by their
-    /// area.
+    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, ellipsoids as the
+    /// sphere that they are a map of, other shapes by their area.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         let (point, part) = match self {
             Self::Plane(_) => return None,
             Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
             Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
             Self::Quad(quad) => return Polygon::Parallelogram(quad.plane()).sample(from, u),
-            Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_area(u) - from),
+            Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_surface(u) - from),
             Self::Disc(disc) => {
                 let sample = ShapeSample::along(disc.sample_area(u) - from)?;
                 return Some(sample.with_density(Density::Area(1.0 / disc.area())));

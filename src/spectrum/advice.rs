@@ -15,6 +15,17 @@ pub fn reach(curve: &Curve) -> Option<String> {
     })
 }
 
+/// Where the absorption of a glass of the catalog is used beyond the wavelengths at which it was measured.
+pub fn reach_of_absorption(glass: &Glass) -> Option<String> {
+    let (from, to) = (glass.extinction.first()?[0], glass.extinction.last()?[0]);
+    (from > SEEN_NM[0] || to < SEEN_NM[1]).then(|| {
+        let key = glass.key;
+        format!(
+            "the absorption of {key} is known from {from} to {to} nm; beyond, its value at the nearest end is taken"
+        )
+    })
+}
+
 /// Largest error of a prism's deviation, in degrees, that an imitated glass may have.
 const TOLERATED_DEGREES: f64 = 0.1;
 

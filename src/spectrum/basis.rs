@@ -300,7 +300,8 @@ impl Basis {
 
     /// A curve that varies over a surface, read onto the bins; none if it is the same all over.
     fn patterned(&self, quantity: Quantity, curve: &Curve) -> Option<Table> {
-        let of_filter = |curve: &Curve| self.tabulate(Quantity::Transmittance, curve);
+        let part = if quantity == Quantity::Thickness { quantity } else { Quantity::Transmittance };
+        let of_filter = |curve: &Curve| self.tabulate(part, curve);
         let kind = match &curve.kind {
             CurveKind::Texture(texture) => {
                 let palette = (!matches!(self.lanes, LaneKind::Rgb(_))).then(|| palette(of_filter));

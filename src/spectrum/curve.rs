@@ -277,6 +277,17 @@ impl Curve {
             _ => vec![Cow::Borrowed(self)],
         }
     }
+
+    /// The lightest texel of each image on the surface, as a curve.
+    pub fn lightest(&self) -> Vec<Cow<'_, Self>> {
+        match &self.kind {
+            CurveKind::Texture(Texture { image, .. }) => {
+                vec![Cow::Owned(Self { kind: CurveKind::Rgb(image.lightest().map(f64::from)), ..self.clone() })]
+            }
+            CurveKind::Checker { cells, .. } => cells.iter().flat_map(Self::lightest).collect(),
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Linear between samples, flat beyond the ends.

@@ -119,6 +119,13 @@ impl Image {
         ([at % self.width, at / self.width], value)
     }
 
+    /// The texel whose numbers have the largest sum.
+    pub fn lightest(&self) -> [f32; 3] {
+        let sum = |texel: &[f32; 3]| texel.iter().sum::<f32>();
+        let texels = (0..self.width * self.height).map(|at| self.at(at));
+        texels.max_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or_default()
+    }
+
     /// The first of the texels that are farthest from gray, in proportion to their brightness.
     pub fn most_colorful(&self) -> [f32; 3] {
         self.most_colorful

@@ -29,7 +29,7 @@ mod upsample;
 pub mod visible;
 mod wavelength_bands;
 
-pub use advice::{imitation, provenance, reach};
+pub use advice::{imitation, provenance, reach, reach_of_absorption};
 pub use band_response::BandResponse;
 pub use bands::normal_reflectance;
 pub use basis::Basis;

@@ -125,10 +125,13 @@ impl Replicates {
         Self { light: Sums::new(pixels, is_signed), blur, shown: Vec::new(), covered }
     }
 
-    /// Bytes of memory that they take for each pixel.
-    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool, catches: bool) -> usize {
+    /// Bytes of memory that they take for each pixel, where photons are shown or not.
+    pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool, catches: bool, shows: bool) -> usize {
         let kinds = (1 + usize::from(is_signed)) * (1 + usize::from(gathers));
-        kinds * size_of::<[Sum; REPLICATES]>() + usize::from(catches) * size_of::<[Covered; REPLICATES]>()
+        let [catches, shows] = [catches, shows].map(usize::from);
+        kinds * size_of::<[Sum; REPLICATES]>()
+            + catches * size_of::<[Covered; REPLICATES]>()
+            + shows * size_of::<[[f32; 3]; REPLICATES]>()
     }
 
     /// Whether it has as many sums of each kind as another one, or none yet of what photons show.

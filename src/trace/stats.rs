@@ -30,6 +30,12 @@ pub(super) struct Stats {
 }
 
 impl Stats {
+    /// Forgets what a second look at the same camera sample has counted of it.
+    pub(super) fn count_once(&mut self, before: &Self) {
+        let Self { dropped, stopped, by_chance, .. } = *before;
+        (self.dropped, self.stopped, self.by_chance) = (dropped, stopped, by_chance);
+    }
+
     /// Those of a pixel that takes more samples or fewer: light counts as much as that of any pixel.
     pub(super) fn of_pixel(self, rate: Rate) -> Self {
         let times = rate.times();

@@ -70,6 +70,12 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     assert!(bytes(&folder, "s.exr") == image);
     done(&folder, "s.toml --resume --exr s.exr --png s.png --report s.json");
     assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.json", "s.png", "s.toml"]);
+    // A picture of another exposure is another picture.
+    let picture = bytes(&folder, "s.png");
+    done(&folder, "s.toml --resume --exr s.exr --png s.png --exposure 2");
+    assert!(bytes(&folder, "s.png") != picture && bytes(&folder, "s.exr") == image);
+    let asked = "s.toml --resume --exr s.exr --png s.png --exposure 2";
+    assert!(done(&folder, asked).stderr.contains("nothing is left to be done"));
     // An image that was lost is written again.
     fs::remove_file(folder.path().join("s.exr")).expect("it is there");
     done(&folder, "s.toml --resume");
@@ -214,6 +220,33 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
     refused(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is no plan\n{help}"));
     refused(&folder, "s.toml --plan --plan-file s.toml", "error: s.toml is the scene itself\nhelp: name another file");
     assert_eq!(bytes(&folder, "s.toml"), GLASS.as_bytes());
+}
+
+/// A plan of a scene that asks for spectra is followed for a picture alone as well, which has none.
+#[test]
+fn a_picture_alone_follows_the_plan_of_a_scene_with_spectra() {
+    let folder = folder();
+    let asked = "s.toml --samples 4 --set film.spectral=true";
+    done(&folder, &format!("{asked} --plan --plan-file s.plan"));
+    done(&folder, &format!("{asked} --plan-file s.plan --png s.png"));
+    assert_eq!(folder.listing(), ["s.plan", "s.png", "s.toml"]);
+}
+
+/// Parts may have got other names; a checkpoint that has the name of one then is of another render.
+#[test]
+fn merging_deletes_the_checkpoints_of_parts_alone() {
+    let folder = folder();
+    for part in ["1/2", "2/2"] {
+        done(&folder, &format!("s.toml --samples 4 --resume --shard {part}"));
+    }
+    fs::rename(folder.path().join("s.1-of-2.part"), folder.path().join("s.part")).expect("any name will do");
+    for other in ["s.checkpoint", "notes-of-today.checkpoint"] {
+        folder.write(other, "something else");
+    }
+    fs::rename(folder.path().join("s.2-of-2.part"), folder.path().join("notes-of-today.part")).expect("it is there");
+    done(&folder, "merge --delete out.exr s.part notes-of-today.part");
+    let left = "notes-of-today.checkpoint out.exr s.1-of-2.checkpoint s.2-of-2.checkpoint s.checkpoint s.toml";
+    assert_eq!(folder.listing(), left.split(' ').collect::<Vec<_>>());
 }
 
 #[test]
@@ -390,7 +423,7 @@ fn a_command_that_has_not_begun_to_render_stops_at_once() {
         let output = child.wait_with_output().expect("it ends");
         drop(scene);
         let said = String::from_utf8(output.stderr).expect("messages are UTF-8");
-        assert_eq!((output.status.code(), &*said), (Some(130), "stopped before anything was rendered\n"));
+        assert_eq!((output.status.code(), &*said), (Some(130), "stopped before anything of this image was rendered\n"));
     }
 }
 

@@ -70,6 +70,23 @@ fn albedo_and_normals_of_a_sheet_with_holes_are_of_what_it_covers() {
 }
 
 /// In CIE XYZ, white has a Z above 1.
+/// A pane with holes before a wall: half is met, all of whose light goes on or back, and half is not.
+#[test]
+fn the_albedo_behind_a_pane_with_holes_counts_once() {
+    let text = "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 5 }\n\
+        film = { width = 16, height = 16 }\nrender = { samples = 256, model = \"rgb\" }\n[material]\n\
+        wall.diffuse.reflectance = 0.8\npane.thin.index = 1.5\n\
+        sheet.mask = { material = \"pane\", opacity = 0.5 }\n\
+        [[object]]\nshape.quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }\nmaterial = \"sheet\"\n\
+        [[object]]\nshape.quad = { center = [0, 0, -1], u = [9, 0, 0], v = [0, 9, 0] }\nmaterial = \"wall\"\n\
+        [[light]]\npoint = { position = [1, 1, 4], intensity = 10 }\n";
+    let albedo = rgb(&rendered(text, &[Layer::Albedo]), "albedo");
+    let mean = albedo.iter().map(|rgb| rgb[1]).sum::<f64>() / albedo.len() as f64;
+    // Each sample says 1 or 0.8, by chance.
+    let sigma = 0.1 / libm::sqrt(256.0 * 256.0);
+    assert!((mean - 0.9).abs() < 5.0 * sigma, "{mean} for 0.9 +- {sigma:.1e}");
+}
+
 #[test]
 fn albedo_of_white_is_the_white_of_the_film() {
     for (space, white) in [("lin_ciexyzd65_scene", [0.9505, 1.0, 1.0891]), ("lin_ap1_scene", [1.0; 3])] {

@@ -128,6 +128,14 @@ fn a_lossy_file_of_one_part_holds_no_data() {
     let (half, float) = (Precision::Half, Precision::Float);
     let light = [Layer::Lights, Layer::Direct];
     assert_eq!(asked(Compression::Dwaa, half, false, &light), None);
+    let kept = [Layer::Uv, Layer::Samples, Layer::CryptoObject];
+    assert_eq!(asked(Compression::Dwab, half, false, &kept), None);
+    let channels = |compression| written(half, compression, false, &kept).0.remove(0).1;
+    let (lossy, exact) = (channels(Compression::Dwab), channels(Compression::Zip));
+    let is_exact = |name: &&String| name.contains('.') || ["A", "Z"].contains(&name.as_str());
+    assert!(exact.keys().filter(is_exact).count() >= 6);
+    assert!(exact.keys().filter(is_exact).all(|name| lossy[name] == exact[name]));
+    assert_ne!(lossy["R"], exact["R"]);
     assert_eq!(asked(Compression::Pxr24, float, true, &Layer::all()), None);
     for (compression, precision, layers, message) in [
         (Compression::Dwab, half, &[Layer::Albedo, Layer::Direct][..], "dwab changes what is no color: albedo"),

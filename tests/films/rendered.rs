@@ -158,3 +158,31 @@ fn metal_and_plastic_reflect_by_their_layers() {
         near(reflected(&plastic, degrees, nm), expected, &format!("plastic, {degrees} degrees"));
     }
 }
+
+/// Squares of one thickness are a film of that thickness, whatever the model of color.
+#[test]
+fn a_checkerboard_of_thicknesses_is_what_its_squares_are() {
+    let color = |thickness: &str, model: &str| {
+        let text = format!(
+            "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov = 1\n[film]\nwidth = 2\nheight = 2\n\
+             [render]\nsamples = 16\nmodel = {model}\n\
+             [material.film]\nthin = {{ index = 1.5, thickness_nm = {thickness} }}\n\
+             [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }}\nmaterial = \"film\"\n\
+             [[light]]\npoint = {{ position = [0, 0, -4], intensity = 1 }}\n\
+             [[light]]\nenvironment = {{ radiance = 1 }}\n[[object]]\nmaterial = \"black\"\n\
+             shape.quad = {{ center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }}\n\
+             [material.black]\ndiffuse = {{ reflectance = 0 }}\n"
+        );
+        let scene = abbe::Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}"));
+        abbe::render(&scene, &abbe::Options::default()).expect("it renders").rgb_at(0, 0)
+    };
+    for model in ["\"rgb\"", "{ bands = 16 }"] {
+        let even = color("300", model);
+        for checker in ["{ checker = [300, 300] }", "{ checker = [300, { checker = [300, 300] }] }"] {
+            let found = color(checker, model);
+            assert!((0..3).all(|i| (found[i] - even[i]).abs() < 1e-5), "{model}, {checker}: {found:?} for {even:?}");
+        }
+        // A film of 300 nm has a color.
+        assert!(even.iter().any(|x| (x / even[1] - 1.0).abs() > 0.1), "{even:?}");
+    }
+}

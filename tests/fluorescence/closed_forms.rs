@@ -122,3 +122,23 @@ fn a_share_of_the_surface_fluoresces_by_that_share() {
     let masked = format!("mask = {{ material = \"dyed\", opacity = 0.75 }}\n[material.dyed]\n{}\n", YELLOW.material());
     near(lit(&masked, "D65", ""), dyed.map(|x| 0.75 * x), 1e-6, "a mask");
 }
+
+/// What a dye absorbs and what the surface reflects are shares of the same light wherever an image shows a color.
+#[test]
+fn a_dye_under_an_image_is_refused_where_a_texel_leaves_no_room_for_it() {
+    let refused = |absorbed: f64| {
+        let text = format!(
+            "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n[film]\nwidth = 4\nheight = 4\n\
+             [material.paper]\ndiffuse = {{ reflectance = {{ image = \"dots.png\" }}, fluorescence = {{ quantum_yield = 0.9, \
+             absorption = {{ samples = [[400, {absorbed}], [500, 0]] }}, \
+             emission = {{ samples = [[510, 0], [520, 1], [580, 0]] }} }} }}\n\
+             [[object]]\nmaterial = \"paper\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n\
+             [[light]]\nenvironment = {{ radiance = 1 }}\n"
+        );
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/messages");
+        abbe::Scene::parse(&text, folder).err().map(|error| error.to_string())
+    };
+    // The lightest dots reflect 0.66 of violet light; the mean of all is 0.3, and the most colorful one reflects 0.45.
+    assert_eq!(refused(0.3), None);
+    assert!(refused(0.5).is_some_and(|told| told.contains("reflectance and absorption are")));
+}

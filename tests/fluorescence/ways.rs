@@ -122,3 +122,20 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
         }
     }
 }
+
+/// What comes through glass that parts its light is dispersed, whether paper scatters it or a dye shines it.
+#[test]
+fn what_a_dye_shines_through_glass_is_dispersed() {
+    let text = view([3.0, 0.0, 4.0], [0.0; 3], 3.0, 8)
+        .replace("height = 8\n", "height = 8\nlayers = [\"dispersed\"]\n")
+        + "[render]\nsamples = 64\ncaustics = \"off\"\n"
+        + &body("paper", &YELLOW.material(), &["quad = { center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }"])
+        + &body("glass", "dielectric = { index = \"N-SF11\" }", &["cube = { center = [0, 0, 0], size = 2 }"])
+        + "[[light]]\npoint = { position = [-2, 3, -1.5], intensity = 100 }\n";
+    let image = abbe::render(&abbe::Scene::parse(&text, "").expect("it is valid"), &abbe::Options::default());
+    let image = image.expect("it renders");
+    let sum = |values: &mut dyn Iterator<Item = f32>| values.map(f64::from).sum::<f64>();
+    let layer = ["R", "G", "B"].map(|channel| image.layer(&format!("dispersed.{channel}")).expect("it was asked for"));
+    let share = sum(&mut layer.into_iter().flatten()) / sum(&mut image.rgb().into_iter().flatten());
+    assert!((share - 1.0).abs() < 1e-3, "{share}");
+}

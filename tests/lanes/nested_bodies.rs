@@ -58,8 +58,7 @@ fn seen_through(bodies: &str) -> f64 {
 #[test]
 fn m1_water_that_overlaps_its_vessel_lets_through_what_labelled_interfaces_would() {
     let expected = transmitted(&[1.0, 1.5168, 1.333, 1.5168, 1.0]);
-    let solid =
-        body("glass", "dielectric = { index = 1.5168, priority = 1 }", &["cube = { center = [0, 0, 0], size = 2 }"]);
+    let solid = body("glass", SOLID, &["cube = { center = [0, 0, 0], size = 2 }"]);
     let ways = [
         ("overlapping a little", vessel() + &water(0.91, 1)),
         ("overlapping to the middle of the wall", vessel() + &water(0.95, 1)),
@@ -89,7 +88,8 @@ fn m3_overlap_and_displacement_bend_light_the_same_way() {
             body(&format!("stripe{i}"), &format!("emissive = {{ radiance = {i} }}"), &[&quad])
         })
         .collect();
-    let pictures = [(vessel() + &water(0.91, 1)), vessel() + &water(0.95, 1)].map(|bodies| {
+    let solid = body("glass", SOLID, &["cube = { center = [0, 0, 0], size = 2 }"]);
+    let pictures = [vessel() + &water(0.91, 1), solid + &water(0.9, 2)].map(|bodies| {
         let text = view([2.9, 0.4, 4.7], [0.1, 0.05, 0.0], 12.0, 40) + &bodies + &stripes;
         image(&text, Transport::Deterministic { cutoff: 1e-6, most: u64::MAX }).0
     });
@@ -99,6 +99,9 @@ fn m3_overlap_and_displacement_bend_light_the_same_way() {
     }
     assert!(b.pixels.iter().any(|pixel| pixel.rgb[0] > 5.0));
 }
+
+/// Glass that water of a higher priority displaces.
+const SOLID: &str = "dielectric = { index = 1.5168, priority = 1 }";
 
 /// Balls (center, radius, index, priority), some within and some across each other.
 const BALLS: [([f64; 3], f64, f64, i32); 5] = [

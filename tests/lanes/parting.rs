@@ -3,7 +3,7 @@
 use abbe::film::Film;
 use abbe::trace::Transport;
 
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, image, images, standard_errors, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, image, images_from, standard_errors, view};
 
 /// A ball and a prism of some glass among other things: what the scenes of this folder share.
 pub const BALL_AND_PRISM: &str = r#"[[object]]
@@ -90,7 +90,7 @@ fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
     for transport in [SPLITTING, SINGLE_PATH] {
         let films = |index: &str, first: u64| -> Vec<Film> {
             let text = text(index, floor, "box", BLOCK * BLOCKS);
-            images(&text, transport, SEEDS + first).drain(first as usize..).map(|(film, _)| film).collect()
+            images_from(&text, transport, first, SEEDS).into_iter().map(|(film, _)| film).collect()
         };
         let parted = films(&index_per_band(), 0);
         for (band, index) in INDICES.into_iter().enumerate() {

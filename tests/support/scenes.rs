@@ -71,9 +71,14 @@ pub fn image(text: &str, transport: Transport) -> (Film, Report) {
 
 /// Images of one scene under different seeds.
 pub fn images(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report)> {
+    images_from(text, transport, 0, seeds)
+}
+
+/// The same from another first seed.
+pub fn images_from(text: &str, transport: Transport, first: u64, seeds: u64) -> Vec<(Film, Report)> {
     let scene = scene(text);
     let seeded = |seed| Method { seed, ..method(&scene, transport) };
-    (0..seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ())).collect()
+    (first..first + seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ())).collect()
 }
 
 /// A mean of each band with its standard error.

@@ -111,10 +111,9 @@ fn an_even_sky_above_endless_panes_gives_the_irradiance_of_their_sum() {
 fn every_light_shines_through_a_pane_as_without_it_times_its_transmittance() {
     // The disc and the lamp come from many angles; a pane of index 1 has one transmittance for them all.
     for (name, lights) in [("point", POINT), ("sun", SUN), ("disc", DISC), ("lamp", LAMP), ("sky", SKY)] {
-        let tint = [0.75, 0.5, 0.1];
+        let (tint, open) = ([0.75, 0.5, 0.1], mean(&under("", lights, "0.5", 64), SPLITTING));
         for heights in [vec![1.0], vec![1.0, 1.1, 2.0]] {
             let material = "thin = { index = 1, transmittance = { rgb = [0.75, 0.5, 0.1] } }";
-            let open = mean(&under("", lights, "0.5", 64), SPLITTING);
             for transport in [SPLITTING, SINGLE_PATH] {
                 let mut through = mean(&under(&panes(material, &heights), lights, "0.5", 64), transport);
                 let share = tint.map(|t: f64| t.powi(heights.len() as i32));

@@ -125,6 +125,9 @@ def test_spectra_are_those_of_the_file(tmp_path):
         image.spectrum(20, 0)
     with pytest.raises(ValueError, match="spectral=True"):
         abbe.render(SCENE).spectrum(0, 0)
+    # A single band is one still.
+    image = abbe.render(with_(film={**SCENE["film"], "spectral": {"from": 550, "to": 550, "step": 10}}))
+    assert image.spectra.radiance.shape == (12, 20, 1) and image.spectrum(3, 3).radiance.shape == (1,)
 
 
 def test_what_is_known_of_a_render_is_what_json_says(tmp_path):
@@ -230,6 +233,20 @@ def test_a_render_that_stopped_goes_on_to_the_same_bits(tmp_path):
         abbe.render(with_(film={"width": 64, "height": 49}), samples=1024, checkpoint=kept, resume=True)
     with pytest.raises(abbe.OptionsError, match="no checkpoint to resume from"):
         abbe.render(scene, resume=True)
+
+
+def test_a_finished_image_outlives_its_last_checkpoint(tmp_path):
+    folder = tmp_path / "kept"
+    folder.mkdir()
+
+    def remove(progress):
+        for entry in folder.iterdir():
+            entry.unlink()
+        folder.rmdir()
+
+    image = abbe.render(SCENE, samples=4096, checkpoint=folder / "a.checkpoint", progress=lambda so_far: folder.exists() and remove(so_far))
+    assert image.rgb.shape == (12, 20, 3)
+    assert any("the render is finished, but" in said for said in image.stats["warnings"])
 
 
 def test_threads_of_python_render_at_once_and_others_go_on():
@@ -573,6 +590,14 @@ def test_arrays_of_a_mesh_are_its_lists(kind):
     assert by_arrays["A"].mean() > 0.1 and len(by_arrays.layers) == 6
     for name in by_arrays:
         assert np.array_equal(by_arrays[name], by_lists[name]), name
+
+
+def test_arrays_in_a_setting_are_those_of_the_setting():
+    points, faces = ball()
+    other = mesh_scene(points=points[:3] + 9, faces=np.array([[0, 1, 2]]))
+    setting = {"object": mesh_scene(points=points, faces=faces)["object"]}
+    plain = abbe.render(mesh_scene(points=points, faces=faces)).rgb
+    assert np.array_equal(abbe.render(abbe.Scene(other, set=setting)).rgb, plain)
 
 
 def test_views_and_other_orders_of_arrays_are_the_same():

@@ -32,6 +32,7 @@ pub(super) struct Context {
 }
 
 /// What the author should know, and where the reason stands.
+#[derive(PartialEq)]
 struct Warning {
     place: Option<Range<usize>>,
     message: String,
@@ -58,7 +59,11 @@ impl Context {
 
     /// Warns of a value, by the place where it stands.
     pub(super) fn warn_at(&mut self, place: Value, message: impl Into<String>) {
-        self.warnings.push(Warning { place: Some(place.span()), message: message.into() });
+        let warning = Warning { place: Some(place.span()), message: message.into() };
+        // A value may be read for two purposes.
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
+        }
     }
 
     /// All warnings of a document.

@@ -12,8 +12,8 @@ use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
 use crate::scene::text::{At, FileKind, Value, utf8};
 use crate::spectrum::{
-    ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach, sellmeier_squared,
-    visible::START_NM,
+    ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach,
+    reach_of_absorption, sellmeier_squared, visible::START_NM,
 };
 
 const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26, endings: &[] };
@@ -366,7 +366,7 @@ fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) ->
 }
 
 /// The absorption of a glass of the catalog per scene unit.
-fn absorption(context: &Context, place: Value, name: &str) -> Option<CurveKind> {
+fn absorption(context: &mut Context, place: Value, name: &str) -> Option<CurveKind> {
     let Some(glass) = data::glass(name) else { return unknown_glass(name).tell(place) };
     if glass.extinction.is_empty() {
         let message = format!("the catalog does not know the absorption of {}", glass.key);
@@ -378,6 +378,7 @@ fn absorption(context: &Context, place: Value, name: &str) -> Option<CurveKind> 
             format!("the absorption of {name} is known per meter, and the scene does not say how long its unit is");
         return place.advise(message, "for a scene in centimeters: [render] meters_per_unit = 0.01");
     };
+    reach_of_absorption(&glass).into_iter().for_each(|advice| context.warn_at(place, advice));
     // 4 pi k / wavelength, base e (Born & Wolf 1999, section 14.1).
     let per_meter = |k: f64, nm: f64| 4.0 * std::f64::consts::PI * k / (nm * 1e-9);
     Some(CurveKind::Samples(glass.extinction.iter().map(|&[nm, k]| [nm, per_meter(k, nm) * meters]).collect()))

@@ -39,7 +39,8 @@ pub(super) fn conserves(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value
     if dye.quantum_yield > 0.0 && dye.power_per_nm() == 0.0 {
         return emission.refuse("the dye shines nowhere between 300 and 830 nm");
     }
-    let Some(excess) = reflectance.shades().into_iter().find_map(|shade| dye.excess(&shade)) else { return Some(()) };
+    let shades = reflectance.shades().into_iter().chain(reflectance.lightest());
+    let Some(excess) = shades.into_iter().find_map(|shade| dye.excess(&shade)) else { return Some(()) };
     let nm = excess.nm;
     if excess.taken > 1.0 {
         let message = format!("reflectance and absorption are {} together at {nm} nm", shown(excess.taken));

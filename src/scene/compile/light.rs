@@ -99,13 +99,19 @@ fn point_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curv
     Fields::read(value, |light| {
         let position = light.need("position", point);
         let intensity = light.need("intensity", |value| intensity(context, value));
+        of_the_entry(light, "point", &OF_A_POINT);
         Some(Light::Point(Point { position: position?.to_array(), intensity: intensity? }))
     })
 }
 
+/// Keys of the entry of a light that is too small to be seen.
+const OF_A_POINT: [&str; 2] = ["name", "group"];
+/// Keys of the entry of one that is seen.
+const OF_AN_INFINITE_LIGHT: [&str; 3] = ["name", "group", "visible_to_camera"];
+
 /// Tells of keys that stand within the kind of a light, but belong to its entry.
-fn of_the_entry(light: &mut Fields, kind: &str) {
-    for key in ["name", "group", "visible_to_camera"] {
+fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
+    for &key in keys {
         light.stray(
             key,
             format!("`{key}` is a key of the light"),
@@ -123,7 +129,7 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
         light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
-        of_the_entry(light, "sun");
+        of_the_entry(light, "sun", &OF_AN_INFINITE_LIGHT);
         let toward = toward?.to_array();
         let (angular_diameter, irradiance) = (angular_diameter?, irradiance?);
         Some(Light::Sun(Sun { toward, angular_diameter, irradiance, disc: OnceLock::new() }))
@@ -140,6 +146,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         let blend =
             light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a part of the cone, 0 to 1", None));
         let intensity = light.need("intensity", |value| intensity(context, value));
+        of_the_entry(light, "spot", &OF_A_POINT);
         let position = position?;
         let toward = match (toward?, target?) {
             (Some(toward), None) => toward.it,
@@ -173,7 +180,7 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
         let polarization = light.maybe("polarization", sky_polarization);
-        of_the_entry(light, "environment");
+        of_the_entry(light, "environment", &OF_AN_INFINITE_LIGHT);
         let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
             if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {

@@ -64,9 +64,12 @@ fn no_number(line: usize, cell: &str, first: bool) -> Fault {
     Fault { message, help: help.map(str::to_owned), is_column: false }
 }
 
-/// Blanks separate cells only where nothing else does.
+/// Blanks separate cells only where nothing else does. A comma within a word of several is one of a number.
 fn cells(line: &str) -> Vec<&str> {
-    match [';', ',', '\t'].into_iter().find(|&separator| line.contains(separator)) {
+    let has_cells = |word: &str| word.starts_with(',') || word.ends_with(',');
+    let is_decimal = line.split_whitespace().nth(1).is_some() && !line.split_whitespace().any(has_cells);
+    let separates = |separator: &char| line.contains(*separator) && !(*separator == ',' && is_decimal);
+    match [';', ',', '\t'].into_iter().find(separates) {
         Some(separator) => line.split(separator).map(str::trim).collect(),
         None => line.split_whitespace().collect(),
     }
@@ -84,6 +87,8 @@ mod tests {
         assert_eq!(rows, [row(3, [400.0, 0.2]), row(5, [500.0, 0.4])]);
         assert_eq!(read_columns("400 1e-3\n410\t2e-3", 2).unwrap()[1].pair, [410.0, 2e-3]);
         assert_eq!(read_columns("400;0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
+        assert_eq!(read_columns("400 ,0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
+        assert_eq!(read_columns("dull paint,shiny\n400,0.5", 2).unwrap(), [row(2, [400.0, 0.5])]);
     }
 
     #[test]
@@ -91,7 +96,11 @@ mod tests {
         let told = |text, column| read_columns(text, column).unwrap_err().message;
         assert_eq!(told("400, 0.1\n500, red", 2), ", line 2: \"red\" is not a number");
         assert_eq!(told("nm, v\n400, 0.1", 3), ", line 2: there is no column 3, only 2");
-        assert_eq!(told("400;0,5", 2), ", line 1: \"0,5\" is not a number");
+        for comma in ["400;0,5", "400\t0,5", "400 0,5"] {
+            let fault = read_columns(comma, 2).unwrap_err();
+            assert_eq!(fault.message, ", line 1: \"0,5\" is not a number");
+            assert_eq!(fault.help.as_deref(), Some("a decimal point is written `.`"));
+        }
         assert_eq!(told("# nothing", 2), " holds no numbers");
     }
 }

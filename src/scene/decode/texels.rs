@@ -106,7 +106,7 @@ impl Unreadable {
 
 /// Refuses images without texels, with too many, and sizes whose `bytes` the file cannot hold.
 pub(super) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), Unreadable> {
-    if let Some(said) = film::too_large(width, height) {
+    if let Some(said) = film::too_large(width, height, film::MOST_TEXELS) {
         return Err(Unreadable::Large(said));
     }
     film::fits(width, height, bytes, file).map_err(Unreadable::Unfit)

@@ -31,10 +31,14 @@ pub(in crate::scene) struct Included {
 }
 
 impl Included {
-    /// A text with those of all files that it includes, each once, in the order in which they are named first.
-    pub(in crate::scene) fn of(path: &Path, text: &str) -> Self {
+    /// A text with those of all files that it includes, each once, in the order in which they are named first. A text
+    /// that is no file has a path all the same, where the names of files begin.
+    pub(in crate::scene) fn of(path: &Path, text: &str, is_file: bool) -> Self {
         let (texts, parts, mistakes) = (Texts::default(), Vec::new(), Vec::new());
         let mut found = Self { texts, parts, mistakes, files: Vec::new(), within: Vec::new() };
+        let file = is_file.then(|| real(path));
+        found.files.extend(file.clone());
+        found.within.extend(file);
         found.add(path, text);
         found
     }
@@ -43,8 +47,6 @@ impl Included {
         let folder = path.parent().unwrap_or(Path::new(""));
         let span = self.texts.add(path, folder, text);
         self.parts.push(span.clone());
-        self.files.push(real(path));
-        self.within.push(real(path));
         // Most texts include nothing, and are read only once. A key may be written with escapes.
         if text.contains(INCLUDE) || text.contains('\\') {
             match parsed(text, span.start) {
@@ -52,7 +54,6 @@ impl Included {
                 Err(mistake) => self.mistakes.push(mistake),
             }
         }
-        self.within.pop();
     }
 
     /// Adds the files of a list of names.
@@ -77,18 +78,22 @@ impl Included {
 
     fn add_named(&mut self, name: &str, folder: &Path) -> Result<(), Fault> {
         let path = folder.join(name);
-        if self.within.contains(&real(&path)) {
+        let file = real(&path);
+        if self.within.contains(&file) {
             let help = Some("what both need stands in a file of its own".into());
             return Err(Fault { message: format!("{name} includes itself by way of this file"), help });
         }
-        if self.files.contains(&real(&path)) {
+        if self.files.contains(&file) {
             return Ok(());
         }
         if self.within.len() >= DEEPEST {
             return Err(Fault { message: format!("more than {DEEPEST} files include one another"), help: None });
         }
         let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, as a scene is")?;
+        self.files.push(file.clone());
+        self.within.push(file);
         self.add(&path, &text);
+        self.within.pop();
         Ok(())
     }
 }

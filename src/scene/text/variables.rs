@@ -52,7 +52,7 @@ impl<'d> Variables<'d> {
         self.mistakes.push(Mistake { span: place.span(), message, help: Some(help) });
     }
 
-    fn define(&mut self, key: &Key<'d>, value: Node<'d>, sections: &[&str]) {
+    fn define(&mut self, key: &Key<'d>, mut value: Node<'d>, sections: &[&str]) {
         let name = word(key);
         self.known.insert(name.to_owned());
         if sections.contains(&name) {
@@ -66,6 +66,7 @@ impl<'d> Variables<'d> {
                 format!("the variable `{name}` is made of another, `{}`", variable(other).unwrap_or_default());
             self.tell(&value, message, "give each variable a value of its own".into());
         } else {
+            self.fill_value(&mut value);
             self.values.insert(name.to_owned(), value);
         }
     }

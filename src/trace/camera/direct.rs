@@ -157,10 +157,10 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
             None => *factor,
         };
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
-        let (light, dispersed) = (*light, side.parted);
-        let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: dispersed };
+        let light = *light;
+        let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: side.parted };
         let met = MetLight::new(world, &arrived, self.excitation);
-        let rgb = met.rgb;
+        let (rgb, dispersed) = (met.rgb, met.dispersed);
         let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
         let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
         let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);

@@ -7,7 +7,7 @@ use super::direct::DirectLighting;
 use super::layer_sample::{LayerSample, Met};
 use super::numbers;
 use super::resampling::Resampling;
-use super::sensor::{Bounce, Observer, Sensor};
+use super::sensor::{Observer, Sensor};
 use super::shining::Shining;
 use super::surface::{First, Leaving, Surface};
 use crate::film::{Layer, Sample};
@@ -108,8 +108,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             layers.keep_audit(audit, &draw);
         }
         if self.sees_shadow_catcher() {
-            self.catch(&path, &draw, sampler);
-            return Sample { rgb: [0.0; 3], depth: None, is_subtracted };
+            let rgb = self.catch(&path, &draw, sampler);
+            return Sample { rgb, depth: None, is_subtracted };
         }
         let rgb = self.sensor.read_out(world, &mut self.walker.stats);
         Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
@@ -127,17 +127,19 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
-    /// alone. Neither is seen in the image.
+    /// alone. Neither is seen in the image, which gets nothing, unless one is not finite.
     #[cold]
-    fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) {
+    fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> [f64; 3] {
         let with = std::mem::take(&mut self.sensor.rgb);
-        let media = Media::default();
+        let (media, before) = (Media::default(), self.walker.stats);
         self.trace(&Path { among: Among::Plate, media, ..*path }, draw, sampler);
+        self.walker.stats.count_once(&before);
         let without = std::mem::take(&mut self.sensor.rgb);
         self.sensor.forget();
         if let Some(layers) = &mut self.sensor.layers {
             layers.catch([with, without]);
         }
+        std::array::from_fn(|i| if (with[i] + without[i]).is_finite() { 0.0 } else { f64::NAN })
     }
 
     /// Hands all light along the path of a camera ray to the sensor, and answers what the ray hit first.
@@ -170,14 +172,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let before = self.sensor.rgb;
         let Some(meeting) = self.walker.meet(path, draw) else {
             self.background(path, draw);
-            self.tell(path, draw, f64::INFINITY, before);
+            self.sensor.tell(world, path, draw, f64::INFINITY, before);
             return;
         };
         let boundary = match self.walker.boundary(path, &meeting) {
             Ok(boundary) => boundary,
             Err(hidden) => {
                 self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
-                self.tell(path, draw, meeting.hit.crossing.t, before);
+                self.sensor.tell(world, path, draw, meeting.hit.crossing.t, before);
                 return self.walker.go_on_past(path, &meeting, &hidden);
             }
         };
@@ -208,14 +210,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let is_first = path.surfaces() == 1 && first.is_none();
         let met = is_first.then(|| self.first_met(path, draw, sampler, &meeting, onward.as_ref(), first));
         self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
-        if path.surfaces() > world.method.max_bounces {
-            self.cut(path, draw, &meeting, onward.as_ref());
-            return;
-        }
         let surface = Surface { meeting: &meeting, boundary, onward: onward.as_ref(), first: met };
+        if path.surfaces() > world.method.max_bounces {
+            return self.cut(path, draw, sampler, &surface);
+        }
         self.scatter(path, draw, sampler, &surface);
         if onward.is_none() {
-            self.tell(path, draw, hit.crossing.t, before);
+            self.sensor.tell(world, path, draw, hit.crossing.t, before);
         }
     }
 
@@ -229,9 +230,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         onward: Option<&Onward<N, P>>,
         first: &mut Option<SurfacePoint>,
     ) -> First {
-        let (is_met, chance) = straight::is_met(self.walker.world, draw, sampler, path, onward);
+        let straight::Met { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, onward);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(chance);
+            layers.choose(weight);
             if is_met {
                 layers.meet_object(meeting.hit.object);
             }
@@ -249,7 +250,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         // Beyond both in part light is polarized by their mean.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
         let Some(whole) = onward.filter(|onward| is_by_chance && !is_mean(&onward.straight)) else { return };
-        let (is_met, chance) = straight::is_met(self.walker.world, draw, sampler, path, Some(&whole));
+        let straight::Met { is_met, chance, .. } = straight::met(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
         let (holes, panes) = if is_met { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
         if !is_met {
@@ -263,7 +264,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
-    fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting, onward: Option<&Onward<N, P>>) {
+    fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
+        let &Surface { meeting, boundary, onward, .. } = surface;
+        if self.sensor.layers.is_some() {
+            let at = Interaction::new(self.walker.world, draw, &path.arriving(), meeting, boundary);
+            self.show(path, &at, surface, sampler);
+        }
         if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
         } else if let Some(audit) = &mut self.walker.audit {
@@ -293,20 +299,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let arrived = Arrived { source: light, draw, lanes: &lanes, parted: path.parted };
         let excitation = self.excitation(path);
         let met = MetLight::new(self.walker.world, &arrived, excitation.as_deref());
-        let (rgb, moved) = (met.rgb, polarization.moved_of_met(&met));
+        let (rgb, dispersed, moved) = (met.rgb, met.dispersed, polarization.moved_of_met(&met));
         let (light, found) = (Some(light), Found::Hit { normal, scattered: path.scatter.is_some() });
-        let Path { bounces, parted: dispersed, first, .. } = *path;
+        let Path { bounces, first, .. } = *path;
         self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
-    fn scatter(
-        &mut self,
-        path: &mut Path<N, P>,
-        draw: &Draw<N>,
-        sampler: &Sampler,
-        &Surface { meeting, boundary, onward, first }: &Surface<N, P>,
-    ) {
+    fn scatter(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
+        let &Surface { meeting, boundary, onward, first } = surface;
         let world = self.walker.world;
         if path.resampled && world.ends_light_paths(meeting.hit.object) {
             path.resampled = false;
@@ -317,11 +318,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return;
         }
         let at = Interaction::new(world, draw, &path.arriving(), meeting, boundary);
-        if let Some(layers) = &mut self.sensor.layers {
-            let straight = onward.map(|onward| &onward.straight);
-            let is_met_first = first == Some(First::Here);
-            layers.meet(&Met { path, meeting, at: &at, straight, is_met_first }, sampler);
-        }
+        self.show(path, &at, surface, sampler);
         let leaving = Leaving { onward, is_awaited: first == Some(First::Beyond), gathers: !ends };
         match self.excite(path, &at, sampler, leaving.is_awaited) {
             0.0 => {}
@@ -330,6 +327,16 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
                 let throughput = path.throughput.scaled(factor);
                 self.scatter_at(&Path { throughput, ..*path }, &at, sampler, leaving);
             }
+        }
+    }
+
+    /// Shows a surface to the layers, if any are asked for.
+    #[inline]
+    fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
+        if let Some(layers) = &mut self.sensor.layers {
+            let straight = surface.onward.map(|onward| &onward.straight);
+            let is_met_first = surface.first == Some(First::Here);
+            layers.meet(&Met { path, meeting: surface.meeting, at, straight, is_met_first }, sampler);
         }
     }
 
@@ -471,17 +478,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         if let Some(observer) = self.sensor.observer {
             observer.reach(at.point.position);
-        }
-    }
-
-    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
-    /// before.
-    #[inline]
-    fn tell(&self, path: &Path<N, P>, draw: &Draw<N>, distance: f64, before: [f64; 3]) {
-        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.sensor.observer, path.scatter) {
-            let light = self.walker.world.amount(std::array::from_fn(|i| self.sensor.rgb[i] - before[i]));
-            let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
-            observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });
         }
     }
 

@@ -7,7 +7,7 @@ use crate::trace::World;
 use crate::trace::contribution::{Contribution, add};
 use crate::trace::photon::Gathered;
 use crate::trace::stats::Stats;
-use crate::trace::walk::{MetLight, Polarization};
+use crate::trace::walk::{MetLight, Path, Polarization, ScatterSample};
 
 /// What a path found in a direction that was drawn where lights were sampled as well.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +103,24 @@ impl<const N: usize> Sensor<'_, N> {
         self.moved += all.moved;
         if let Some(observer) = self.observer {
             observer.receive(all);
+        }
+    }
+
+    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
+    /// before.
+    #[inline]
+    pub fn tell<P: Polarization<N>>(
+        &self,
+        world: &World,
+        path: &Path<N, P>,
+        draw: &Draw<N>,
+        distance: f64,
+        before: [f64; 3],
+    ) {
+        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.observer, path.scatter) {
+            let light = world.amount(std::array::from_fn(|i| self.rgb[i] - before[i]));
+            let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
+            observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });
         }
     }
 

@@ -13,7 +13,8 @@ use crate::trace::stats::Stats;
 /// before.
 const FIRST_PASS: u32 = 16;
 
-/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once.
+/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once: but where photons
+/// are gathered, a pass is as long as its map lasts.
 const MOST_AT_ONCE: u32 = 64;
 
 /// How far an image in the making is, but for the pixels that are ahead in a pass.

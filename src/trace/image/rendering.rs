@@ -158,8 +158,18 @@ impl<'a> Rendering<'a> {
 
     /// The work of the method's samples.
     pub fn planned_work(&self) -> u64 {
+        self.work_of(self.pixels())
+    }
+
+    /// That of all parts of the image by one render.
+    pub fn work_of_all_parts(&self) -> u64 {
+        self.work_of(self.world().scene.film.window().pixels())
+    }
+
+    /// That of so many pixels, and of all photons.
+    fn work_of(&self, pixels: u64) -> u64 {
         let world = self.world();
-        let samples = self.pixels() * u64::from(world.method.samples);
+        let samples = pixels * u64::from(world.method.samples);
         let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
         let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
         let PhotonCost { shown, kept } = self.photon_cost;

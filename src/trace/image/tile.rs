@@ -50,14 +50,16 @@ pub struct Shown {
 }
 
 /// Bytes of memory that the film takes by some method, without layers: the sums of each pixel, those of its replicates
-/// where a stop rule compares them, and its finished values.
+/// where a stop rule compares them, what photons show in it, and its finished values.
 pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let is_signed = scene.film.filter.is_signed();
+    let (shows, catches) = (method.light_pass.is_some(), scene.has_shadow_catchers());
     let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
-    let replicates =
-        method.stop.as_ref().map_or(0, |_| Replicates::bytes_of_pixel(is_signed, gathers, scene.has_shadow_catchers()));
+    let of_replicates = |_: &_| Replicates::bytes_of_pixel(is_signed, gathers, catches, shows);
+    let replicates = method.stop.as_ref().map_or(0, of_replicates);
     let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
-    scene.film.window().pixels() * (sums + replicates + size_of::<Pixel>()) as u64
+    let shown = if shows { size_of::<[f64; 3]>() } else { 0 };
+    scene.film.window().pixels() * (sums + replicates + shown + size_of::<Pixel>()) as u64
 }
 
 impl Tile {

@@ -234,7 +234,7 @@ fn scatter<const N: usize, P: Polarization<N>>(
         walker.branches.extend(share.map(wide));
         walker.polarize(path, at);
     }
-    walker.follow(&mut Departure::new(walker.world, path, at), sampler);
+    walker.follow(&mut Departure::new(walker.world, path, at).of_light_path(), sampler);
 }
 
 /// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.

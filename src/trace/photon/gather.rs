@@ -134,17 +134,28 @@ pub fn gather<const N: usize, P: Polarization<N>>(
 ) -> Gathered<N> {
     let Interaction { point, flat, material, arrival, parts, .. } = at;
     let (flat, parts) = (*flat, *parts);
+    let found_here = contribution::Found::Gathered;
+    // Together they have no light, no lobe and no way, but came over two surfaces at least.
     let bounces = path.bounces + 2;
-    let brought = |light: Option<LightId>, rgb: [f64; 3], dispersed: bool| Contribution {
-        light,
-        found: contribution::Found::Gathered,
+    let of_all = |rgb: [f64; 3], moved: f64| Contribution {
+        light: None,
+        found: found_here,
         rgb,
-        moved: 0.0,
+        moved,
         first: path.first,
         bounces,
-        dispersed,
+        dispersed: false,
     };
-    let nothing = Gathered { all: brought(None, [0.0; 3], false), parts: apart.then(Vec::new) };
+    let nothing = Gathered { all: of_all([0.0; 3], 0.0), parts: apart.then(Vec::new) };
+    let brought = |light: LightId, rgb: [f64; 3], parted: bool, back: DVec3, surfaces: u32| Contribution {
+        light: Some(light),
+        found: found_here,
+        rgb,
+        moved: 0.0,
+        first: at.first_lobe(world, path.lobe(), back, back.dot(flat) < 0.0),
+        bounces: path.bounces + surfaces,
+        dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
+    };
     let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return nothing };
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
     if whether >= map.chance {
@@ -172,7 +183,12 @@ pub fn gather<const N: usize, P: Polarization<N>>(
             None => Seen::new(world, &arrived, joined.stokes()),
             Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
         };
-        let part = Part { contribution: brought(Some(carries.light), rgb, parted), stokes, spectrum, factor: density };
+        let part = Part {
+            contribution: brought(carries.light, rgb, parted, photon.back, photon.surfaces),
+            stokes,
+            spectrum,
+            factor: density,
+        };
         let change = || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes);
         found.add(world, position, part, change);
     });
@@ -204,7 +220,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
                 dye.seen_of(brightness, |seen| Seen::new(world, seen, dye.polarization.stokes()))
             }
         };
-        let contribution = brought(Some(light), rgb, true);
+        let contribution = brought(light, rgb, true, photon.back, photon.surfaces);
         let part = Part { contribution, stokes, spectrum, factor: density * seen };
         let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes);
         found.add(world, position, part, change);
@@ -212,7 +228,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);
     let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
     found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
-    Gathered { all: Contribution { moved, ..brought(None, rgb, false) }, parts: found.parts }
+    Gathered { all: of_all(rgb, moved), parts: found.parts }
 }
 
 impl<const N: usize> Found<N> {

@@ -13,7 +13,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::batch::{batches, send};
 use super::follow::{Landing, Start, Surfaces, follow_photon};
@@ -47,6 +47,8 @@ pub struct LightVertex<const N: usize> {
     pub diffuse: u32,
     /// Whether a photon has left it.
     pub is_of_photon: bool,
+    /// Whether lanes have parted on the way there.
+    pub parted: bool,
 }
 
 /// The vertices of some light paths, dealt into sets of candidates. Each set has vertices from all over the scene.
@@ -102,6 +104,9 @@ const CELLS: f64 = 25.0;
 /// The set of a pilot, and its light paths.
 const PILOT: u32 = u32::MAX;
 const OF_A_PILOT: u64 = 1024;
+/// The set of those that tell D, and its light paths.
+const SCALE: u32 = u32::MAX - 1;
+const OF_SCALE: u64 = 256;
 /// Sets these random numbers apart from the others, and those of photons from both.
 const SEED: u64 = 0x6c76_7274;
 const PHOTON_SEED: u64 = 0x6169_6d65;
@@ -142,6 +147,8 @@ pub struct LightPaths<'a> {
     finds_all: bool,
     media: Vec<Option<Media>>,
     places: Vec<Place>,
+    /// The middle of vertices, and D.
+    scale: OnceLock<(DVec3, f64)>,
 }
 
 /// What became of some light paths.
@@ -163,7 +170,15 @@ impl<'a> LightPaths<'a> {
         let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
         let finds_all = starts_anywhere && ends_nowhere;
         let (media, places) = (media_of_lights(&world.scene), places(world));
-        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, finds_all, media, places })
+        (by_flux.total() > 0.0).then_some(Self {
+            world,
+            seed,
+            by_flux,
+            finds_all,
+            media,
+            places,
+            scale: OnceLock::new(),
+        })
     }
 
     /// Whether a layer of lights is asked for whose paths would be so few that it would be too bright or too dark as a
@@ -211,7 +226,20 @@ impl<'a> LightPaths<'a> {
                 vertices.extend(sent.kept);
             }
         }
-        self.dealt(vertices, stats)
+        let (center, near) = *self.scale.get_or_init(|| self.scale::<N, P>());
+        self.dealt(vertices, stats, center, near)
+    }
+
+    /// The middle of vertices, and D, by light paths of their own: weights by a D that depends on the vertices that
+    /// they are of would be biased.
+    fn scale<const N: usize, P: Polarization<N>>(&self) -> (DVec3, f64) {
+        let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
+        // Medians: some vertices may lie far outside of all that is seen.
+        let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
+        let center = DVec3::new(middle(0), middle(1), middle(2));
+        let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
+        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
+        (center, near)
     }
 
     /// The vertices of some light paths of a set.
@@ -255,12 +283,13 @@ impl<'a> LightPaths<'a> {
     }
 
     /// Deals vertices into sets of candidates.
-    fn dealt<const N: usize>(&self, mut vertices: Vec<LightVertex<N>>, stats: Stats) -> LightVertices<N> {
-        // Medians: some vertices may lie far outside of all that is seen.
-        let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
-        let center = DVec3::new(middle(0), middle(1), middle(2));
-        let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
-        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
+    fn dealt<const N: usize>(
+        &self,
+        mut vertices: Vec<LightVertex<N>>,
+        stats: Stats,
+        center: DVec3,
+        near: f64,
+    ) -> LightVertices<N> {
         vertices.sort_by_cached_key(|vertex| morton((vertex.position - center) * (CELLS / near)));
         let count = vertices.len().div_ceil(CANDIDATES);
         let mut candidates = vec![Candidates::EMPTY; count];
@@ -414,8 +443,9 @@ fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon:
     // From the camera, a path leaves one diffuse surface more to come over smooth ones to the light.
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
     let SurfacePoint { position, error, normal, .. } = *at.point;
-    let (error, flat, light, surfaces) = (normal.abs().dot(error), at.flat, *light, path.surfaces());
-    usable.then_some(LightVertex { position, error, flat, leaving, light, surfaces, diffuse, is_of_photon })
+    let (error, flat, light) = (normal.abs().dot(error), at.flat, *light);
+    let (surfaces, parted) = (path.surfaces(), path.parted);
+    usable.then_some(LightVertex { position, error, flat, leaving, light, surfaces, diffuse, is_of_photon, parted })
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
 use crate::trace::image::{PhotonCost, send_shown};
-use crate::trace::parallel::in_parallel;
+use crate::trace::parallel::{alone, in_parallel};
 use crate::trace::pass::Pass;
 use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept};
 use crate::trace::photon_targets::PhotonTargets;
@@ -83,8 +83,9 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
             tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         }
     }
+    let light_paths = LightPaths::new(world, world.method.seed);
     let before_vertices = Instant::now();
-    let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.shared::<N, P>(0..SHARED));
+    let vertices = light_paths.map(|light_paths| alone(|| light_paths.shared::<N, P>(0..SHARED)));
     let light_paths =
         vertices.as_ref().map_or(Duration::ZERO, |_| before_vertices.elapsed().div_f64(f64::from(SHARED)));
     let (few, photons) = few_photons::<N, P>(world);

@@ -29,6 +29,8 @@ pub struct MetLight<'a, const N: usize, P> {
     pub excitation: Option<&'a Excitation<N, P>>,
     /// What the sensor gets of it.
     pub rgb: [f64; 3],
+    /// Whether lanes have parted anywhere on its way.
+    pub dispersed: bool,
 }
 
 impl<'a, const N: usize, P> MetLight<'a, N, P> {
@@ -38,7 +40,8 @@ impl<'a, const N: usize, P> MetLight<'a, N, P> {
             None => arrived.rgb(&world.responses),
             Some(excitation) => excitation.seen(world, arrived, |seen| seen.rgb(&world.responses)),
         };
-        Self { world, arrived, excitation, rgb }
+        let dispersed = arrived.parted || excitation.is_some_and(|excitation| excitation.parted);
+        Self { world, arrived, excitation, rgb, dispersed }
     }
 }
 

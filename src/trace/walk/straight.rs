@@ -44,24 +44,39 @@ fn through_surface<const N: usize, P: Polarization<N>>(
     (!(onward.straight.share() * present).is_zero()).then_some(onward)
 }
 
-/// Whether a ray from the camera counts as having met a surface, which may have holes, and how likely that was: a pane
-/// is met, a hole is not.
-pub fn is_met<const N: usize, P: Polarization<N>>(
+/// What a ray from the camera makes of a surface, which may have holes: a pane is met, a hole is not.
+pub struct Met {
+    pub is_met: bool,
+    /// How likely that was.
+    pub chance: f64,
+    /// The part of the path's weight that is of a path to what is met. Beyond a surface, one that goes through its
+    /// holes goes through its panes as well.
+    pub weight: f64,
+}
+
+/// Whether a ray from the camera counts as having met a surface.
+pub fn met<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     sampler: &Sampler,
     path: &Path<N, P>,
     onward: Option<&Onward<N, P>>,
-) -> (bool, f64) {
+) -> Met {
     let straight = onward.map(|onward| &onward.straight);
-    let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else { return (true, 1.0) };
+    let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else {
+        return Met { is_met: true, chance: 1.0, weight: 1.0 };
+    };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
         Transport::Random { .. } => sampler.four_plain(path.key, COVER)[0],
     };
     let shares = draw.shares(path.parted);
-    let holes = path.throughput.through(straight.holes).weight(shares) / path.throughput.weight(shares);
-    if holes <= u { (true, 1.0 - holes) } else { (false, holes) }
+    let part = |of: Lanes<N>| path.throughput.through(of).weight(shares) / path.throughput.weight(shares);
+    let holes = part(straight.holes);
+    match holes <= u {
+        true => Met { is_met: true, chance: 1.0 - holes, weight: 1.0 - holes },
+        false => Met { is_met: false, chance: holes, weight: part(straight.share()) },
+    }
 }
 
 /// The straight way of light to a place, which something may occlude.

@@ -251,12 +251,14 @@ pub struct Departure<'a, const N: usize, P = Polarized> {
     onward: Option<&'a Onward<N, P>>,
     /// Whether that is followed for certain.
     is_awaited: bool,
+    /// Whether all branches count as leaving a diffuse surface, and not the wide ones alone.
+    all_count: bool,
     branches: usize,
 }
 
 impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
-        Self { world, path, at, scatter: None, onward: None, is_awaited: false, branches: 0 }
+        Self { world, path, at, scatter: None, onward: None, is_awaited: false, all_count: false, branches: 0 }
     }
 
     /// With lights sampled here, and what goes straight on.
@@ -267,6 +269,12 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     /// With what goes straight on followed for certain, for it is where the camera ray meets something.
     pub fn awaiting(self, is_awaited: bool) -> Self {
         Self { is_awaited, ..self }
+    }
+
+    /// Where a path from a light leaves the first surface, by whatever lobe: from the camera, it has to leave the next
+    /// one to get there.
+    pub fn of_light_path(self) -> Self {
+        Self { all_count: self.path.surfaces() == 1 && self.path.hidden == 0, ..self }
     }
 
     /// Whether a branch is what goes straight on.
@@ -323,7 +331,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         (next.vertices, next.hidden) = (path.vertices, path.hidden);
         next.length = path.length;
         next.kind = path.kind.then(world.has_map(), wide, aimed);
-        next.diffuse_left = path.diffuse_left - u32::from(wide && at.lobes.is_diffuse());
+        next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_count) && at.lobes.is_diffuse());
         next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses)));
         next.polarization.become_along(&path.polarization, at, branch, way);
         next.bounces = path.bounces + 1;
