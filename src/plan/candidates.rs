@@ -3,7 +3,7 @@
 use super::dyes;
 use super::seen::Seen;
 use super::survey::{Survey, Tint};
-use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity, visible};
+use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity};
 
 /// One model with the largest error of a color that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,19 +59,10 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
 
 /// The film colors of all paths, by sums over 1 nm.
 fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis: &Basis) -> Vec<[f64; 3]> {
-    let wavelengths: Vec<f64> = visible::wavelengths().chain(light.lines().iter().map(|line| line[0])).collect();
-    let of_line = |&[nm, power]: &[f64; 2]| light.film(nm).map(|x| x * power);
-    let columns: Vec<[f64; 3]> = light.columns().chain(light.lines().iter().map(of_line)).collect();
-    let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&wavelengths, basis)).collect::<Vec<_>>();
-    let sum = |path: &Vec<f64>| {
-        let mut color = [0.0; 3];
-        for (value, column) in path.iter().zip(&columns) {
-            (0..3).for_each(|c| color[c] += value * column[c]);
-        }
-        color
-    };
+    let colors = light.film_colors();
+    let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&colors.wavelengths_nm, basis)).collect::<Vec<_>>();
     let films = smooth.iter().filter(|tint| tint.has_fringes()).count();
-    paths(&read(scattering), &read(smooth), films).iter().map(sum).collect()
+    paths(&read(scattering), &read(smooth), films).iter().map(|path| colors.color(path)).collect()
 }
 
 /// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way

@@ -63,14 +63,12 @@ impl Lit<'_> {
     fn missed(&self, ways: &Ways, basis: &Basis) -> f64 {
         let Self { dye, reflectance, curve, light } = *self;
         let shines = dye.shines(basis.color_space());
-        let wavelengths: Vec<f64> = visible::wavelengths().chain(light.lines().iter().map(|line| line[0])).collect();
-        let of_line = |&[nm, power]: &[f64; 2]| light.film(nm).map(|x| x * power);
-        let columns: Vec<[f64; 3]> = light.columns().chain(light.lines().iter().map(of_line)).collect();
-        let glow: Vec<[f64; 3]> = shines.columns().collect();
+        let (colors, glow) = (light.film_colors(), shines.film_colors());
+        let wavelengths = &colors.wavelengths_nm;
         let excited: Vec<f64> = dye.excited_by(light).parts().collect();
-        let exact = ways.at(&wavelengths, basis);
+        let exact = ways.at(wavelengths, basis);
         let paper = Tint::Diffuse(Cow::Borrowed(reflectance));
-        let (reflected, reflected_lanes) = (paper.at(&wavelengths, basis), lanes(&paper.on(basis)));
+        let (reflected, reflected_lanes) = (paper.at(wavelengths, basis), lanes(&paper.on(basis)));
 
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let in_lanes = ways.on(basis);
@@ -87,11 +85,11 @@ impl Lit<'_> {
             .collect();
         let mut worst: f64 = 0.0;
         for (seen, seen_lanes) in exact.iter().zip(&in_lanes) {
-            let seen_glow = sum(seen, &glow);
+            let seen_glow = glow.color(seen);
             let found_glow = response.sensor(&draw, *seen_lanes, false);
             for ((lit, lit_lanes), [brightness, found]) in exact.iter().zip(&in_lanes).zip(&brightness) {
                 let product: Vec<f64> = (0..wavelengths.len()).map(|i| reflected[i] * seen[i] * lit[i]).collect();
-                let elastic = sum(&product, &columns);
+                let elastic = colors.color(&product);
                 let found_elastic = response_to_light.sensor(&draw, of_paper * *seen_lanes * *lit_lanes, false);
                 let color: [f64; 3] = std::array::from_fn(|c| elastic[c] + brightness * seen_glow[c]);
                 let found: [f64; 3] = std::array::from_fn(|c| found_elastic[c] + found * found_glow[c]);
@@ -109,15 +107,6 @@ impl Lit<'_> {
 /// What is left of light, a number for each lane.
 fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
     Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
-}
-
-/// The color of what is left of light.
-fn sum(left: &[f64], columns: &[[f64; 3]]) -> [f64; 3] {
-    let mut color = [0.0; 3];
-    for (left, column) in left.iter().zip(columns) {
-        (0..3).for_each(|c| color[c] += left * column[c]);
-    }
-    color
 }
 
 /// What is said of a material's dyes: where they absorb light, and whether lanes reach there.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::survey::{SEED, Survey, Tint, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
-use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity, visible};
+use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity};
 use crate::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
 
 /// Products of tints by number, with the weight of each.
@@ -177,20 +177,12 @@ impl<'a> Keeping<'a> {
             if colors.is_empty() {
                 continue;
             }
-            let lines = emission.lines().iter();
-            let wavelengths: Vec<f64> = visible::wavelengths().chain(lines.clone().map(|line| line[0])).collect();
-            let of_line = |&[nm, power]: &[f64; 2]| emission.film(nm).map(|x| x * power);
-            let columns: Vec<[f64; 3]> = emission.columns().chain(lines.map(of_line)).collect();
+            let film = emission.film_colors();
+            let wavelengths = &film.wavelengths_nm;
             let tints: Vec<Vec<f64>> =
-                seen.tints.iter().map(|tint| tint.read(&wavelengths, &survey.upsampler)).collect();
-            let color = |left: Vec<f64>| {
-                let mut color = [0.0; 3];
-                for (left, column) in left.iter().zip(&columns) {
-                    (0..3).for_each(|c| color[c] += left * column[c]);
-                }
-                color
-            };
-            let products: Vec<[f64; 3]> = seen.multiply(&tints, wavelengths.len()).into_iter().map(color).collect();
+                seen.tints.iter().map(|tint| tint.read(wavelengths, &survey.upsampler)).collect();
+            let products = seen.multiply(&tints, wavelengths.len());
+            let products: Vec<[f64; 3]> = products.iter().map(|left| film.color(left)).collect();
             let strongest = |color: &[f64; 3]| color.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let mut brightest: BTreeMap<u32, f64> = BTreeMap::new();
             let first = seen.colors.len();

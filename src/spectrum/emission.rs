@@ -17,6 +17,24 @@ pub struct Emission {
     film_of_xyz: Matrix,
 }
 
+/// The film colors of a light, wavelength by wavelength.
+#[derive(Clone, Debug)]
+pub struct FilmColors {
+    /// The wavelengths in nm.
+    pub wavelengths_nm: Vec<f64>,
+    columns: Vec<[f64; 3]>,
+}
+
+impl FilmColors {
+    /// The film color of what is left of the light at each wavelength.
+    pub fn color(&self, left: &[f64]) -> [f64; 3] {
+        left.iter().zip(&self.columns).fold([0.0; 3], |mut color, (left, column)| {
+            (0..3).for_each(|c| color[c] += left * column[c]);
+            color
+        })
+    }
+}
+
 impl Emission {
     /// The emission of a curve on a film.
     ///
@@ -132,6 +150,15 @@ impl Emission {
             .iter()
             .zip(visible::observer())
             .map(|(power, cmf)| apply(&self.film_of_xyz, cmf.map(|x| power * x)))
+    }
+
+    /// Its film colors: at the wavelengths of the visible grid, per nm, and at its lines.
+    pub fn film_colors(&self) -> FilmColors {
+        let of_line = |&[nm, power]: &[f64; 2]| self.film(nm).map(|x| x * power);
+        FilmColors {
+            wavelengths_nm: visible::wavelengths().chain(self.lines.iter().map(|line| line[0])).collect(),
+            columns: self.columns().chain(self.lines.iter().map(of_line)).collect(),
+        }
     }
 
     /// Whether two lights differ by a factor at most, to a part in a million.

@@ -40,7 +40,7 @@ pub use curve::{Curve, CurveKind, Named, cauchy_through, sellmeier_squared};
 pub use distinct::Distinct;
 pub use draw::Draw;
 pub use dye::{Dye, Excess, Excited};
-pub use emission::Emission;
+pub use emission::{Emission, FilmColors};
 pub use image::Image;
 pub use lanes::{LaneSet, Lanes};
 pub use matching::{Matching, Wavelength};

@@ -17,11 +17,6 @@ pub struct Response {
 }
 
 impl Response {
-    /// The response in which lane i is film channel i.
-    pub fn identity() -> Self {
-        Self::new(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], Vec::new())
-    }
-
     /// A response with the film color of each fixed lane, and of each entry of the fine grid.
     pub fn new(columns: &[[f64; 3]], fine: Vec<[f64; 3]>) -> Self {
         let column = |lane: usize| columns.get(lane).map_or([0.0; 4], |&[r, g, b]| [r, g, b, 0.0]);

@@ -167,6 +167,7 @@ fn x3_no_ray_hits_the_plane_quad_or_disc_that_it_leaves() {
         departures(setting, anywhere, disc, &mut check);
         let roundings = highest / (UNIT_ROUNDOFF * (size + offset * size));
         println!("X3: flat shapes, {setting:?}: moved by {roundings:.1} u (s + C)");
+        assert!(roundings <= 32.0, "{setting:?}: {roundings} u (s + C)");
     }
 }
 

@@ -15,9 +15,7 @@ const ALL_SURFACES: usize = 16_384;
 /// [`ROUTES_NM`](super::route::ROUTES_NM).
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let film = world.scene.film.whole();
-    // A stride that is coprime to the number of places visits them all, far ones first.
-    let places = (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE));
-    let all_over = places.map(|place| film.middle_of_cell(SIDE, place));
+    let all_over = film.middles_of_cells(SIDE);
     let objects = pixels_of_objects(world, |material| material.has_single_directions());
     let of_pixel = |(number, [x, y]): (u32, [i32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));

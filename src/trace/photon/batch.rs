@@ -16,7 +16,7 @@ const RAY: u32 = 0;
 
 /// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took
 /// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
-const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
+pub const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// A part of a target's photons.
 #[derive(Clone, Copy)]

@@ -16,8 +16,8 @@ use crate::trace::first_lobe::FirstLobe;
 use crate::trace::media::Media;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{
-    Departure, Interaction, Onward, Passage, Past, Path, PathKind, Polarization, Polarized, SeenPhoton, Walker, parts,
-    shading,
+    DYE, Departure, Interaction, Onward, Passage, Past, Path, PathKind, Polarization, Polarized, SeenPhoton, Walker,
+    parts, shading,
 };
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -493,8 +493,6 @@ fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
-/// Those of the light of dyes.
-const DYE: usize = 160;
 /// Use of the random numbers where a photon leaves a surface, and where it passes one or not.
 const SCATTER: u32 = 4;
 const STRAIGHT: u32 = 9;

@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use super::batch::{batches, send};
+use super::batch::{PHOTONS, batches, send};
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use super::usefulness::{Place, places, usefulness};
 use crate::film::Layer;
@@ -113,8 +113,6 @@ const PHOTON_SEED: u64 = 0x6169_6d65;
 /// Uses of a light path's random numbers: where it starts, and of which light.
 const START: u32 = 0;
 const LIGHT: u32 = 1;
-/// Light paths are followed as photons are.
-const LIGHT_PATHS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
 ///
@@ -260,7 +258,7 @@ impl<'a> LightPaths<'a> {
     /// Follows some light paths of a set.
     fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
         let world = self.world;
-        let mut walker = Walker::<N, P>::new(world, LIGHT_PATHS);
+        let mut walker = Walker::<N, P>::new(world, PHOTONS);
         let draw = world.method.basis.draw(0.0);
         let over = if self.finds_all || !world.has_map() { Surfaces::All } else { Surfaces::AllButPhotons };
         let mut vertices = Vec::new();

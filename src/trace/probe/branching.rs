@@ -31,16 +31,13 @@ pub fn branching(world: &World, most: f64) -> Branching {
 fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     let mut tracer = PathTracer::<N>::new(world);
     let film = world.scene.film.whole();
-    // A stride that is coprime to the number of places visits them all, far ones first.
-    let places = SIDE * SIDE;
-    let all_over = (0..places).map(|i| (i * 101) % places);
-    let all_over: Vec<[i32; 2]> = all_over.map(|place| film.middle_of_cell(SIDE, place)).collect();
+    let all_over: Vec<[i32; 2]> = film.middles_of_cells(SIDE).collect();
     let mut ask = |[x, y]: [i32; 2]| {
         let before = tracer.walker.stats.rays;
         tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         (tracer.walker.stats.rays - before, tracer.walker.stats.by_chance > 0)
     };
-    let enough = most * f64::from(places);
+    let enough = most * f64::from(SIDE * SIDE);
     let mut met = 0;
     for &pixel in &all_over {
         let (more, by_chance) = ask(pixel);
@@ -51,7 +48,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     }
     match pixels_of_objects(world, Material::lets_through).into_iter().find(|&pixel| ask(pixel).1) {
         Some(pixel) => Branching::Beyond(pixel),
-        None => Branching::Affordable(met as f64 / f64::from(places)),
+        None => Branching::Affordable(met as f64 / f64::from(SIDE * SIDE)),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::trace::arrived::Arrived;
 use crate::trace::dyes::Dyes;
 
 /// The branch of the random numbers of dyes, beyond those that a path may take.
-const DYE: usize = 160;
+pub const DYE: usize = 160;
 /// Use of those that choose one, and what lanes stand for.
 const CHOICE: u32 = 1;
 

@@ -16,7 +16,7 @@ mod walker;
 
 pub use audit::Audit;
 pub use excitation::Excitation;
-pub use exciting::Exciting;
+pub use exciting::{DYE, Exciting};
 pub use interaction::{Interaction, Meeting, parts};
 pub use path::{Among, Path, PathKind, ScatterSample};
 pub use polarization::{MetLight, Onward, Polarization, SeenPhoton};
