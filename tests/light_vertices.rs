@@ -343,7 +343,8 @@ fn light_vertices_know_what_is_dispersed() {
         &["cube = { center = [0.3, 2.2, -0.4], size = [1.6, 0.4, 1.6] }"],
     );
     let text = room(WHITE, "model = \"rgb\"", &[lamp(), glass]);
-    let text = text.replace("height = 12\n", "height = 12\nlayers = [\"dispersed\"]\n");
+    let text =
+        text.replace("height = 12\n", "height = 12\nlayers = [\"dispersed\"]\n").replace("samples = 8", "samples = 32");
     let share = |with: Option<&dyn Fn(&World) -> World>| {
         let films = films(&text, &|_| {}, with, SEEDS);
         moments(films.iter().map(|film| {
