@@ -138,7 +138,7 @@ fn a_dye_under_an_image_is_refused_where_a_texel_leaves_no_room_for_it() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/messages");
         abbe::Scene::parse(&text, folder).err().map(|error| error.to_string())
     };
-    // The lightest dots reflect 0.66 of violet light.
-    assert_eq!(refused(0.3), None);
+    // The lightest dots reflect 0.7 of ultraviolet light.
+    assert_eq!(refused(0.25), None);
     assert!(refused(0.5).is_some_and(|told| told.contains("reflectance and absorption are")));
 }

@@ -7,7 +7,7 @@ use abbe::math::{Bounds, DVec3};
 use abbe::plan::plan;
 use abbe::trace::{BrightPlace, BrightPlaces, Method, bright_places, prepare, prepare_unguided, render};
 
-use crate::support::scenes::{Mean, SPLITTING, body, environment, method, moments, scene, view};
+use crate::support::scenes::{Mean, SPLITTING, body, environment, method, moments, scene, standard_errors, view};
 
 /// A closed box, 4 x 3 x 5, with holes in the wall at x = -2: each from z to z, all from y = 1 to 2.2.
 fn walls(holes: &[[f64; 2]]) -> Vec<String> {
@@ -167,6 +167,34 @@ fn aimed_bounces_show_the_same_rooms_as_others() {
         let found = learned(text).unwrap_or_else(|| panic!("{name}: nothing is bright"));
         assert!(!found.places.is_empty() && found.places.len() <= 6, "{found:?}");
         assert_same(&films(text, Some(&found), 8), &films(text, None, 8), cases.len(), name);
+    }
+}
+
+/// What limits of bounces leave out is told by its weight, however bounces were aimed.
+#[test]
+fn aimed_bounces_leave_out_as_much_as_others() {
+    let sky = environment(1.0);
+    for (limit, walls) in [
+        ("diffuse_bounces = 1", WHITE),
+        ("diffuse_bounces = 3", WHITE),
+        ("max_bounces = 2", "plastic = { reflectance = 0.7, roughness = 0.4 }"),
+    ] {
+        let text = room(&[[-2.0, -0.8], [0.2, 1.4]], walls, 64, &[SUN, &sky].concat());
+        let text = text.replace("[render]\n", &format!("[render]\n{limit}\n"));
+        let (scene, found) = (scene(&text), learned(&text));
+        assert!(found.is_some(), "{limit}: something is bright");
+        let of = |bright: Option<BrightPlaces>| {
+            let asked = Method { bright, ..method(&scene, SPLITTING) };
+            let of_seed = |seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).1.stopped;
+            let (mean, variance) = moments((0..8).map(of_seed));
+            (mean, variance / 8.0)
+        };
+        let ((aimed, of_aimed), (plain, of_plain)) = (of(found), of(None));
+        let error = (of_aimed + of_plain).sqrt();
+        println!("{limit}: {aimed:.4} of the weight is left out, {plain:.4} +- {error:.1e} where nothing is aimed");
+        assert!(plain > 0.05 && error < 0.02 * plain, "{limit}: {plain} +- {error}");
+        // Means of 8 films have the tails of Student's t.
+        assert!((aimed - plain).abs() < 1.6 * standard_errors(3) * error, "{limit}: {aimed} for {plain} +- {error}");
     }
 }
 

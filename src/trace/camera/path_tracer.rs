@@ -165,7 +165,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let excitation = self.excitation(path);
         let draw = excitation.as_ref().map_or(draw, |excitation| &excitation.draw);
         if path.vertices >= self.walker.transport.last_vertex() {
-            self.walker.stats.stopped += path.weight(draw);
+            self.walker.stats.stopped += path.share(draw);
             return;
         }
         self.sensor.is_deaf = path.unlit;
@@ -271,7 +271,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.show(path, &at, surface, sampler);
         }
         if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
-            self.walker.stats.stopped += path.weight(draw) / draw.siblings(path.parted);
+            self.walker.stats.stopped += path.share(draw);
         } else if let Some(audit) = &mut self.walker.audit {
             audit.end_beside(path, onward, draw);
         }

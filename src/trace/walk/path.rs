@@ -16,8 +16,11 @@ pub struct Path<const N: usize, P = Polarized> {
     /// The surface that it met last, which its ray leaves.
     pub left: Option<Primitive>,
     pub throughput: Throughput<N>,
-    /// The factor of radiance between the medium at the path's end and the camera's, which is no measure of importance.
+    /// The factor of radiance between the medium at the path's end and the camera's, times what densities of
+    /// [aimed](Self::aimed) bounces change: neither is a measure of importance.
     pub eta_scale: f64,
+    /// The factor by which the densities of bounces that were aimed at bright places change the throughput.
+    pub aimed: f32,
     /// The bodies the ray is inside of.
     pub media: Media,
     /// Whether lanes have parted on the way, after which other lanes count.
@@ -175,6 +178,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             left: None,
             throughput,
             eta_scale: 1.0,
+            aimed: 1.0,
             media,
             parted: false,
             key: BranchKey::CAMERA,
@@ -225,9 +229,14 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Arriving { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
     }
 
-    /// How much the path can still matter: its mean throughput, without the factor of radiance between media.
+    /// How much the path can still matter: its mean throughput, without what is no measure of importance.
     pub fn weight(&self, draw: &Draw<N>) -> f64 {
         self.throughput.weight(draw.shares(self.parted)) / self.eta_scale
+    }
+
+    /// The part of a camera sample's weight that the path has, as one of its siblings.
+    pub fn share(&self, draw: &Draw<N>) -> f64 {
+        self.weight(draw) * f64::from(self.aimed) / draw.siblings(self.parted)
     }
 
     /// Follows the ray along a distance, on which the medium around it absorbs.

@@ -134,8 +134,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Leaves the branches alone that smooth surfaces have: diffuse surfaces may send light on no more.
     pub fn keep_single(&mut self, departure: &Departure<N, P>) {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
-        let left_out = wide.map(|branch| departure.weight(branch)).sum::<f64>();
-        self.stats.stopped += left_out / departure.siblings();
+        let left_out = |branch: &Branch<N>| departure.weight(branch) * f64::from(departure.aimed(branch));
+        self.stats.stopped += wide.map(left_out).sum::<f64>() / departure.siblings();
         self.ways.keep(|number| self.branches[number].pdf.is_none());
         self.branches.retain(|branch| branch.pdf.is_none());
     }
@@ -295,6 +295,12 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
+    /// The factor by which densities of aimed bounces change the throughput along a branch: of those that cross no
+    /// surface, nothing else is in `eta_scale`.
+    fn aimed(&self, branch: &Branch<N>) -> f32 {
+        if branch.crosses { self.path.aimed } else { self.path.aimed * branch.eta_scale as f32 }
+    }
+
     /// Makes the path along a branch pending, followed with probability 1 / `factor`. `way` is what becomes of its
     /// polarization, where that is known already.
     ///
@@ -324,7 +330,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.ray = at.point.leave(branch.wi);
         next.left = path.left;
         next.throughput = path.throughput.through(branch.share).scaled(factor);
-        next.eta_scale = path.eta_scale * branch.eta_scale;
+        (next.eta_scale, next.aimed) = (path.eta_scale * branch.eta_scale, self.aimed(branch));
         next.media = if crosses { path.media.beyond(&at.boundary) } else { path.media };
         next.parted = path.parted || (at.parts && crosses);
         next.key = path.key.child(number);
