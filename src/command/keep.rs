@@ -347,9 +347,12 @@ fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
     let mut first = None;
     let stop = move || {
         let has_begun = HAS_BEGUN.load(Ordering::Relaxed);
-        if stops_at_once || !has_begun {
+        let leave_nothing = || {
             progress::clear();
             remove_unfinished();
+        };
+        if stops_at_once || !has_begun {
+            leave_nothing();
             say_last(
                 match (has_begun, HAS_WRITTEN.load(Ordering::Relaxed)) {
                     (false, _) => NOTHING_DONE,
@@ -361,8 +364,7 @@ fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
         }
         let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
         if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {
-            progress::clear();
-            remove_unfinished();
+            leave_nothing();
             std::process::exit(STOPPED_CODE.into());
         }
     };

@@ -14,14 +14,12 @@ use exr::prelude::{
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
-use super::guard::{claims_fit, fits, guarded, too_large};
+use super::guard::{MOST_PIXELS, claims_fit, fits, guarded, too_large};
 use crate::error::{Error, Result, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
 /// Most bytes of a file: 4 GiB.
 const MOST_BYTES: u64 = 1 << 32;
-/// Most pixels: as many as the largest film has.
-const MOST_PIXELS: usize = 1 << 28;
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// An OpenEXR file, with all its parts.

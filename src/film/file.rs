@@ -125,7 +125,7 @@ fn is_pipe(_: &Path) -> bool {
 /// A file of a short name of its own, which is removed unless it becomes another.
 struct Temporary(PathBuf);
 
-/// Those that are being written.
+/// Temporary files that are being written.
 static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn being_written() -> MutexGuard<'static, Vec<PathBuf>> {

@@ -37,6 +37,9 @@ pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> R
 /// Most texels of an image: 16384 x 8192.
 pub(crate) const MOST_TEXELS: usize = 1 << 27;
 
+/// Most pixels of a film, and of an image of one that is read.
+pub(crate) const MOST_PIXELS: usize = 1 << 28;
+
 /// What is said of an image that has more pixels than are read.
 pub(crate) fn too_large(width: usize, height: usize, most: usize) -> Option<String> {
     let said = || format!("its {width} x {height} pixels are more than {most}");

@@ -1,4 +1,4 @@
-use crate::film::{Filter, Overscan, Window};
+use crate::film::{Filter, MOST_PIXELS, Overscan, Window};
 use crate::spectrum::ColorSpace;
 
 /// Size and meaning of the image.
@@ -22,7 +22,7 @@ impl FilmSettings {
     /// Most pixels in a row or column, with the overscan.
     pub const MAX_SIDE: u32 = 65_536;
     /// Most pixels, with the overscan: 19 GB of sums and values, without layers.
-    pub const MAX_PIXELS: u64 = 1 << 28;
+    pub const MAX_PIXELS: u64 = MOST_PIXELS as u64;
 
     /// The part of the image that is made.
     pub fn window(&self) -> Window {
