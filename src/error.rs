@@ -52,6 +52,11 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
+    /// A refusal of what is asked for, with what to do instead.
+    pub fn refuse<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T> {
+        Err(Self::Arguments { message: message.into(), help: Some(help.into()) })
+    }
+
     /// The process exit code: 2 for a bad scene or bad arguments, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {

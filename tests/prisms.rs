@@ -8,10 +8,10 @@
 use std::fmt::Write;
 
 use abbe::math::DVec3;
-use abbe::spectrum::{Basis, ColorSpace, data, visible};
+use abbe::spectrum::{Basis, ColorSpace, Quantity, data, visible};
 use abbe::trace::{Method, prepare, render};
 
-use crate::support::scenes::{EVERY_BRANCH, method, scene};
+use crate::support::scenes::{EVERY_BRANCH, method, scene, view};
 
 /// Fraunhofer's lines and their neighbors, h F d C r, in nm.
 const LINES_NM: [f64; 5] = [404.66, 486.13, 587.56, 656.27, 706.52];
@@ -225,5 +225,48 @@ fn an_index_that_is_off_by_four_in_the_fourth_decimal_is_noticed_at_every_line()
             let (mistakes, judged) = judge(&glass, more);
             assert!(mistakes.len() >= judged, "only {} of {judged} are noticed", mistakes.len());
         }
+    }
+}
+
+/// The index of a dielectric whose index is written so, at a wavelength in nm.
+fn written(index: &str) -> impl Fn(f64) -> f64 + use<> {
+    let scene = scene(&format!(
+        "{}[material.glass]\ndielectric = {{ index = {index} }}\n[[object]]\nmaterial = \"glass\"\n\
+         shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
+        view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
+    ));
+    let curve = scene.material_of(0).clear_index().expect("glass has one").clone();
+    move |nm| curve.values(Quantity::Index)(nm)
+}
+
+/// Sellmeier's formula of N-BK7 with Schott's numbers, against the indices that Schott's data sheet lists beside them;
+/// and what n_d and V_d say, against what defines them.
+#[test]
+fn an_index_that_a_scene_writes_as_a_formula_is_that_of_the_glass() {
+    let bk7 = written(
+        "{ sellmeier = { b = [1.03961212, 0.231792344, 1.01046945], c = [0.00600069867, 0.0200179144, 103.560653] } }",
+    );
+    // Lines h, g, F', e, d, C' and r.
+    let listed = [
+        (404.6561, 1.53024),
+        (435.8343, 1.52668),
+        (479.9914, 1.52283),
+        (546.0740, 1.51872),
+        (587.5618, 1.51680),
+        (643.8469, 1.51472),
+        (706.5188, 1.51289),
+    ];
+    for (nm, index) in listed {
+        assert!((bk7(nm) - index).abs() <= 0.6e-5, "{nm} nm: {}, not {index}", bk7(nm));
+    }
+    for [nd, vd] in [[1.5168, 64.17], [1.78472, 25.68], [2.0, 19.0]] {
+        let index = written(&format!("{{ abbe = {{ nd = {nd:?}, vd = {vd:?} }} }}"));
+        let [f, d, c] = [486.13, 587.56, 656.27].map(&index);
+        assert!((d - nd).abs() < 1e-12, "n_d = {d}, not {nd}");
+        assert!(((d - 1.0) / (f - c) - vd).abs() < 1e-9 * vd, "V_d = {}, not {vd}", (d - 1.0) / (f - c));
+        // Cauchy's curve is straight over 1 / w^2.
+        let over = |nm: f64| 1e6 / (nm * nm);
+        let slope = |a: f64, b: f64| (index(a) - index(b)) / (over(a) - over(b));
+        assert!((slope(400.0, 500.0) / slope(600.0, 700.0) - 1.0).abs() < 1e-9);
     }
 }

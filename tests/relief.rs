@@ -208,6 +208,13 @@ fn an_even_map_shades_like_a_surface_that_is_tilted_so() {
             let found = sunlit(folder, &format!("{object}\nnormal_map = {{ image = \"tilted.exr\" }}"), toward);
             let expected = toward.dot(normal);
             assert!((found - expected).abs() < 2e-4, "{object} lit from {toward}: {found}, not {expected}");
+            for strength in [0.5, 2.0] {
+                let map = format!("normal_map = {{ image = \"tilted.exr\", strength = {strength:?} }}");
+                let found = sunlit(folder, &format!("{object}\n{map}"), toward);
+                let steeper = (u * tilted.x + v * tilted.y) * strength + DVec3::Y * tilted.z;
+                let expected = toward.dot(steeper.normalize());
+                assert!((found - expected).abs() < 2e-4, "{object} lit from {toward}: {found}, not {expected}");
+            }
             let found = sunlit(folder, &format!("{object}\nbump_map = {{ image = \"slope.exr\", depth = 1 }}"), toward);
             let expected = toward.dot(sloping);
             assert!((found - expected).abs() < 2e-4, "{object} lit from {toward}: {found}, not {expected}");

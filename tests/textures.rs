@@ -74,6 +74,42 @@ fn an_even_gray_image_is_the_plain_reflectance_to_the_last_bit() {
     }
 }
 
+/// In the middle of a texel, an image of thicknesses is a film as thick as its gray and its scale say.
+#[test]
+fn a_film_is_as_thick_as_its_image_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let gray = |x: usize, _| [0.25_f32, 0.75].map(|gray| (gray, gray, gray))[x];
+    exr::prelude::write_rgb_file(folder.path().join("grays.exr"), 2, 1, gray).unwrap();
+    let materials = [
+        "thin = { index = 1.6, thickness_nm = THICKNESS }",
+        "conductor = { metal = \"Ti\", coating = [{ index = 2.4, thickness_nm = THICKNESS }] }",
+        "dielectric = { index = 1.5, coating = [{ index = 2.1, thickness_nm = THICKNESS }] }",
+        "plastic = { reflectance = 0.2, coating = [{ index = 2.1, thickness_nm = THICKNESS }] }",
+    ];
+    for material in materials {
+        let of = |x: f64, thickness: &str| {
+            let text = view([x, 0.0, 9.0], [x, 0.0, 0.0], 1e-3, 1)
+                + &format!("[render]\nsamples = 16\n[material.m]\n{}\n", material.replace("THICKNESS", thickness))
+                + "[[object]]\nshape.quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }\nmaterial = \"m\"\n\
+                   [material.lamp]\nemissive = { radiance = 1 }\n[[object]]\nmaterial = \"lamp\"\n\
+                   shape.quad = { center = [0, 0, 10], u = [9, 0, 0], v = [0, -9, 0] }\n";
+            scene(folder.path(), &text)
+        };
+        let image = |x: f64| of(x, "{ image = \"grays.exr\", scale = 400 }");
+        let method = plan(&image(-0.5)).method;
+        let seen = |scene: &Scene<Curve>| render(&prepare(scene, method.clone()), &|_| ()).0.pixels[0].rgb;
+        let found = [-0.5, 0.5].map(|x| seen(&image(x)));
+        let expected = [(-0.5, "100"), (0.5, "300")].map(|(x, nm)| seen(&of(x, nm)));
+        for (found, expected) in found.iter().zip(&expected) {
+            let strongest = expected.iter().fold(0.0, |most: f32, x| most.max(x.abs()));
+            let is_near = (0..3).all(|i| (found[i] - expected[i]).abs() < 5e-4 * strongest);
+            assert!(is_near, "{material}: {found:?}, not {expected:?}");
+        }
+        let apart = (0..3).any(|i| (expected[0][i] - expected[1][i]).abs() > 0.05 * expected[0][i]);
+        assert!(apart, "{material}: both are {expected:?}");
+    }
+}
+
 /// Every kind of basis.
 fn bases() -> Vec<Basis> {
     let space = ColorSpace::Rec709;

@@ -101,7 +101,7 @@ pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
         near if !near.contains(',') => format!("the nearest name is {near}"),
         near => format!("the nearest names are {near}"),
     };
-    Err(Error::Arguments { message, help: Some(help) })
+    Error::refuse(message, help)
 }
 
 /// The three names that differ least from what is wanted, of those that share half their letters with it.

@@ -150,9 +150,8 @@ impl ExrFile {
     /// [`Error::Arguments`] if there is none, with the nearest name and those that there are.
     pub fn layer(&self, wanted: Option<&str>, shown: &str) -> Result<ExrLayer<'_>> {
         let mut layers = self.layers();
-        let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
         if layers.is_empty() {
-            return refuse(format!("{shown} has no channels"), "render info says what a file holds".into());
+            return Error::refuse(format!("{shown} has no channels"), "render info says what a file holds");
         }
         let named = |wanted: &str| layers.iter().position(|layer| layer.name == wanted);
         let Some(wanted) = wanted else {
@@ -189,7 +188,6 @@ impl ExrFile {
 
 /// The file's bytes, if it begins as an OpenEXR file does.
 fn bytes(path: &Path) -> Result<Vec<u8>> {
-    let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
     let (shown, an_image) = (path.display(), "an image is an OpenEXR file, such as prism.exr");
     let mut start = Vec::new();
     let read = File::open(path).and_then(|mut file| {
@@ -208,9 +206,9 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
         Ok(()) => Err(decode_error(path, "it does not begin as one does")),
         Err((ErrorKind::NotFound | ErrorKind::NotADirectory, _)) => {
             let near = nearest_file(path, &["exr"]).map(|near| format!("did you mean {}?", near.display()));
-            refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))
+            Error::refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))
         }
-        Err((ErrorKind::IsADirectory, _)) => refuse(format!("{shown} is a folder, not an image"), an_image.into()),
+        Err((ErrorKind::IsADirectory, _)) => Error::refuse(format!("{shown} is a folder, not an image"), an_image),
         Err((_, source)) => Err(Error::Io { doing: "read", path: path.to_owned(), source }),
     }
 }

@@ -145,8 +145,7 @@ fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
 /// Refuses images that do not show the same pixels in the same way.
 fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) -> Result<()> {
     let refuse = |what: [String; 2], help: &str| {
-        let message = format!("{} has {}, {} {}", shown[0], what[0], shown[1], what[1]);
-        Err(Error::Arguments { message, help: Some(help.to_owned()) })
+        Error::refuse(format!("{} has {}, {} {}", shown[0], what[0], shown[1], what[1]), help)
     };
     let bounds = layers.each_ref().map(|layer| layer.part.bounds);
     if bounds[0] != bounds[1] || files[0].display != files[1].display {

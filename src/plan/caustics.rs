@@ -153,9 +153,11 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     if targets(scene).is_empty() {
-        let bends = smooth_object(scene).map_or("", |object| &scene.objects[object].name);
-        let why = format!("no photon tracing: {bends} has no end, so photons cannot be aimed at it{}", missing(scene));
-        return Err(Some(why));
+        let why = match smooth_object(scene) {
+            Some(object) => format!("{} has no end, so photons cannot be aimed at it", scene.objects[object].name),
+            None => "caustics of surfaces that are smooth only in part, such as clear coats, are left to chance".into(),
+        };
+        return Err(Some(format!("no photon tracing: {why}{}", missing(scene))));
     }
     let places = thinned(lit_places(scene, |material| may_receive(scene, material)), scene.lights.len());
     if places.is_empty() {
@@ -185,7 +187,8 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
 
 /// Why a scene has no caustics, if it has none.
 fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
-    if smooth_object(scene).is_none() {
+    let mut materials = (0..scene.objects.len()).map(|object| scene.material_of(object as u32));
+    if smooth_object(scene).is_none() && !materials.any(Material::is_smooth_somewhere) {
         Some("no surface is smooth glass, a mirror or polished metal")
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")

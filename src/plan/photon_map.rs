@@ -24,8 +24,9 @@ const RAREST: f64 = 1.0 / 16.0;
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
-/// Photons of a pass: more would take longer to look through than to send.
+/// Most photons of a pass, and most for each pixel: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
+const OF_A_PIXEL: f64 = 8.0;
 /// Photons of a map that tells whether any are gathered, and what they are worth.
 const FEW: u64 = 4096;
 /// Fewer where they follow many rays, but never too few.
@@ -52,7 +53,8 @@ pub(super) fn with_map(
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
     let passes = |photons: f64| {
         let all = (photons * samples).ceil();
-        let count = (all / OF_A_PASS).round().clamp(1.0, most);
+        let of_a_pass = OF_A_PASS.min(OF_A_PIXEL * samples / most);
+        let count = (all / of_a_pass).round().clamp(1.0, most);
         MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius, chance: 1.0 }
     };
     let map = passes(PHOTONS);

@@ -186,20 +186,22 @@ impl Checkpoint {
     /// Refuses to lose what an earlier run has kept.
     fn spare(&self) -> Result<()> {
         let name = self.path.display();
-        let refuse = |message: String, help: &str| Err(Error::Arguments { message, help: Some(help.to_owned()) });
         if self.path.is_dir() {
-            return refuse(format!("the checkpoint {name} is a folder"), "name a file, such as \"image.checkpoint\"");
+            return Error::refuse(
+                format!("the checkpoint {name} is a folder"),
+                "name a file, such as \"image.checkpoint\"",
+            );
         }
         check_writable(&self.path)?;
         if !self.path.exists() {
             return Ok(());
         }
         if !is_checkpoint(&self.path)? {
-            return refuse(format!("{name} would be overwritten, and is no checkpoint"), "name another file");
+            return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), "name another file");
         }
         match self.resume {
             true => Ok(()),
-            false => refuse(
+            false => Error::refuse(
                 format!("{name} is there from an earlier run"),
                 "add resume=True to go on from it, or delete it to begin anew",
             ),
@@ -215,7 +217,7 @@ impl Checkpoint {
             Resumed::Continues | Resumed::Finished => Ok(()),
             Resumed::HasMore(samples) => {
                 let message = format!("{} has {samples} samples per pixel, more than that", self.path.display());
-                Err(Error::Arguments { message, help: Some(format!("ask for samples={samples}")) })
+                Error::refuse(message, format!("ask for samples={samples}"))
             }
         }
     }

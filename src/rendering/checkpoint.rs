@@ -93,6 +93,5 @@ pub(super) fn resume(
 }
 
 fn refuse<T>(path: &Path, why: &str, help: &str) -> Result<T> {
-    let message = format!("cannot go on from {}: {why}", path.display());
-    Err(Error::Arguments { message, help: Some(help.to_owned()) })
+    Error::refuse(format!("cannot go on from {}: {why}", path.display()), help)
 }

@@ -55,25 +55,25 @@ impl Options {
     /// overscan, or its layers cannot be written, together or in the scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if self.samples == Some(0) {
-            return refuse("a pixel needs at least 1 sample".into(), "leave the samples out to take the scene's own");
+            return Error::refuse("a pixel needs at least 1 sample", "leave the samples out to take the scene's own");
         }
         if let Some(error) = self.error.filter(|error| !RenderText::ERRORS.contains(error)) {
             let message = format!("a relative error lies between 0.000001 and 1, not {error}");
-            return refuse(message, "--error 0.01 asks for one percent");
+            return Error::refuse(message, "--error 0.01 asks for one percent");
         }
         let (render, film) = self.instead_of(scene);
         if render.is_part && render.samples.is_none() && (render.error.is_some() || render.time.is_some()) {
             let message = "a part of an image does not tell the error of the whole, nor how much others do in a time";
-            return refuse(message.into(), "say how many samples all parts take: --samples 512");
+            return Error::refuse(message, "say how many samples all parts take: --samples 512");
         }
         if let Some(message) = film.objection_to_overscan() {
-            return refuse(
+            return Error::refuse(
                 message,
                 "--overscan takes one number of pixels, or those to the left, above, to the right and below",
             );
         }
         if let Some(message) = film.objection_to_crop() {
-            return refuse(message, "--crop takes first column, first row, width and height");
+            return Error::refuse(message, "--crop takes first column, first row, width and height");
         }
         (scene.render, scene.film) = (render, film);
         if let Some(layers) = &self.layers {
@@ -99,10 +99,6 @@ impl Options {
     }
 }
 
-fn refuse<T>(message: String, help: &str) -> Result<T> {
-    Err(Error::Arguments { message, help: Some(help.to_owned()) })
-}
-
 /// Most bytes of memory that layers may take: 64 GB.
 const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
@@ -110,21 +106,24 @@ const MOST_OF_LAYERS: u64 = 64_000_000_000;
 /// be written.
 pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     if let Some((message, help)) = scene.format.objection() {
-        return refuse(message, &help);
+        return Error::refuse(message, &help);
     }
     let bytes = scene.layer_bytes(shard.count());
     if bytes > MOST_OF_LAYERS {
         let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
-        return refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
+        return Error::refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
     }
     if scene.format.has_stokes() && scene.render.polarization == PolarizationText::Off {
-        let message = "Stokes vectors are asked for, and the scene turns polarization off".into();
-        return refuse(message, "leave `polarization` out of its [render], or ask for no S1, S2, S3 and polarization");
+        let message = "Stokes vectors are asked for, and the scene turns polarization off";
+        return Error::refuse(
+            message,
+            "leave `polarization` out of its [render], or ask for no S1, S2, S3 and polarization",
+        );
     }
     if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
-        let message = "model = \"rgb\" has no wavelengths to make spectra of".into();
-        return refuse(message, "leave the model out, or ask for wavelengths: model = { bands = 32 }");
+        let message = "model = \"rgb\" has no wavelengths to make spectra of";
+        return Error::refuse(message, "leave the model out, or ask for wavelengths: model = { bands = 32 }");
     }
     if !scene.format.layers.contains(&Layer::Lights) {
         return Ok(());
@@ -135,11 +134,11 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
         let name = light_layer_name(group);
         if name.len() + ".R".len() > LONGEST_NAME {
             let message = format!("the layer {name} would have a name that not every program reads: it is too long");
-            return refuse(message, help);
+            return Error::refuse(message, help);
         }
         let other = known.entry(name.clone()).or_insert(group);
         if *other != group {
-            return refuse(format!("the lights {other} and {group} would share the layer {name}"), help);
+            return Error::refuse(format!("the lights {other} and {group} would share the layer {name}"), help);
         }
     }
     Ok(())

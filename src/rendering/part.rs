@@ -1,6 +1,5 @@
 //! Parts of an image that several machines make: finished tiles, and all that the image's file says beside them.
 
-use std::fmt::Display;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -77,23 +76,19 @@ pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64,
 pub(super) fn open(path: &Path) -> Result<(Head, BlockReader)> {
     let made = "parts are made by --shard, as in render --shard 1/4 scene.toml";
     if !path.exists() {
-        return Err(refused(format!("there is no part {}", path.display()), made));
+        return Error::refuse(format!("there is no part {}", path.display()), made);
     }
     let Some(mut blocks) = BlockReader::open(path, PART)? else {
-        return Err(refused(format!("{} is no part of an image", path.display()), made));
+        return Error::refuse(format!("{} is no part of an image", path.display()), made);
     };
     let identity: Identity = blocks.block()?;
     if let Some(objection) = identity.objection() {
-        return Err(refused(format!("{} cannot be read: {objection}", path.display()), "merge it with that version"));
+        return Error::refuse(format!("{} cannot be read: {objection}", path.display()), "merge it with that version");
     }
     let head = Head { identity, ..blocks.block()? };
     let Film { width, height, .. } = head.film;
     let fits = u64::from(width) * u64::from(height) <= FilmSettings::MAX_PIXELS;
     if fits { Ok((head, blocks)) } else { Err(blocks.damaged()) }
-}
-
-pub(super) fn refused(message: impl Display, help: impl Display) -> Error {
-    Error::Arguments { message: message.to_string(), help: Some(help.to_string()) }
 }
 
 impl Head {

@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::image::Image;
-use super::part::{Head, Tile, numbers, open, refused, set_non_finite, window};
-use crate::error::Result;
+use super::part::{Head, Tile, numbers, open, set_non_finite, window};
+use crate::error::{Error, Result};
 use crate::film::{
     BlockReader, DEPTH_OF_NOTHING, Film, Format, Heading, Pixel, Provenance, Rows, Shard, TILE, TilePlace, View,
     Window, write_exr, write_spectral_exr,
@@ -70,7 +70,7 @@ impl Parts {
     /// render; [`Error::Decode`](crate::Error::Decode) if one is damaged before its tiles.
     pub fn open(paths: &[PathBuf]) -> Result<Self> {
         let Some((first, others)) = paths.split_first() else {
-            return Err(refused("no part of an image is given", "name all of them: render merge out.exr *.part"));
+            return Error::refuse("no part of an image is given", "name all of them: render merge out.exr *.part");
         };
         let (whole, blocks) = open(first)?;
         let (count, window) = (whole.shard.count(), window(&whole.film));
@@ -80,13 +80,13 @@ impl Parts {
             let (head, blocks) = open(path)?;
             if let Some(difference) = whole.difference(&head) {
                 let message = format!("{} does not belong to {}: {difference}", path.display(), first.display());
-                return Err(refused(message, "render it again, or leave it out"));
+                return Error::refuse(message, "render it again, or leave it out");
             }
             let number = head.shard.number();
             if let Some(other) = found.insert(number, tiles(path, blocks, head.shard, window)?) {
                 let message =
                     format!("{} and {} are both part {number} of {count}", other.path.display(), path.display());
-                return Err(refused(message, "leave one of them out"));
+                return Error::refuse(message, "leave one of them out");
             }
             non_finite += head.non_finite;
         }
@@ -96,7 +96,7 @@ impl Parts {
             let number = gap.map_or(found.len() as u32 + 1, |(number, _)| number);
             let more = if missing == 1 { String::new() } else { format!(", and {} more", missing - 1) };
             let help = format!("render it: --shard {number}/{count}");
-            return Err(refused(format!("part {number} of {count} is missing{more}"), help));
+            return Error::refuse(format!("part {number} of {count} is missing{more}"), help);
         }
         non_finite += whole.shared_non_finite();
         let Head { film, format, view, mut provenance, .. } = whole;

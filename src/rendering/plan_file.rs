@@ -77,14 +77,14 @@ pub fn write_plan(plan: &Plan, scene: &Scene, path: impl AsRef<Path>) -> Result<
 /// [`Error::Arguments`] if it is missing, or of something else; [`Error::Decode`] if it is damaged.
 pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     if !path.exists() {
-        return refuse(&format!("there is no plan {}", path.display()), AGAIN);
+        return Error::refuse(format!("there is no plan {}", path.display()), AGAIN);
     }
     let Some(mut blocks) = BlockReader::open(path, PLAN)? else {
-        return refuse(&format!("{} is no plan", path.display()), AGAIN);
+        return Error::refuse(format!("{} is no plan", path.display()), AGAIN);
     };
     let head: Head = blocks.block()?;
     if let Some(objection) = head.identity.objection() {
-        return refuse(&format!("cannot follow {}: {objection}", path.display()), AGAIN);
+        return Error::refuse(format!("cannot follow {}: {objection}", path.display()), AGAIN);
     }
     let plan: Plan = blocks.block()?;
     blocks.end()?;
@@ -92,7 +92,7 @@ pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     match Head::new(scene, &plan).difference(&head) {
         Some(difference) => {
             let help = if is_of_whole { AGAIN_FOR_PARTS } else { AGAIN };
-            refuse(&format!("cannot follow {}: {difference}", path.display()), help)
+            Error::refuse(format!("cannot follow {}: {difference}", path.display()), help)
         }
         None => Ok(plan),
     }
@@ -102,7 +102,3 @@ pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
 const AGAIN: &str = "make it with the same options: render --plan scene.toml --plan-file frame.plan";
 const AGAIN_FOR_PARTS: &str =
     "parts take all samples, and have a plan of their own: render --plan scene.toml --shard 1/4 --plan-file frame.plan";
-
-fn refuse<T>(message: &str, help: &str) -> Result<T> {
-    Err(Error::Arguments { message: message.to_owned(), help: Some(help.to_owned()) })
-}

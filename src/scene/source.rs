@@ -34,7 +34,6 @@ impl Source {
     /// # Errors
     /// If it cannot be read or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self> {
-        let refuse = |message: String, help: String| Err(Error::Arguments { message, help: Some(help) });
         let shown = path.display();
         let bytes = match File::open(path).and_then(all_of) {
             Ok(bytes) => bytes,
@@ -43,9 +42,9 @@ impl Source {
                     ErrorKind::NotFound | ErrorKind::NotADirectory => {
                         let near =
                             nearest_file(path, &["toml"]).map(|near| format!("did you mean {}?", near.display()));
-                        refuse(format!("there is no scene file {shown}"), near.unwrap_or(A_SCENE.into()))
+                        Error::refuse(format!("there is no scene file {shown}"), near.unwrap_or(A_SCENE.into()))
                     }
-                    ErrorKind::IsADirectory => refuse(format!("{shown} is a folder, not a scene"), A_SCENE.into()),
+                    ErrorKind::IsADirectory => Error::refuse(format!("{shown} is a folder, not a scene"), A_SCENE),
                     _ => Err(Error::Io { doing: "read", path: path.to_owned(), source: error }),
                 };
             }
@@ -191,10 +190,7 @@ fn all_of(reader: impl Read) -> std::io::Result<Vec<u8>> {
 
 fn text_of(bytes: Vec<u8>, shown: &str) -> Result<String> {
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(Error::Arguments {
-            message: format!("{shown} has more than {MOST_BYTES} bytes"),
-            help: Some(A_SCENE.into()),
-        });
+        return Error::refuse(format!("{shown} has more than {MOST_BYTES} bytes"), A_SCENE);
     }
     utf8(bytes, shown, A_SCENE).map_err(|Fault { message, help }| Error::Arguments { message, help })
 }
