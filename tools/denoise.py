@@ -1,6 +1,6 @@
 """Denoises an image by Intel Open Image Denoise, into a layer beside it: denoised.R, denoised.G, denoised.B.
 
-    python -m pip install pyoidn                        # once, 90 MB; nothing else here needs it
+    python -m pip install pyoidn OpenEXR numpy          # once; pyoidn has 90 MB
     render scene.toml --exr image.exr --layers albedo,N
     python tools/denoise.py image.exr                   # into the same file
     python tools/denoise.py image.exr out.exr           # into another one

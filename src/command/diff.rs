@@ -17,7 +17,7 @@ and that of each channel's mean, is within what chance exceeds in one of a hundr
 Other files agree if all values are equal, or relMSE is at most --tolerance. \
 Images that are equal do not agree if a layer that both files have is not, such as Z; \
 nor does alpha that is 0 in one and 1 in the other more often than chance makes it so. \
-Of a crop beside its image, the pixels that both have are compared.
+If one file is a crop of the other, only the pixels that both have are compared.
 
 Examples:
   render diff old.exr new.exr                       do they agree, and if not, where

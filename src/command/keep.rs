@@ -20,17 +20,17 @@ use super::signals::kept_ignored;
 /// What the command line says of it.
 #[derive(Args, Clone)]
 pub struct Flags {
-    /// Keep what is done in NAME.checkpoint beside the image, so often and when stopped by Ctrl-C: 60s, 5m, 1h. Of an
-    /// image so large that writing takes long, at most 1 % of the time goes into it
+    /// Save what is done to NAME.checkpoint beside the image at this interval (60s, 5m, 1h), and when Ctrl-C stops it.
+    /// Saving takes at most 1 % of the time: large images are saved less often
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     checkpoint: Option<Duration>,
 
     /// Go on from NAME.checkpoint, if it is there, to the same image; from 16, 32, 64 and so on samples also to more of
-    /// them, unless photons are gathered. It keeps one, too, every 60 s where --checkpoint does not say how often
+    /// them, unless photons are gathered or half_a or half_b is asked for. It keeps one, too, every 60 s where --checkpoint does not say how often
     #[arg(long)]
     resume: bool,
 
-    /// Keep the image fresh while rendering, so often
+    /// Write the image so far at this interval while rendering: 30s, 5m
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     snapshot: Option<Duration>,
 

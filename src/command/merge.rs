@@ -17,7 +17,9 @@ Examples:
   render merge prism.exr prism.*-of-4.part        lay all four together
   render merge --delete prism.exr prism.*.part    keep nothing but the image
 
-The merged image has the same bytes as one that a single render makes.";
+The merged image has the same bytes as one that a single render makes.
+
+Exit codes: 0 done, 1 a file failed, 2 the parts do not belong together, or one is missing.";
 
 /// Lay the parts of an image together.
 #[derive(Parser)]

@@ -20,16 +20,16 @@ const MOST_THREADS: usize = 1024;
 /// # Errors
 /// If one of them is none of those that it may be.
 pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
-    let threads: Option<usize> = get(given, "threads", "a whole number of 1 or more")?;
+    let threads: Option<usize> = number(given, "threads", "a whole number of 1 or more")?;
     if threads.is_some_and(|threads| !(1..=MOST_THREADS).contains(&threads)) {
         return refuse(format!("a render has 1 to {MOST_THREADS} threads"), "leave threads out to take them all");
     }
     let value = |name: &str| get::<Bound<'_, PyAny>>(given, name, "a value");
     Ok(Options {
-        samples: get(given, "samples", "a whole number from 1 to 2**32 - 1")?,
-        error: get(given, "error", "a number")?,
+        samples: number(given, "samples", "a whole number from 1 to 2**32 - 1")?,
+        error: number(given, "error", "a number")?,
         time: value("time")?.as_ref().map(|value| time("time", value)).transpose()?,
-        seed: get(given, "seed", "a whole number from 0 to 2**64 - 1")?,
+        seed: number(given, "seed", "a whole number from 0 to 2**64 - 1")?,
         overscan: value("overscan")?.as_ref().map(overscan).transpose()?,
         crop: get(given, "crop", "four whole numbers: first column, first row, width and height")?
             .map(crop)
@@ -47,8 +47,20 @@ fn get<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, w
     let Some(value) = given.get_item(name)?.filter(|value| !value.is_none()) else { return Ok(None) };
     match value.extract() {
         Ok(found) => Ok(Some(found)),
-        Err(_) => refuse(format!("{name} is {wanted}, not {}", shown(&value)), "help(abbe.render) says all arguments"),
+        Err(_) => refuse_value(name, wanted, &value),
     }
+}
+
+/// A number that an argument says; True and False are none, though Python counts with them.
+fn number<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, wanted: &str) -> PyResult<Option<T>> {
+    match given.get_item(name)?.filter(|value| value.is_instance_of::<PyBool>()) {
+        Some(truth) => refuse_value(name, wanted, &truth),
+        None => get(given, name, wanted),
+    }
+}
+
+fn refuse_value<T>(name: &str, wanted: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
+    refuse(format!("{name} is {wanted}, not {}", shown(value)), "help(abbe.render) says all arguments")
 }
 
 /// Stops of exposure that light can be multiplied by.
@@ -87,7 +99,7 @@ pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
 }
 
 fn overscan(value: &Bound<'_, PyAny>) -> PyResult<Overscan> {
-    if let Ok(pixels) = value.extract::<u32>() {
+    if let (Ok(pixels), false) = (value.extract::<u32>(), value.is_instance_of::<PyBool>()) {
         return Ok(Overscan::even(pixels));
     }
     match value.extract::<[u32; 4]>() {

@@ -51,8 +51,8 @@ impl Options {
     ///
     /// # Errors
     /// [`Error::Arguments`] if there are no samples, or none are given for a part of an image that else would stop by
-    /// its error; if the error is none, the overscan is too wide, the crop lies outside the image and its
-    /// overscan, or its layers cannot be written, together or in the scene's format.
+    /// its error or a time; if the error does not lie between 0.000001 and 1, the overscan is too wide, the crop lies
+    /// outside the image and its overscan, or its layers cannot be written, together or in the scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if self.samples == Some(0) {
             return Error::refuse("a pixel needs at least 1 sample", "leave the samples out to take the scene's own");

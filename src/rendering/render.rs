@@ -76,7 +76,8 @@ impl Rendering {
     ///
     /// # Errors
     /// [`Error::Arguments`] if the options do not fit the scene, its plan is of something else, or threads cannot be
-    /// started; [`Error::Decode`] if the plan is damaged.
+    /// started; [`Error::Decode`] if the plan is damaged; [`Error::Io`] if it cannot be read, or the film does not fit
+    /// into memory.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let now = Instant::now();
         let began = (options.stamp && options.shard == Shard::WHOLE).then_some(now);

@@ -61,7 +61,7 @@ fn missed(error: &ImageError) -> Option<String> {
     } else if error.alpha.is_some_and(|alpha| alpha.at_most > error.noise.at_most.hypot(error.blur.at_most)) {
         ": most of it is noise of alpha, where shadow catchers are".into()
     } else if error.blur.at_most > error.noise.at_most {
-        ": most of it is the blur of gathered photons, half as wide after 8 to 64 times as many samples".into()
+        ": most of it is the blur of gathered photons, half as much after 8 to 64 times as many samples".into()
     } else {
         String::new()
     };

@@ -33,7 +33,8 @@ pub struct Method {
     pub bright: Option<BrightPlaces>,
     /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
     pub light_vertices: bool,
-    /// Where paths from suns start for that; light of other suns is left to the camera's paths.
+    /// Where paths from suns, and from what is bright in an image of the sky, start for that; light of others is left to
+    /// the camera's paths.
     pub sunlit: Vec<Sunlit>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
@@ -99,7 +100,8 @@ pub struct Stop {
 pub struct LightPass {
     /// How many, about.
     pub photons: u64,
-    /// The lights that send them: points, spots, suns and finite `emissive` surfaces.
+    /// The lights that send them: points, spots, suns, what is bright in an image of the sky, and finite `emissive`
+    /// surfaces.
     pub lights: Vec<LightId>,
     /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and
     /// chance.

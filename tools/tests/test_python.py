@@ -298,6 +298,8 @@ def test_settings_replace_values_and_options_settings():
     assert abbe.render(scene).width == 6
     with pytest.raises(TypeError, match="when it is made"):
         abbe.render(scene, set={"size": 3})
+    with pytest.raises(TypeError, match="when it is made"):
+        abbe.plan(scene, folder="elsewhere")
 
 
 @pytest.mark.parametrize(
@@ -305,6 +307,9 @@ def test_settings_replace_values_and_options_settings():
     [
         ({"samples": 0}, "a pixel needs at least 1 sample"),
         ({"samples": 2.5}, "samples is a whole number from 1 to 2**32 - 1, not 2.5"),
+        ({"samples": True}, "samples is a whole number from 1 to 2**32 - 1, not True"),
+        ({"error": True}, "error is a number, not True"),
+        ({"overscan": True}, "overscan is one or four whole numbers"),
         ({"seed": -1}, "seed is a whole number from 0 to 2**64 - 1, not -1"),
         ({"crop": (1, 2)}, "crop is four whole numbers: first column, first row, width and height, not (1, 2)"),
         ({"layers": [3]}, "layers is a list of names, not [3]"),

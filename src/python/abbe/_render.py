@@ -101,6 +101,8 @@ def _scene(scene: Path | Mapping[str, Any] | Scene, set: Mapping[str, Any] | Non
     if isinstance(scene, Scene):
         if set is not None:
             raise TypeError("values are set in a scene when it is made: Scene(.., set=..)")
+        if folder != "":
+            raise TypeError("the folder of a scene is given when it is made: Scene(.., folder=..)")
         return scene._core
     return Scene(scene, set=set, folder=folder)._core
 
@@ -137,7 +139,7 @@ def plan(
 ) -> Plan:
     """How a scene would be rendered, why, and how long that takes: nothing is rendered.
 
-    The arguments are those of `render`, and so is what is raised.
+    The arguments are those of `render` that say what the image is, and so is what is raised.
     """
     options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads)
     account, on = _abbe.plan(_scene(scene, set, folder), options)
@@ -171,7 +173,7 @@ def render(
     The image is the same to the last bit as that of the command, for any number of threads. Other threads of Python run
     meanwhile, and may render as well.
 
-    - `set`, `folder`: as of `Scene`.
+    - `set`, `folder`: as of `Scene`; not beside one, which has its own.
     - `samples`: camera samples per pixel, 1 or more, instead of the scene's; with `error` or `time`, the most.
     - `error`: relative error of the image at which it is good enough, 0.000001 to 1. 0.01 is one percent.
     - `time`: how long it may take, in seconds, or with a unit: `"10m"`.
