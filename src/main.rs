@@ -44,6 +44,11 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
 /// Does one frame after another, until one is stopped.
 fn run(jobs: &Jobs) -> Result<ExitCode> {
     jobs.keep().catch_signals()?;
+    if let Some(threads) = jobs.threads() {
+        // Plans without a render, and files, are made by those threads that belong to no render.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+    }
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {
         if keep::begin_image() {
@@ -151,9 +156,8 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let expected = rendering.expected();
     let took = progress.finish(expected);
     let mut written = Written::default();
-    // The image may take much memory: the part's is gone before there is another.
     written.file(part.as_deref(), |part| rendering.write_part(part));
-    let image = rendering.image();
+    let image = if part.is_some() { rendering.summary() } else { rendering.image() };
     written.file(exr.filter(|_| part.is_none()), |exr| {
         messages::warn_of_clamped(image.format(), write(&image, exr)?);
         Ok(())

@@ -9,7 +9,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use abbe::film::{Layer, Shard};
+use abbe::film::{ExrFile, Layer, Shard};
 use abbe::trace::{Method, Stopped};
 use abbe::{Advance, Image, Options, Rendering, Resumed, Scene, render};
 use rayon::prelude::*;
@@ -191,6 +191,34 @@ fn the_noise_of_alpha_under_a_shadow_catcher_is_the_noise_that_is_there_and_a_re
         let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
         assert!(kept >= 34, "{filter}: {kept} of {RENDERS}");
         assert!(found.iter().all(|[_, _, bound]| (0.01..=0.02).contains(&bound.sqrt())), "{filter}");
+    }
+}
+
+/// Noise, blur and the noise of alpha, each in a scene that has it.
+#[test]
+fn a_file_says_what_is_known_of_its_error() {
+    let camera = "camera = { position = [0, 4, 4], look_at = [0, 0, 0], vertical_fov = 30 }\n\
+                  film = { width = 16, height = 16 }\n[material]\nlamp.emissive.radiance = 5\n\
+                  gray.diffuse.reflectance = 0.5\nwater.dielectric.index = 1.33\n\
+                  [[object]]\nshape.disc = { center = [0.5, 4, 0], normal = [0, -1, 0], radius = 0.3 }\nmaterial = \"lamp\"\n\
+                  [[object]]\nshape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\nmaterial = \"gray\"\n";
+    let water = "[[object]]\nshape.cube = { center = [0, 0.5, 0], size = [4, 1.2, 4] }\nmaterial = \"water\"\n";
+    let shadow = "shadow_catcher = true\n[[object]]\nshape.sphere = { center = [0, 0.5, 0], radius = 0.5 }\nmaterial = \"gray\"\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.exr");
+    for (what, blurs, has_shadow) in [(water, true, false), (shadow, false, true)] {
+        let image = render(&scene(&format!("{camera}{what}")), &asks(0.5, 256)).expect("it can be rendered");
+        image.write_exr(&path).expect("it can be written");
+        let (error, file) = (image.error().expect("it has a stop rule"), ExrFile::read(&path).expect("it was written"));
+        let fact = |name: &str| file.attribute(&format!("render/{name}")).map(str::to_owned);
+        let number = |name: &str| fact(name).map(|text| text.parse::<f64>().expect("a number"));
+        assert_eq!(number("errorAtMost"), Some(error.at_most()));
+        assert_eq!(number("noise"), Some(error.noise.expected));
+        assert_eq!(number("modelError"), Some(error.model));
+        assert_eq!(number("blur"), blurs.then_some(error.blur.expected));
+        assert_eq!(number("alphaNoise"), error.alpha.map(|alpha| alpha.expected));
+        assert_eq!((error.blur.expected > 0.0, error.alpha.is_some()), (blurs, has_shadow), "{error:?}");
+        assert!(error.noise.expected > 0.0 && error.alpha.is_none_or(|alpha| alpha.expected > 0.0), "{error:?}");
     }
 }
 

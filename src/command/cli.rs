@@ -225,6 +225,11 @@ impl Jobs {
         self.0.frame.map_or(1, Frames::count)
     }
 
+    /// Processor threads that are asked for.
+    pub fn threads(&self) -> Option<usize> {
+        self.0.threads.map(usize::from)
+    }
+
     /// What is kept of them.
     pub fn keep(&self) -> &keep::Flags {
         &self.0.keep

@@ -8,6 +8,7 @@ use abbe::film::{ExrFile, TELL_VARIANCE, check_writable};
 use abbe::look::{Difference, Noise, WorstPixel, compare, number};
 use clap::Parser;
 
+use super::keep::catch_plainly;
 use super::messages::{aligned, answer_lines, print_error, say};
 use super::outputs::{check_png, refuse, spare};
 
@@ -88,6 +89,7 @@ fn compared(query: &Query) -> Result<bool> {
     if let Some(png) = &query.png {
         let (picture, white) = found.picture();
         check_writable(png)?;
+        catch_plainly()?;
         picture.write_png(png)?;
         let what = match (white > 0.0, found.torn) {
             (true, _) => format!("white is a difference of {} or more", number(white)),

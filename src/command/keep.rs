@@ -26,7 +26,8 @@ pub struct Flags {
     checkpoint: Option<Duration>,
 
     /// Go on from NAME.checkpoint, if it is there, to the same image; from 16, 32, 64 and so on samples also to more of
-    /// them, unless photons are gathered or half_a or half_b is asked for. It keeps one, too, every 60 s where --checkpoint does not say how often
+    /// them, as long as these need no other plan (as where photons are gathered) and half_a and half_b are not asked
+    /// for. It keeps one, too, every 60 s where --checkpoint does not say how often
     #[arg(long)]
     resume: bool,
 
@@ -312,11 +313,11 @@ impl Keep {
 
     fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
         let Some(path) = &self.snapshot else { return Ok(()) };
-        let image = rendering.image();
         // Before the first samples, photons have shown a part of their light.
-        if image.report().samples == 0 {
+        if rendering.camera_samples() == 0 {
             return Ok(());
         }
+        let image = rendering.image();
         let (colors, spectra) = (image.write_exr(path), image.write_spectral_exr(path.with_extension("spectral.exr")));
         self.has_snapshot.set(colors.is_ok());
         colors.and(spectra.map(|_| ()))

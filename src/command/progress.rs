@@ -146,11 +146,9 @@ impl Progress {
         self.counts.left().map(spoken)
     }
 
-    /// Removes the bar and says how long it took, beside the time that was expected of the whole render.
+    /// Removes the bar and says how long it took, beside the time that was expected.
     pub fn finish(mut self, expected: Duration) -> Duration {
-        let (start, before, work) = (self.counts.start, self.counts.before, self.counts.work.load(Ordering::Relaxed));
-        let left = work.saturating_sub(before) as f64 / work.max(1) as f64;
-        let expected = expected.mul_f64(left);
+        let (start, work) = (self.counts.start, self.counts.work.load(Ordering::Relaxed));
         self.stop();
         let took = start.elapsed();
         match listener() {

@@ -132,9 +132,13 @@ fn being_written() -> MutexGuard<'static, Vec<PathBuf>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what is there so far of files that are being written, where the process is about to end.
+/// Removes what is there so far of files that are being written, where the process is about to end: none can be begun
+/// any more, nor finished.
 pub fn remove_unfinished() {
-    being_written().drain(..).for_each(|path| drop(fs::remove_file(path)));
+    let mut unfinished = being_written();
+    unfinished.drain(..).for_each(|path| drop(fs::remove_file(path)));
+    // Nobody begins another one before the end.
+    std::mem::forget(unfinished);
 }
 
 impl Temporary {
@@ -143,9 +147,10 @@ impl Temporary {
         let mut number = 0;
         loop {
             let path = target.with_file_name(format!(".abbe-{}-{number}", std::process::id()));
+            let mut unfinished = being_written();
             match File::create_new(&path) {
                 Ok(file) => {
-                    being_written().push(path.clone());
+                    unfinished.push(path.clone());
                     return Ok((file, Self(path)));
                 }
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < MOST_LEFT_BEHIND => number += 1,

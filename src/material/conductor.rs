@@ -181,7 +181,7 @@ fn coated_by_facets<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]
     let stack = met.stack(lane);
     let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
     let averages = met.averages(lane, false, [n1, n, k, 0.0], || {
-        FilmAverages::of_mean(mean(stack.thickness_nm(), 1.0, |cos| [at(cos), 0.0]))
+        FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
     });
     [at(cos), averages.mean[0]]
 }

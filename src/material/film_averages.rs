@@ -7,10 +7,8 @@ use crate::math::gauss_legendre;
 /// Cosines at which a film is compared with the bare surface, between which the difference is taken as linear: those in
 /// the rarer medium, from which light crosses at every angle, and of which shares are a smooth function.
 pub(super) const HATS: usize = 20;
-/// Places that give the mean over the hemisphere of films below 1 um, and of thicker ones.
+/// Places that give the mean over the hemisphere of films that change slowly with the angle, and of others.
 const PLACES: [usize; 2] = [5, 32];
-/// Thickness of a film in nm up to which a few places do.
-const THIN_NM: f64 = 1000.0;
 
 /// How a film differs from the bare surface, and its means over the hemisphere, by cosine: each (reflected, crossing).
 #[derive(Clone, Copy, Debug)]
@@ -22,15 +20,17 @@ pub(super) struct FilmAverages {
 }
 
 impl FilmAverages {
-    /// Of a film of a thickness, met in a medium of index `n1` with `n2` beyond, that reflects and lets through as
-    /// `film` says of a cosine, where without it the surface would do so as `bare` says.
+    /// Of a film, slow or not, met in a medium of index `n1` with `n2` beyond, that reflects and lets through as `film`
+    /// says of a cosine, where without it the surface would do so as `bare` says. Differences are told up to the
+    /// critical angle of `to`, which is `n2` or more.
     pub(super) fn new(
-        thickness_nm: f64,
+        is_slow: bool,
         [n1, n2]: [f64; 2],
+        to: f64,
         film: impl Fn(f64) -> [f64; 2],
         bare: impl Fn(f64) -> [f64; 2],
     ) -> Self {
-        let critical = critical(n2 / n1);
+        let critical = critical(to / n1);
         let difference = |hat: usize| {
             let rare = cosine_of(hat);
             let cos = (critical + (1.0 - critical) * rare * rare).sqrt();
@@ -38,7 +38,7 @@ impl FilmAverages {
             [r - bare_r, t - bare_t]
         };
         let differences = std::array::from_fn(difference);
-        Self { differences, mean: mean(thickness_nm, n2 / n1, film), lost_inside: 0.0 }
+        Self { differences, mean: mean(is_slow, n2 / n1, film), lost_inside: 0.0 }
     }
 
     /// Of a film of which only the means are asked for.
@@ -80,17 +80,17 @@ pub(super) fn hats(cos: f64, ratio: f64) -> [(usize, f64); 2] {
     [(below, 1.0 - part), (below + 1, part)]
 }
 
-fn rule(thickness_nm: f64) -> &'static [[f64; 2]] {
+fn rule(is_slow: bool) -> &'static [[f64; 2]] {
     static RULES: [OnceLock<Vec<[f64; 2]>>; 2] = [const { OnceLock::new() }; 2];
-    let which = usize::from(thickness_nm > THIN_NM);
+    let which = usize::from(!is_slow);
     RULES[which].get_or_init(|| gauss_legendre(PLACES[which]))
 }
 
-/// Twice the integral of two shares times cosine over the cosine, in a medium to which that beyond has a relative
+/// Twice the integral of two shares of a film times cosine over the cosine, in a medium to which that beyond has a relative
 /// index: at the critical angle, if there is one, shares have a kink, up to which both sides are integrated.
-pub(super) fn mean(thickness_nm: f64, ratio: f64, of: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
+pub(super) fn mean(is_slow: bool, ratio: f64, of: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (critical, mut sum) = (critical(ratio), [0.0; 2]);
-    for &[t, weight] in rule(thickness_nm) {
+    for &[t, weight] in rule(is_slow) {
         // cos^2 = critical (1 - t^2) and critical + (1 - critical) t^2.
         let [flat, steep] = [critical * (1.0 - t * t), critical + (1.0 - critical) * t * t].map(|x| of(x.sqrt()));
         (0..2).for_each(|way| sum[way] += 2.0 * weight * t * (critical * flat[way] + (1.0 - critical) * steep[way]));

@@ -39,8 +39,7 @@ fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
         let crosses = if n1 == n2 { 1.0 } else { Interface::new(n1, n2, cos).transmittance };
         [1.0 - crosses, crosses]
     };
-    let thickness = stack.thickness_nm();
-    let averages = FilmAverages::new(thickness, [n1, n1.max(n2)], film, bare);
+    let averages = FilmAverages::new(stack.is_slow(), [n1, n2], n1.max(n2), film, bare);
     if stack.layers().iter().all(|layer| layer.index.im == 0.0) {
         return averages;
     }
@@ -49,5 +48,5 @@ fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
         let shares = inside.shares(n2, n1.into(), n2 * cos);
         [1.0 - shares.reflected.mean() - shares.refracted.mean(), 0.0]
     };
-    FilmAverages { lost_inside: mean(thickness, n1 / n2, lost)[0].max(0.0), ..averages }
+    FilmAverages { lost_inside: mean(stack.is_slow(), n1 / n2, lost)[0].max(0.0), ..averages }
 }

@@ -45,7 +45,7 @@ impl<'a> CoatedLane<'a> {
                     let shares = shares_of_lane(from, lane, cos, goes_on, |n1, n2, q1| stack.shares(n1, n2.into(), q1));
                     [shares.reflected.mean(), shares.refracted.mean()]
                 };
-                let make = || FilmAverages::new(stack.thickness_nm(), [here, there], film, bare);
+                let make = || FilmAverages::new(stack.is_slow(), [here, there], there, film, bare);
                 met.averages(lane, met.is_inside() != beyond, [own[0], own[1], here, there], make)
             });
         let bare = [sides.near.mean_blocked(), sides.far.mean_blocked()];

@@ -131,6 +131,12 @@ impl Stack {
         self.layers().iter().map(|layer| layer.thickness_nm).sum()
     }
 
+    /// Whether it changes slowly with the angle: a few layers of a micrometer together. A mirror of nine quarter waves
+    /// turns within a few degrees.
+    pub(super) fn is_slow(&self) -> bool {
+        self.layers().len() <= 3 && self.thickness_nm() <= 1000.0
+    }
+
     /// How much the phase between both ends of the band differs after all layers and back, at most, in radians.
     pub fn phase_step(&self) -> f64 {
         2.0 * TAU * self.layers().iter().map(Layer::optical_nm).sum::<f64>() / self.nm * self.band

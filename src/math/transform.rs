@@ -148,7 +148,8 @@ impl Transform {
         (equal && square).then_some(lengths[0])
     }
 
-    fn size(&self) -> f64 {
+    /// The largest entry of its linear part, without its sign; never 0.
+    pub fn size(&self) -> f64 {
         let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
         a.abs().max(b.abs()).max(c.abs()).max_element().max(f64::MIN_POSITIVE)
     }

@@ -144,7 +144,7 @@ fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String>
     let Window { width, height, .. } = scene.film.window();
     let film = takes(format!("film: {width} x {height} pixels"), bytes_of_film(scene, method));
     let channels = scene.layer_channels();
-    let layers = takes(format!("layers: {channels} channels beside the image"), scene.layer_bytes(1));
+    let layers = takes(format!("layers: {channels} channels beside the image"), scene.layer_bytes());
     film.into_iter().chain(layers)
 }
 

@@ -138,8 +138,7 @@ impl Job {
             return Ok(None);
         }
         kept.map_or(Ok(()), |kept| kept.go_on(&mut rendering))?;
-        let before = rendering.done();
-        let began = self.state.begin(before, rendering.work());
+        let began = self.state.begin(rendering.done(), rendering.work());
         let mut warnings = self.scene.warnings.clone();
         let is_finished = self.advance(&mut rendering, &mut warnings)?;
         let saved = kept.map_or(Ok(()), |kept| rendering.save(&kept.path));
@@ -148,9 +147,7 @@ impl Job {
         }
         // The image is there all the same.
         warnings.extend(saved.err().map(|error| format!("the render is finished, but {error}")));
-        let (took, work) = (began.elapsed(), rendering.work());
-        let expected = rendering.expected().mul_f64(work.saturating_sub(before) as f64 / work.max(1) as f64);
-        let image = rendering.image();
+        let (took, expected, image) = (began.elapsed(), rendering.expected(), rendering.image());
         warnings.extend(image.warnings());
         let report = RenderAccount::new(&image, took, expected);
         let account = json(&Account { report, plan: PlanAccount::new(rendering.plan()), warnings })?;

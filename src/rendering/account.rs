@@ -76,6 +76,8 @@ pub struct RenderAccount<'a> {
     pub polarization: f64,
     /// The same in the 16 x 16 pixels where it is largest.
     pub polarization_of_tile: f64,
+    /// What ended it: error, time or samples; none where it has no stop rule.
+    pub stopped_by: Option<&'static str>,
     /// How far the image is off, where that was measured.
     pub error: Option<ErrorAccount<'a>>,
     /// What the process has taken so far, where the system tells it.
@@ -101,6 +103,7 @@ impl<'a> RenderAccount<'a> {
             unmatched: report.unmatched,
             polarization: report.polarization,
             polarization_of_tile: report.polarization_of_tile,
+            stopped_by: report.stopped_by.map(|by| by.name()),
             error: image.error().map(ErrorAccount::new),
             processor_seconds: ProcessTime::try_now().ok().map(|time| time.as_duration().as_secs_f64()),
             peak_memory_bytes: peak_memory(),

@@ -64,7 +64,8 @@ impl Identity {
         Some(match name.as_str() {
             SCENE => "it was made of another scene, or of this one before it was changed".into(),
             PLAN => {
-                "it was made by another plan: where photons are gathered, other --samples or another --error need one"
+                "it was made by another plan: other --samples or another --error may need one, as where photons are \
+                 gathered, or light vertices or adaptive sampling begin"
                     .into()
             }
             _ => format!("its {name} is {theirs}, not {}", value(name).map_or("known", String::as_str)),

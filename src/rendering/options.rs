@@ -108,7 +108,7 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     if let Some((message, help)) = scene.format.objection() {
         return Error::refuse(message, &help);
     }
-    let bytes = scene.layer_bytes(shard.count());
+    let bytes = scene.layer_bytes() / u64::from(shard.count());
     if bytes > MOST_OF_LAYERS {
         let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());

@@ -12,6 +12,7 @@ use crate::film::{
     Window, write_blocks,
 };
 use crate::scene::FilmSettings;
+use crate::trace::{self, Values};
 
 /// The first bytes of a part.
 const PART: Kind = *b"AbbePrt1";
@@ -42,28 +43,30 @@ pub(super) struct Tile {
 
 const NON_FINITE: &str = "nonFinite";
 
-/// Writes the finished tiles of an image.
+/// Writes the finished tiles of an image, of which all else is known.
 ///
 /// # Errors
 /// If they cannot be written; a file that was there before is then untouched.
-pub(super) fn write(path: &Path, identity: &Identity, shard: Shard, shared: u64, image: Image) -> Result<()> {
-    let Image { mut film, report, view, format, mut provenance, .. } = image;
+pub(super) fn write(
+    path: &Path,
+    identity: &Identity,
+    shard: Shard,
+    summary: Image,
+    passes: &trace::Rendering,
+) -> Result<()> {
+    let Image { film, report, view, format, mut provenance, .. } = summary;
+    let shared = passes.non_finite_in_all_parts();
     set_non_finite(&mut provenance, shared);
-    let pixels = std::mem::take(&mut film.pixels);
-    let layers: Vec<_> =
-        film.layers.iter_mut().map(|layer| (std::mem::take(&mut layer.values), numbers(layer))).collect();
-    let spectra = film.spectral.as_mut().map(|spectral| (std::mem::take(&mut spectral.values), spectral.numbers()));
-    let window = window(&film);
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
     let head = Head { identity, shard, film, format, view, provenance, non_finite };
     write_blocks(path, PART, &|blocks| {
         blocks.block(&head.identity)?;
         blocks.block(&head)?;
-        shard.tiles(window).try_for_each(|tile| {
+        passes.tiles().try_for_each(|Values { pixels, layers, spectral }| {
             blocks.block(&Tile {
-                pixels: cut(&pixels, 1, window, tile),
-                layers: layers.iter().map(|(values, each)| cut(values, *each, window, tile)).collect(),
-                spectral: spectra.as_ref().map_or(Vec::new(), |(values, each)| cut(values, *each, window, tile)),
+                pixels,
+                layers: layers.into_iter().map(|layer| layer.values).collect(),
+                spectral: spectral.map_or(Vec::new(), |spectral| spectral.values),
             })
         })
     })
@@ -143,13 +146,4 @@ pub(super) fn window(film: &Film) -> Window {
 /// Numbers of a pixel in a layer.
 pub(super) fn numbers(layer: &LayerImage) -> usize {
     layer.layer.channels().len()
-}
-
-/// The values of a tile's pixels, so many of each, row by row.
-fn cut<T: Copy>(values: &[T], each: usize, window: Window, tile: TilePlace) -> Vec<T> {
-    let row = |row: u32| {
-        let first = tile.pixel(window, row * tile.width);
-        &values[first * each..(first + tile.width as usize) * each]
-    };
-    (0..tile.height).flat_map(row).copied().collect()
 }

@@ -13,7 +13,7 @@ use super::options::{Options, check_layers};
 use super::part;
 use super::plan_file::read_plan;
 use crate::error::{Error, Result};
-use crate::film::{Fact, Format, Provenance, Shard, View};
+use crate::film::{Fact, Film, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
 use crate::trace::{self, Advance, Method, REPLICATES, Report, bytes_of_film, prepare};
@@ -61,6 +61,8 @@ pub struct Rendering {
     began: Option<Instant>,
     /// Files of the finished render from which it was resumed.
     written: Vec<Written>,
+    /// How much of the work an earlier run has done.
+    resumed_at: u64,
 }
 
 struct Origin {
@@ -122,6 +124,7 @@ impl Rendering {
             asked: scene.render.error,
             began,
             written: Vec::new(),
+            resumed_at: 0,
         })
     }
 
@@ -150,9 +153,11 @@ impl Rendering {
         self.passes.is_work_known()
     }
 
-    /// How long all its [work](Self::work) will take, about, if nothing else keeps the processors busy.
+    /// How long all its [work](Self::work) takes, about, if nothing else keeps the processors busy; without what was
+    /// done before it was resumed.
     pub fn expected(&self) -> Duration {
-        let part = self.work() as f64 / self.passes.work_of_all_parts().max(1) as f64;
+        let work = self.work().saturating_sub(self.resumed_at);
+        let part = work as f64 / self.passes.work_of_all_parts().max(1) as f64;
         self.plan.processor_time.mul_f64(part / self.threads.current_num_threads() as f64)
     }
 
@@ -212,6 +217,11 @@ impl Rendering {
         self.passes.done()
     }
 
+    /// Camera samples taken so far.
+    pub fn camera_samples(&self) -> u64 {
+        self.passes.camera_samples()
+    }
+
     /// Writes a checkpoint: all sums so far, from which another run goes on to the same image.
     ///
     /// # Errors
@@ -259,7 +269,7 @@ impl Rendering {
     /// it is damaged; then this render must not be used any more.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<Resumed> {
         let (resumed, written) = checkpoint::resume(path.as_ref(), &self.identity, &mut self.passes)?;
-        self.written = written;
+        (self.written, self.resumed_at) = (written, self.done());
         Ok(resumed)
     }
 
@@ -273,8 +283,7 @@ impl Rendering {
             let message = "a part of an image is written when all its samples are taken".to_owned();
             return Err(Error::Arguments { message, help: None });
         }
-        let shared = self.passes.non_finite_in_all_parts();
-        part::write(path.as_ref(), &self.identity, self.shard, shared, self.image())
+        part::write(path.as_ref(), &self.identity, self.shard, self.summary(), &self.passes)
     }
 
     /// How far the image was off at the last look, where a stop rule looks.
@@ -287,7 +296,16 @@ impl Rendering {
 
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
-        let (film, report, error) = (self.passes.film(), self.passes.report(), self.error());
+        self.image_of(self.passes.film())
+    }
+
+    /// The same without its pixels and the values of its layers: all that is known of it, in little memory.
+    pub fn summary(&self) -> Image {
+        self.image_of(self.passes.frame())
+    }
+
+    fn image_of(&self, film: Film) -> Image {
+        let (report, error) = (self.passes.report(), self.error());
         // Within a pass some pixels are ahead: then it is the mean.
         let within = report.samples.div_ceil(film.pixels.len() as u64);
         let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
@@ -317,7 +335,7 @@ impl Rendering {
 /// Refuses a film that is known not to fit in memory before the first sample is taken: an allocation that fails later
 /// ends the process without a word. What is small always fits.
 fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
-    let bytes = bytes_of_film(scene, method) / u64::from(shard.count()) + scene.layer_bytes(shard.count());
+    let bytes = (bytes_of_film(scene, method) + scene.layer_bytes()) / u64::from(shard.count());
     let is_there = || Vec::<u8>::new().try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX)).is_ok();
     if bytes < 1_000_000_000 || is_there() {
         return Ok(());

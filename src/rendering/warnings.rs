@@ -8,7 +8,7 @@ use crate::trace::{MOST_MEDIA, RareLight, Report};
 /// All that there is to warn of.
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
     let mut warnings: Vec<String> =
-        error.into_iter().flat_map(|error| [outlier(error), missed(error)]).flatten().collect();
+        error.into_iter().flat_map(|error| [outlier(error), missed(error), dark(report, error)]).flatten().collect();
     let place = report.first_non_finite.map(|[x, y, sample]| format!("sample {sample} of pixel ({x}, {y})"));
     warnings.extend(match (report.non_finite, place) {
         (0, _) => None,
@@ -66,6 +66,12 @@ fn missed(error: &ImageError) -> Option<String> {
         String::new()
     };
     Some(format!("the error of {} that was asked for is not reached{why}", percent(asked)))
+}
+
+/// An image without any light, of which no noise can be told.
+fn dark(report: &Report, error: &ImageError) -> Option<String> {
+    let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
+    is_dark.then(|| "no light was found in any pixel, so that nothing tells how far the image is off".into())
 }
 
 /// Rare light with its way.

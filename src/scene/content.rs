@@ -96,12 +96,12 @@ impl<S> Scene<S> {
         (layers + components * self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
-    /// Bytes of memory that layers take where one of so many parts of the image is made: of each number a sum in 64
-    /// bits, another where a filter subtracts samples, and its value in 32, for which all of the image has room.
-    pub fn layer_bytes(&self, parts: u32) -> u64 {
+    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, and
+    /// its value in 32; and the sums of which alpha is made where there are shadow catchers.
+    pub fn layer_bytes(&self) -> u64 {
         let sums = if self.film.filter.is_signed() { 16 } else { 8 };
-        let numbers = self.layer_channels() * self.film.window().pixels();
-        sums * numbers / u64::from(parts) + 4 * numbers
+        let caught = if self.has_shadow_catchers() { 8 * sums } else { 0 };
+        (self.layer_channels() * (sums + 4) + caught) * self.film.window().pixels()
     }
 
     /// The light that fills the whole sky, if there is one.
@@ -156,9 +156,9 @@ impl<S> Scene<S> {
     }
 
     /// Objects without bounds: planes.
-    pub fn unbounded(&self) -> impl Iterator<Item = &Object> {
-        let all = self.index.always().iter().map(|&number| &self.objects[number as usize]);
-        all.filter(|object| !object.shape.is_bounded())
+    pub fn unbounded(&self) -> impl Iterator<Item = (u32, &Object)> {
+        let all = self.index.always().iter().map(|&number| (number, &self.objects[number as usize]));
+        all.filter(|(_, object)| !object.shape.is_bounded())
     }
 
     fn nearest_from(&self, ray: &Ray, left: Option<Primitive>, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {

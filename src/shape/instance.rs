@@ -19,10 +19,14 @@ pub struct Instance {
     bounds: Bounds,
 }
 
+/// Most that a map back may stretch a ray's direction: boxes are met by its reciprocal in 32 bits, which is rounded as
+/// others are above 2^-126, and a map has three axes.
+const LARGEST: f64 = 1e37;
+
 impl Instance {
-    /// A mesh after an invertible map; none where the map back is too large for numbers.
+    /// A mesh after an invertible map; none where the map back is too large for numbers of 32 bits.
     pub fn new(mesh: Arc<Mesh>, to_world: Transform) -> Option<Self> {
-        let to_object = to_world.inverse()?;
+        let to_object = to_world.inverse().filter(|back| back.size() <= LARGEST)?;
         let own = mesh.bounds();
         let reach = own.min.abs().max(own.max.abs());
         let mismatch = to_world.mismatch(&to_object, reach);

@@ -26,6 +26,18 @@ impl Plane {
         self.normal
     }
 
+    /// Whether another plane lies in the same place, to so small a part of its distance from the world's origin.
+    pub fn coincides(&self, other: &Self, near: f64) -> bool {
+        let far = self.point.length().max(other.point.length());
+        let is_parallel = self.normal.cross(other.normal).length() < 1e-6;
+        is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
+    }
+
+    /// Whether a point lies on the side from which the normal points away.
+    pub fn is_behind(&self, point: DVec3) -> bool {
+        (point - self.point).dot(self.normal) < 0.0
+    }
+
     /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs
     /// nothing.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {

@@ -176,10 +176,11 @@ impl Basis {
         }
         let heroes = self.heroes.map(|heroes| {
             let lights = lights.iter().map(|light| Emission::new(light, self.space));
-            let lights: Vec<Emission> = lights.chain(dyes.iter().map(|dye| dye.shines(self.space))).collect();
+            let shining: Vec<Emission> = dyes.iter().map(|dye| dye.shines(self.space)).collect();
+            let lights: Vec<Emission> = lights.chain(shining.iter().cloned()).collect();
             let of_dye = |dye: &Dye| lights.iter().map(|light| dye.excited_by(light)).collect::<Vec<_>>();
             let excitations: Vec<_> = dyes.iter().flat_map(of_dye).collect();
-            Heroes { mixture: Arc::new(heroes.mixture.exciting(&excitations)), ..heroes }
+            Heroes { mixture: Arc::new(heroes.mixture.exciting(&excitations, &shining)), ..heroes }
         });
         Self { heroes, excites: true, ..self }
     }

@@ -54,9 +54,21 @@ impl Mixture {
         Self { entries: Distribution::new(probabilities), lines }
     }
 
-    /// Half of the wavelengths drawn as before, the others by what excites dyes.
-    pub(super) fn exciting(&self, excitations: &[Excited]) -> Self {
+    /// Two fifths of the wavelengths drawn as before, as many by what excites dyes, and the others by what the eye sees
+    /// of what dyes send: under lines alone, nothing else would be drawn where they shine.
+    pub(super) fn exciting(&self, excitations: &[Excited], shining: &[Emission]) -> Self {
         let mut weights: Vec<f64> = self.probabilities().collect();
+        let eye: Vec<f64> = visible::observer().map(|cmf| cmf.iter().sum()).collect();
+        for dye in shining {
+            let seen: Vec<f64> = dye.spectrum().iter().zip(&eye).map(|(power, eye)| power * eye).collect();
+            let mut part: Vec<f64> = seen.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+            // The eye begins at once.
+            part[..ULTRAVIOLET].fill(0.0);
+            let scale = 0.5 / (part.iter().sum::<f64>() * shining.len() as f64);
+            if scale.is_finite() {
+                weights.iter_mut().zip(part).for_each(|(weight, x)| *weight += scale * x);
+            }
+        }
         for Excited { smooth, lines } in excitations {
             let mut part: Vec<f64> = smooth.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
             let of_line = |nm: f64| lines.iter().filter(|line| line[0] == nm).map(|line| line[1]).sum::<f64>();

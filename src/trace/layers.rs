@@ -1,5 +1,7 @@
 //! The layers that are asked for beside the image: which they are, and where their sums stand.
 
+use std::collections::HashMap;
+
 use super::contribution::{Contribution, Found, add};
 use super::first_lobe::FirstLobe;
 use super::spectrum_sample::Spectrum;
@@ -120,11 +122,12 @@ impl Layers {
         let color_space = scene.film.color_space;
         let (luminance, film_white) = (color_space.to_xyz()[1], apply(&color_space.of_xyz(), color_space.white()));
         let mut layers = Self { first: scene.format.first, luminance, film_white, ..Self::default() };
+        let mut known = HashMap::new();
         for group in &scene.light_groups {
             let name = light_layer_name(group);
-            let known = layers.groups.iter().position(|known| *known == name);
-            layers.group_of.push(known.unwrap_or(layers.groups.len()));
-            layers.groups.extend(known.is_none().then_some(name));
+            let number = *known.entry(name.clone()).or_insert(layers.groups.len());
+            layers.group_of.push(number);
+            layers.groups.extend((number == layers.groups.len()).then_some(name));
         }
         for &layer in &scene.format.layers {
             if layers.at(layer).is_none() {

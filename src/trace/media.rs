@@ -4,6 +4,7 @@ use crate::light::{Light, LightId};
 use crate::material::{Dielectric, Index};
 use crate::math::{DVec3, Frame, Ray, unit};
 use crate::scene::{MaterialId, Scene};
+use crate::shape::Shape;
 use crate::spectrum::{Draw, Table};
 
 /// Different media that may overlap in one place: a lens of varying index is made of many shells.
@@ -60,19 +61,18 @@ impl Media {
         direction: DVec3,
         counts: &dyn Fn(u32) -> bool,
     ) -> Self {
-        let direction = aside(direction);
-        let mut left = Self::left_by(scene, start, direction, counts);
-        if scene.unbounded().any(|object| scene.materials[object.material as usize].material.medium().is_some()) {
-            for (material, count) in Self::left_by(scene, start, -direction, counts) {
-                match left.iter_mut().find(|(known, _)| *known == material) {
-                    Some((_, most)) => *most = count.max(*most),
-                    None => left.push((material, count)),
-                }
-            }
-        }
+        let is_bounded = |object: u32| scene.objects[object as usize].shape.is_bounded() && counts(object);
+        let left = Self::left_by(scene, start, aside(direction), &is_bounded);
         let mut media = Self::default();
         for (material, count) in left.into_iter().filter(|(_, count)| *count > 0) {
             media = media.with(material, count as u32);
+        }
+        // Behind a plane is its inside: a walk that leaves one of two may never meet the other.
+        for (number, object) in scene.unbounded().filter(|(number, _)| counts(*number)) {
+            let is_inside = matches!(&*object.shape, Shape::Plane(plane) if plane.is_behind(start));
+            if is_inside && scene.material_of(number).medium().is_some() {
+                media = media.with(object.material, 1);
+            }
         }
         media
     }

@@ -37,13 +37,16 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos
     })
 }
 
-/// Clear films: a quarter wave, soap, a mirror of five layers, and more than a wavelength.
-const CLEAR: [&str; 4] = [
+/// Clear films: a quarter wave, soap, a mirror of five layers, more than a wavelength, and a mirror of nine layers.
+const CLEAR: [&str; 5] = [
     "[{ index = 1.38, thickness_nm = 99.6 }]",
     "[{ index = 1.33, thickness_nm = 300 }]",
     "[{ index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }, \
      { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }]",
     "[{ index = 1.6, thickness_nm = 900 }]",
+    "[{ index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }, \
+     { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, \
+     { index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }]",
 ];
 
 #[test]
@@ -54,7 +57,7 @@ fn clear_films_lose_nothing_and_win_nothing() {
         let glass = format!("dielectric = {{ index = 1.5, roughness = {roughness:?}, coating = {coating} }}");
         rows.push((glass, vec![([1.0, 1.5], false), ([1.5, 1.0], true)]));
         let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness:?}, coating = {coating} }}");
-        rows.push((plastic, vec![([1.0; 2], false)]));
+        rows.push((plastic, vec![([1.0; 2], false), ([1.7; 2], false)]));
         let metal = format!("conductor = {{ n = 1e-6, k = 100, roughness = {roughness:?}, coating = {coating} }}");
         rows.push((metal, vec![([1.0; 2], false)]));
     }

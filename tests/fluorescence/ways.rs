@@ -91,9 +91,13 @@ fn photons_excite_dyes_where_they_are_shown_and_where_they_are_gathered() {
 /// against as many lanes as there are, each of which goes its own way.
 #[test]
 fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
-    for dye in [YELLOW, RED, BRIGHTENER] {
+    let day = ("{ illuminant = \"D65\" }", None);
+    // Under a line alone, no light of the lamp is where the dye shines.
+    let blue = ("{ lines = [[436, 1]] }", Some(436.0));
+    let green = ("{ lines = [[546, 1]] }", Some(546.0));
+    for (dye, (light, line)) in [(YELLOW, day), (RED, day), (BRIGHTENER, day), (YELLOW, blue), (RED, green)] {
         let text = view([0.8, 0.0, 3.0], [0.0, 0.0, 0.0], 8.0, 8)
-            + "[render]\nmax_bounces = 12\n[[light]]\nenvironment = { radiance = { illuminant = \"D65\" } }\n"
+            + &format!("[render]\nmax_bounces = 12\n[[light]]\nenvironment = {{ radiance = {light} }}\n")
             + &body("paper", &dye.material(), &["quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }"])
             + &body(
                 "slab",
@@ -102,8 +106,9 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
             );
         let scene = scene(&text);
         let lights = [Emission::new(scene.lights[0].emission(), scene.film.color_space)];
-        let lanes = Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]);
-        let heroes = Basis::bands_from_ultraviolet(scene.film.color_space, 12, &[]).with_heroes(4, &lights);
+        let lines = line.as_slice();
+        let lanes = Basis::bands_from_ultraviolet(scene.film.color_space, 32 - lines.len(), lines);
+        let heroes = Basis::bands_from_ultraviolet(scene.film.color_space, 12, lines).with_heroes(4, &lights);
         let of = |basis: Basis, samples: u32| {
             let method = Method { basis, samples, ..method(&scene, SPLITTING) };
             let films: Vec<Film> =

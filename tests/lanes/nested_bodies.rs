@@ -205,6 +205,10 @@ fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
     for (planes, camera, lamp, expected) in cases.into_iter().chain(more) {
         look(planes, [[camera, 0.0, 0.0], [lamp, 0.0, 0.0]], "u = [0, 1, 0], v = [0, 0, 1]", expected);
     }
+    // In two half spaces at once, of which the way to the lamp leaves one.
+    let wedge = vec![plane(0.0, 1.0), "plane = { point = [0, 0, 0], normal = [0, 1, 0] }".to_owned()];
+    let ways = [[-1.0, -1.0, 0.0], [1.0, -3.0, 0.0]];
+    look(&wedge, ways, "u = [1, 1, 0], v = [0, 0, 1]", (-8_f64.sqrt()).exp());
     // Exactly along the surface.
     for (planes, camera, expected) in [(&half, -2.0, inside), (&half, 1.0, 1.0), (&slab, -2.0, inside)] {
         look(planes, [[camera, 0.0, 0.0], [camera, 0.0, 1.0]], "u = [1, 0, 0], v = [0, 1, 0]", expected);

@@ -82,6 +82,30 @@ fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
     }
 }
 
+/// The order of the objects decides nothing, and planes have no box that others could lie in.
+#[test]
+fn m2_a_plane_that_a_body_or_another_plane_lies_in_is_refused_whichever_comes_first() {
+    let water = body("water", "dielectric = { index = 1.33 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"]);
+    let block = |y: f64| {
+        body("block", "dielectric = { index = 1.5 }", &[&format!("cube = {{ center = [0, {y:?}, 0], size = 1 }}")])
+    };
+    let ice = |y: f64, x: f64| {
+        let plane = format!("plane = {{ point = [3, {y:?}, 1], normal = [{x:?}, -2, 0] }}");
+        body("ice", "dielectric = { index = 1.31 }", &[&plane])
+    };
+    let is_refused = |objects: String| {
+        let text = view([0.0, 3.0, 5.0], [0.0; 3], 30.0, 4) + &objects + &environment(1.0);
+        let source = Source { path: "scene.toml".into(), text };
+        source.compile().is_err_and(|error| error.to_string().contains("surface"))
+    };
+    for other in [block(0.5), block(-0.5), ice(0.0, 0.0)] {
+        assert!(is_refused(water.clone() + &other) && is_refused(other.clone() + &water), "{other}");
+    }
+    for other in [block(0.5 + 1e-6), block(-0.4), ice(1e-3, 0.0), ice(0.0, 0.1)] {
+        assert!(!is_refused(water.clone() + &other) && !is_refused(other.clone() + &water), "{other}");
+    }
+}
+
 /// Closed bodies are left as often as they are entered, to the last ray; an open one is counted, and no light is made
 /// of it.
 #[test]

@@ -10,6 +10,7 @@ use super::OFFSET;
 use super::glass::{Aim, EVENTS, Tally, follow, maps};
 use crate::support::bodies::{ball, closed_mesh};
 use crate::support::random::Random;
+use crate::support::scenes::{SINGLE_PATH, body, environment, image, view};
 
 /// The ball of `bodies`, placed.
 fn instance(map: &Transform) -> Shape {
@@ -154,5 +155,39 @@ fn copies_of_a_mesh_share_its_triangles() {
             Shape::Instance(placed) => assert!(map != Transform::IDENTITY && Arc::ptr_eq(placed.mesh(), &mesh)),
             other => panic!("{other:?}"),
         }
+    }
+}
+
+/// In the space of a huge mesh that is placed very small, places and directions are beyond numbers of 32 bits: there
+/// boxes of children that are not there were met, and others missed.
+#[test]
+fn copies_whose_own_space_is_beyond_32_bits_are_met_as_others_are() {
+    let (points, faces) = ball();
+    let seen = |radius: f64, scale: f64, away: f64| {
+        let points: Vec<[f64; 3]> = points.iter().map(|point| (*point * radius).to_array()).collect();
+        let text = view([away; 3], [0.0; 3], 50.0, 12)
+            + "[render]\nsamples = 16\n"
+            + &body(
+                "matte",
+                "diffuse = { reflectance = 0.5 }",
+                &[&format!("mesh = {{ points = {points:?}, faces = {faces:?} }}")],
+            )
+            + &format!("instances = [[{{ scale = {scale:e} }}]]\n")
+            + &environment(1.0);
+        let (film, report) = image(&text, SINGLE_PATH);
+        assert_eq!(report.non_finite, 0, "{radius:e} at {scale:e} from {away:e}");
+        let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum();
+        sum / film.pixels.len() as f64
+    };
+    // Too far away to be seen.
+    for [radius, scale, away] in [[1e30, 1e-30, 1e9], [1e25, 1e-25, 1e14], [1e30, 1e-15, 1e24]] {
+        let found = seen(radius, scale, away);
+        assert!((found - 1.0).abs() < 0.02, "{radius:e} at {scale:e} from {away:e}: {found}");
+    }
+    let near = seen(1.0, 1.0, 2.0);
+    assert!(near < 0.9, "{near}");
+    for scale in [1e-30, 1e-36, 1e-38, 1e-40, 1e-44, 1e-50] {
+        let found = seen(1e30, scale, 2e30 * scale);
+        assert!((found / near - 1.0).abs() < 0.01, "{scale:e}: {found}, not {near}");
     }
 }

@@ -10,6 +10,7 @@ use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
+use super::keep::catch_plainly;
 use super::messages::{answer, say};
 use super::outputs::{check_exposure, check_png, refuse, spare};
 
@@ -75,6 +76,7 @@ pub fn run(query: &Query) -> Result<()> {
     match &query.png {
         Some(png) => {
             check_writable(png)?;
+            catch_plainly()?;
             picture.write_png(png)?;
             say(&format!("wrote {}", png.display()));
             Ok(())

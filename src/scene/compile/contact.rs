@@ -2,6 +2,7 @@
 
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, ball_surface};
 use crate::scene::Object;
+use crate::shape::Shape;
 
 /// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.
 const RAYS: u32 = 256;
@@ -43,7 +44,9 @@ fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)
         open.retain(|&other| to(other) >= from(object));
         for &other in &open {
             let (low, high) = (object.min(other), object.max(other));
-            let (first, second) = if counting[low] { (low, high) } else { (high, low) };
+            // Of a plane there is no box to look around: where both count, the other one is the body.
+            let is_first = counting[low] && (boxes[low].is_some() || !counting[high]);
+            let (first, second) = if is_first { (low, high) } else { (high, low) };
             if counting[first] && may_touch(boxes[first], boxes[second]) {
                 pairs.push((first, second));
                 if pairs.len() == MOST_PAIRS {
@@ -61,15 +64,21 @@ fn reach(of: &Bounds) -> f64 {
     (of.max - of.min).max_element() * NEAR
 }
 
-/// Whether a body's box and another's meet; infinite ones have none.
+/// Whether a body's box and another's meet; infinite ones have none, and are compared with one another and as what a
+/// body meets.
 fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
-    let Some(a) = a else { return false };
-    let Some(b) = b else { return true };
+    let (a, b) = match (a, b) {
+        (Some(a), Some(b)) => (a, b),
+        (a, b) => return a.is_some() || b.is_none(),
+    };
     let reach = reach(&a);
     (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
 }
 
 fn share_a_surface(body: &Object, other: &Object) -> bool {
+    if let (Shape::Plane(one), Shape::Plane(another)) = (&*body.shape, &*other.shape) {
+        return one.coincides(another, NEAR);
+    }
     let Some(bounds) = body.shape.bounds() else { return false };
     let (center, size) = (bounds.center(), (bounds.max - bounds.min).length());
     let step = 1e-3 * size;

@@ -15,13 +15,17 @@ pub(super) struct Written<'d> {
     pub(super) shape: Shape,
     /// The file that it is read from.
     pub(super) file: Option<&'d str>,
-    /// The edges of a cube.
+    /// The edges of a cube, or of that around a sphere.
     pub(super) edges: Option<[f64; 3]>,
 }
 
 impl From<Shape> for Written<'_> {
     fn from(shape: Shape) -> Self {
-        Self { shape, file: None, edges: None }
+        let edges = match &shape {
+            Shape::Sphere(_) => shape.bounds().map(|bounds| (bounds.max - bounds.min).to_array()),
+            _ => None,
+        };
+        Self { shape, file: None, edges }
     }
 }
 
@@ -138,7 +142,7 @@ pub(super) struct Fit<'d> {
     /// Its steps.
     pub(super) steps: Value<'d>,
     pub(super) whole: Value<'d>,
-    /// The edges of a cube.
+    /// The edges of a cube, or of that around a sphere.
     pub(super) edges: Option<[f64; 3]>,
 }
 

@@ -59,6 +59,10 @@ pub struct Slabs {
 /// 1 + 12 u.
 const WIDEN: f32 = 1.0 + 6.0 * f32::EPSILON;
 
+/// Farthest place of a ray's origin: beyond it sums would not be finite, and the box of an absent child, at infinity,
+/// would be entered.
+const FAR: f32 = 0.5 * f32::MAX;
+
 /// The largest 32-bit distance at which a box may begin that holds something at t or nearer.
 #[inline(always)]
 pub fn reach(t: f64) -> f32 {
@@ -75,6 +79,7 @@ impl Slabs {
             Self { backward, entry: [0.0; 3], exit: [0.0; 3], entry_inverse: [0.0; 3], exit_inverse: [0.0; 3] };
         for axis in 0..3 {
             let near = origin[axis] as f32;
+            let near = if near.abs() <= FAR { near } else { FAR.copysign(near) };
             // The conversion is off by u at most, and so is the sum; below the normal numbers by less than the
             // smallest.
             let slack = near.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
@@ -83,9 +88,9 @@ impl Slabs {
             slabs.entry[axis] = near + onward;
             slabs.exit[axis] = near - onward;
             let inverse = direction[axis].recip().abs() as f32;
-            let entry = if inverse < f32::MAX { inverse } else { f32::MAX };
+            let entry = inverse.clamp(f32::MIN_POSITIVE, f32::MAX);
             slabs.entry_inverse[axis] = entry.copysign(sign);
-            slabs.exit_inverse[axis] = (inverse * WIDEN).copysign(sign);
+            slabs.exit_inverse[axis] = (inverse * WIDEN).max(f32::MIN_POSITIVE).copysign(sign);
         }
         slabs
     }

@@ -11,6 +11,7 @@ mod rendering;
 mod saved;
 mod stopping;
 mod tile;
+mod values;
 
 pub use blur::Blur;
 pub use light_pass::{learn_where_to_send, piloted, seen_photons, send_shown, splats};
@@ -20,3 +21,4 @@ pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;
 pub use stopping::{FIRST_LOOK, Stopped};
 pub use tile::bytes_of_film;
+pub use values::Values;

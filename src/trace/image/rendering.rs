@@ -9,16 +9,17 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::blur::Blur;
-use super::layer_sums::{ShownCounts, Taken, images, spectral_image, write};
+use super::layer_sums::ShownCounts;
 use super::noise::{AlphaNoise, Measured, Noise, measure};
 use super::passes::{Progress, most_at_once};
 use super::rare_light::{RareLight, rare_light};
 use super::saved::Restored;
 use super::stopping::{Clock, FIRST_LOOK, Stopped, is_wanted_known, next_stage, samples_wanted};
 use super::tile::Tile;
+use super::values::{Shown, Values};
 use super::{light_pass, saved};
 use crate::error::Result;
-use crate::film::{BlockReader, BlockWriter, Film, Pixel, PixelSum, SampleWeights, Shard, TilePlace};
+use crate::film::{BlockReader, BlockWriter, Film, Shard, TilePlace, Window};
 use crate::trace::parallel::for_each_in_parallel;
 use crate::trace::photon::PassLight;
 use crate::trace::photon_targets::PhotonTargets;
@@ -255,48 +256,54 @@ impl<'a> Rendering<'a> {
 
     /// The image of the samples so far.
     pub fn film(&self) -> Film {
-        let settings = self.world().scene.film;
-        let window = settings.window();
-        let mut pixels = vec![BLANK; window.pixels() as usize];
-        let layers = &self.world().layers;
-        let (mut images, none) = (images(layers, pixels.len()), PixelSum::default());
-        let (shown_for, counts) = (self.shown_for(), self.shown_counts());
-        let mut spectral = spectral_image(layers, pixels.len());
+        let window = self.world().scene.film.window();
+        let mut values = Values::new(&self.world().layers, window.pixels() as usize);
+        let shown = self.shown();
         for (tile, at) in self.places() {
-            for (place, sum) in tile.sums.iter().enumerate() {
-                let number = at.pixel(window, place as u32);
-                let subtracted = tile.subtracted.get(place).unwrap_or(&none);
-                let weights = SampleWeights::new(settings.filter, [sum.kept(), subtracted.kept()]);
-                let shown = tile.shown_at(place).map(|x| x * counts.image);
-                pixels[number] = sum.pixel(subtracted, &weights, shown);
-                if !layers.is_empty() {
-                    let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
-                    let shown = &*times(shown, counts.image);
-                    let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
-                    let variance = shown_for.and_then(|each| tile.replicates.variance(place, settings.filter, each));
-                    let taken = Taken { sums, shown, counts, variance, rgb, weights, covered, place };
-                    write(layers, &taken, number, &mut images);
-                    if let (Some(image), Some(spectrum)) = (&mut spectral, &layers.spectrum) {
-                        taken.write_spectrum(spectrum, number, image);
-                    }
-                    if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
-                        let alpha = f64::from(pixels[number].alpha) + layers.luminance_caught(&caught).coverage();
-                        pixels[number].alpha = alpha.min(1.0) as f32;
-                    }
-                }
-            }
+            values.write(self.world(), tile, &shown, |place| at.pixel(window, place as u32));
         }
+        self.film_of(values)
+    }
+
+    /// All of it but its values.
+    pub fn frame(&self) -> Film {
+        self.film_of(Values::new(&self.world().layers, 0))
+    }
+
+    /// The values of each tile that is made, row by row.
+    pub fn tiles(&self) -> impl Iterator<Item = Values> {
+        let shown = self.shown();
+        self.places().map(move |(tile, at)| {
+            let mut values = Values::new(&self.world().layers, at.pixels());
+            values.write(self.world(), tile, &shown, |place| place);
+            values
+        })
+    }
+
+    fn shown(&self) -> Shown {
+        Shown { counts: self.shown_counts(), samples: self.shown_for() }
+    }
+
+    fn film_of(&self, Values { pixels, layers, spectral }: Values) -> Film {
+        let (scene, of_layers) = (&self.world().scene, &self.world().layers);
+        let (Window { left, top, width, height }, film) = (scene.film.window(), scene.film);
+        let (corner, full, color_space) = ([left, top], [film.width, film.height], film.color_space);
         Film {
-            width: window.width,
-            height: window.height,
-            corner: [window.left, window.top],
-            full: [settings.width, settings.height],
-            color_space: settings.color_space,
+            width,
+            height,
+            corner,
+            full,
+            color_space,
             pixels,
-            layers: images,
+            layers,
             spectral,
-            manifests: layers.manifests(&self.world().scene),
+            manifests: of_layers.manifests(scene),
         }
+    }
+
+    /// Camera samples taken so far.
+    pub fn camera_samples(&self) -> u64 {
+        self.tiles.iter().map(Tile::samples).sum()
     }
 
     /// What was noticed so far.
@@ -311,7 +318,7 @@ impl<'a> Rendering<'a> {
             first_non_finite = first_non_finite.or(tile.first_non_finite);
             all += stats;
         }
-        let samples = self.tiles.iter().map(Tile::samples).sum();
+        let samples = self.camera_samples();
         let per_sample = |sum: f64| sum / u64::max(samples, 1) as f64;
         Report {
             samples,
@@ -471,10 +478,3 @@ impl<'a> Rendering<'a> {
         true
     }
 }
-
-/// Numbers so many times as large.
-fn times(numbers: &[f64], factor: f64) -> Cow<'_, [f64]> {
-    if factor == 1.0 { numbers.into() } else { numbers.iter().map(|x| x * factor).collect() }
-}
-
-const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };

@@ -416,7 +416,8 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             let asked = drawn.unwrap_or(incoming);
             let value = match branch.pdf {
                 None => branch.share,
-                Some(pdf) if at.flat == at.arrival.normal => branch.share * pdf as f32,
+                // Where lanes part, a branch's share is of its own lanes, and its density that of all.
+                Some(pdf) if at.flat == at.arrival.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
                 Some(_) => evaluated(at, asked.wi),
             };
             let passing = Self::meet(at, asked, value, &mut way.mueller);

@@ -1,0 +1,74 @@
+//! The values of an image, made of sums.
+
+use std::borrow::Cow;
+
+use super::layer_sums::{ShownCounts, Taken, images, spectral_image, write};
+use super::tile::Tile;
+use crate::film::{LayerImage, Pixel, PixelSum, SampleWeights, SpectralImage};
+use crate::trace::World;
+use crate::trace::layers::Layers;
+use crate::trace::replicates::REPLICATES;
+
+/// The values of some pixels.
+pub struct Values {
+    /// The image.
+    pub pixels: Vec<Pixel>,
+    /// The layers beside it.
+    pub layers: Vec<LayerImage>,
+    /// Spectra, if they are asked for.
+    pub spectral: Option<SpectralImage>,
+}
+
+/// What the sums of what photons show count.
+pub(super) struct Shown {
+    /// In the image and its halves.
+    pub(super) counts: ShownCounts,
+    /// For how many samples of each replicate they are.
+    pub(super) samples: Option<[f64; REPLICATES]>,
+}
+
+const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
+
+impl Values {
+    /// Of so many pixels of which nothing is known.
+    pub(super) fn new(layers: &Layers, count: usize) -> Self {
+        let (layers, spectral) = (images(layers, count), spectral_image(layers, count));
+        Self { pixels: vec![BLANK; count], layers, spectral }
+    }
+
+    /// Writes a tile's pixels, of which each has a number here.
+    pub(super) fn write(&mut self, world: &World, tile: &Tile, shown: &Shown, number: impl Fn(usize) -> usize) {
+        (0..tile.sums.len()).for_each(|place| self.write_pixel(world, tile, shown, place, number(place)));
+    }
+
+    fn write_pixel(&mut self, world: &World, tile: &Tile, of_shown: &Shown, place: usize, number: usize) {
+        let counts = of_shown.counts;
+        let (filter, layers) = (world.scene.film.filter, &world.layers);
+        let (sum, none) = (&tile.sums[place], PixelSum::default());
+        let subtracted = tile.subtracted.get(place).unwrap_or(&none);
+        let weights = SampleWeights::new(filter, [sum.kept(), subtracted.kept()]);
+        let shown = tile.shown_at(place).map(|x| x * counts.image);
+        self.pixels[number] = sum.pixel(subtracted, &weights, shown);
+        if layers.is_empty() {
+            return;
+        }
+        let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
+        let shown = &*times(shown, counts.image);
+        let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
+        let variance = of_shown.samples.and_then(|each| tile.replicates.variance(place, filter, each));
+        let taken = Taken { sums, shown, counts, variance, rgb, weights, covered, place };
+        write(layers, &taken, number, &mut self.layers);
+        if let (Some(image), Some(spectrum)) = (&mut self.spectral, &layers.spectrum) {
+            taken.write_spectrum(spectrum, number, image);
+        }
+        if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
+            let alpha = f64::from(self.pixels[number].alpha) + layers.luminance_caught(&caught).coverage();
+            self.pixels[number].alpha = alpha.min(1.0) as f32;
+        }
+    }
+}
+
+/// Numbers so many times as large.
+fn times(numbers: &[f64], factor: f64) -> Cow<'_, [f64]> {
+    if factor == 1.0 { numbers.into() } else { numbers.iter().map(|x| x * factor).collect() }
+}
