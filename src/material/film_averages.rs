@@ -86,8 +86,8 @@ fn rule(is_slow: bool) -> &'static [[f64; 2]] {
     RULES[which].get_or_init(|| gauss_legendre(PLACES[which]))
 }
 
-/// Twice the integral of two shares of a film times cosine over the cosine, in a medium to which that beyond has a relative
-/// index: at the critical angle, if there is one, shares have a kink, up to which both sides are integrated.
+/// Twice the integral of two shares of a film times cosine over the cosine, in a medium to which that beyond has a
+/// relative index: at the critical angle, if there is one, shares have a kink, up to which both sides are integrated.
 pub(super) fn mean(is_slow: bool, ratio: f64, of: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (critical, mut sum) = (critical(ratio), [0.0; 2]);
     for &[t, weight] in rule(is_slow) {

@@ -307,7 +307,7 @@ impl Rendering {
     fn image_of(&self, film: Film) -> Image {
         let (report, error) = (self.passes.report(), self.error());
         // Within a pass some pixels are ahead: then it is the mean.
-        let within = report.samples.div_ceil(film.pixels.len() as u64);
+        let within = report.samples.div_ceil((u64::from(film.width) * u64::from(film.height)).max(1));
         let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
         let mut provenance = provenance(&self.origin, &self.plan, samples, &report);
         let stopped_by = report.stopped_by.map(|by| ("stoppedBy".into(), Fact::Text(by.name().to_owned())));

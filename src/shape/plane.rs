@@ -33,6 +33,11 @@ impl Plane {
         is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
     }
 
+    /// The unit vector on the side that is its front.
+    pub fn front(&self) -> DVec3 {
+        self.normal
+    }
+
     /// Whether a point lies on the side from which the normal points away.
     pub fn is_behind(&self, point: DVec3) -> bool {
         (point - self.point).dot(self.normal) < 0.0

@@ -4,7 +4,7 @@ use crate::light::{Light, LightId};
 use crate::material::{Dielectric, Index};
 use crate::math::{DVec3, Frame, Ray, unit};
 use crate::scene::{MaterialId, Scene};
-use crate::shape::Shape;
+use crate::shape::{Plane, Shape};
 use crate::spectrum::{Draw, Table};
 
 /// Different media that may overlap in one place: a lens of varying index is made of many shells.
@@ -67,12 +67,8 @@ impl Media {
         for (material, count) in left.into_iter().filter(|(_, count)| *count > 0) {
             media = media.with(material, count as u32);
         }
-        // Behind a plane is its inside: a walk that leaves one of two may never meet the other.
-        for (number, object) in scene.unbounded().filter(|(number, _)| counts(*number)) {
-            let is_inside = matches!(&*object.shape, Shape::Plane(plane) if plane.is_behind(start));
-            if is_inside && scene.material_of(number).medium().is_some() {
-                media = media.with(object.material, 1);
-            }
+        for (material, count) in behind_planes(scene, start, direction, counts) {
+            media = media.with(material, count);
         }
         media
     }
@@ -205,6 +201,35 @@ impl Media {
     fn place(&self, material: MaterialId) -> Option<usize> {
         self.materials[..self.len as usize].iter().position(|known| *known == material)
     }
+}
+
+/// How many half spaces of each medium a point lies in, of those planes that count.
+///
+/// What is between two planes that look away from each other is a slab: behind which of them one is everywhere does not
+/// count. So many are taken off as lie around at infinity, forward or backward, or where all planes of the medium look.
+fn behind_planes(
+    scene: &Scene<Table>,
+    start: DVec3,
+    direction: DVec3,
+    counts: &dyn Fn(u32) -> bool,
+) -> Vec<(MaterialId, u32)> {
+    let mut planes: Vec<(MaterialId, Vec<&Plane>)> = Vec::new();
+    for (number, object) in scene.unbounded().filter(|(number, _)| counts(*number)) {
+        let is_medium = scene.material_of(number).medium().is_some();
+        let Shape::Plane(plane) = &*object.shape else { continue };
+        match planes.iter_mut().find(|(known, _)| *known == object.material) {
+            _ if !is_medium => {}
+            Some((_, others)) => others.push(plane),
+            None => planes.push((object.material, vec![plane])),
+        }
+    }
+    let count = |planes: &[&Plane]| {
+        let around = |way: DVec3| planes.iter().filter(|plane| plane.front().dot(aside(way)) < 0.0).count();
+        let fronts = planes.iter().map(|plane| plane.front()).sum::<DVec3>().try_normalize();
+        let least = [Some(direction), Some(-direction), fronts].into_iter().flatten().map(around).min();
+        planes.iter().filter(|plane| plane.is_behind(start)).count().saturating_sub(least.unwrap_or(0)) as u32
+    };
+    planes.into_iter().map(|(material, planes)| (material, count(&planes))).filter(|(_, count)| *count > 0).collect()
 }
 
 /// Of several media in one place, the one that is really there.

@@ -33,8 +33,8 @@ pub struct Method {
     pub bright: Option<BrightPlaces>,
     /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
     pub light_vertices: bool,
-    /// Where paths from suns, and from what is bright in an image of the sky, start for that; light of others is left to
-    /// the camera's paths.
+    /// Where paths from suns, and from what is bright in an image of the sky, start for that; light of others is left
+    /// to the camera's paths.
     pub sunlit: Vec<Sunlit>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,

@@ -116,7 +116,8 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
             mean(&films)
         };
         // A sample of heroes has a tenth of the variance, or less.
-        let (found, expected) = (of(heroes, 128), of(lanes, 256));
+        let times = if lines.is_empty() { 1 } else { 8 };
+        let (found, expected) = (of(heroes, times * 128), of(lanes, times * 256));
         for c in 0..3 {
             let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.error[c].hypot(expected.error[c]));

@@ -1,5 +1,7 @@
 //! The plan asks for a light pass where that lowers the time to an error, and says why where not.
 
+use std::f64::consts::PI;
+
 use abbe::plan::plan;
 use abbe::trace::{LightPass, World, photons_within};
 
@@ -93,9 +95,12 @@ fn photons_of_a_pass_are_few_where_pixels_are() {
     for width in [6, 48] {
         let pass = plan(&scene(&text(width))).method.light_pass.expect("the floor is seen through the water");
         let map = pass.map.expect("the floor is seen through the water");
-        let pixels = u64::from(width * width);
-        println!("{width} pixels: {} passes of {}", map.count, map.photons);
-        assert!(map.photons <= 9 * pixels, "{width} pixels: {} passes of {}", map.count, map.photons);
+        let in_a_circle = PI * map.radius * map.radius * map.photons as f64 / f64::from(width * width);
+        let told = format!("{width} pixels: {} passes of {}, {in_a_circle} in a circle", map.count, map.photons);
+        println!("{told}");
+        assert!((1.0..40.0).contains(&in_a_circle), "{told}");
+        // Half a pixel of an image of 24 x 24 at most.
+        assert!(map.radius < 0.75 * (f64::from(width) / 24.0).min(1.0), "{told}");
     }
 }
 
