@@ -39,7 +39,8 @@ fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
         let crosses = if n1 == n2 { 1.0 } else { Interface::new(n1, n2, cos).transmittance };
         [1.0 - crosses, crosses]
     };
-    let averages = FilmAverages::new(stack.is_slow(), [n1, n2], n1.max(n2), film, bare);
+    // In a denser medium layers may reflect totally, from other angles on than the coat.
+    let averages = FilmAverages::new(stack.is_slow() && n1 <= n2, [n1, n2], n1.max(n2), film, bare);
     if stack.layers().iter().all(|layer| layer.index.im == 0.0) {
         return averages;
     }

@@ -24,13 +24,9 @@ const RAREST: f64 = 1.0 / 16.0;
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
-/// Most photons of a pass, and most for each pixel: more would take longer to look through than to send.
+/// Photons of a pass: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
-const OF_A_PIXEL: f64 = 8.0;
-/// An image of fewer pixels than this squared is blurred no more than one of so many: a pixel of it may hold all that
-/// there is to see.
-const SIDE: f64 = 24.0;
-/// Photons of a map that tells whether any are gathered, and what they are worth; and the fewest of an image.
+/// Photons of a map that tells whether any are gathered, and what they are worth.
 const FEW: u64 = 4096;
 /// Fewer where they follow many rays, but never too few.
 const FEWEST_SENT: u64 = 512;
@@ -53,13 +49,10 @@ pub(super) fn with_map(
     let samples = untaught.samples_of_the_format();
     let most = f64::from(method.samples);
     // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
-    let pixels = samples / most;
-    let fine = pixels.max(SIDE * SIDE);
-    let radius = RADIUS * libm::pow(most, -1.0 / 6.0) * (pixels / fine).sqrt();
+    let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
     let passes = |photons: f64| {
-        let all = (photons * samples).ceil().max(FEW as f64);
-        let of_a_pass = OF_A_PASS.min(OF_A_PIXEL * fine);
-        let count = (all / of_a_pass).round().clamp(1.0, most);
+        let all = (photons * samples).ceil();
+        let count = (all / OF_A_PASS).round().clamp(1.0, most);
         MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius, chance: 1.0 }
     };
     let map = passes(PHOTONS);

@@ -1,7 +1,5 @@
 //! The plan asks for a light pass where that lowers the time to an error, and says why where not.
 
-use std::f64::consts::PI;
-
 use abbe::plan::plan;
 use abbe::trace::{LightPass, World, photons_within};
 
@@ -75,33 +73,6 @@ fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
     // Those that are sent beside the spot's cone follow none.
     let photons = photons_within(&world, 4096.0);
     assert!((2048..2300).contains(&photons), "{photons}");
-}
-
-/// A circle of half a pixel holds about as many photons however few pixels there are: in one pass of all, 450 were
-/// looked through at each place, and the same error took three times as long.
-#[test]
-fn photons_of_a_pass_are_few_where_pixels_are() {
-    let text = |width: u32| {
-        view([0.0, 4.0, 4.0], [0.0; 3], 30.0, width)
-            + "[render]\nsamples = 600\n"
-            + &body("floor", "diffuse = { reflectance = 0.5 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
-            + &body("water", "dielectric = { index = 1.33 }", &["cube = { center = [0, 0.5, 0], size = [4, 1.2, 4] }"])
-            + &body(
-                "lamp",
-                "emissive = { radiance = 5 }",
-                &["disc = { center = [0.5, 4, 0], normal = [0, -1, 0], radius = 0.3 }"],
-            )
-    };
-    for width in [6, 48] {
-        let pass = plan(&scene(&text(width))).method.light_pass.expect("the floor is seen through the water");
-        let map = pass.map.expect("the floor is seen through the water");
-        let in_a_circle = PI * map.radius * map.radius * map.photons as f64 / f64::from(width * width);
-        let told = format!("{width} pixels: {} passes of {}, {in_a_circle} in a circle", map.count, map.photons);
-        println!("{told}");
-        assert!((1.0..40.0).contains(&in_a_circle), "{told}");
-        // Half a pixel of an image of 24 x 24 at most.
-        assert!(map.radius < 0.75 * (f64::from(width) / 24.0).min(1.0), "{told}");
-    }
 }
 
 /// What a clear coat throws is no light that is missing, except from points.

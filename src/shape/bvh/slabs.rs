@@ -59,9 +59,12 @@ pub struct Slabs {
 /// 1 + 12 u.
 const WIDEN: f32 = 1.0 + 6.0 * f32::EPSILON;
 
-/// Farthest place of a ray's origin: beyond it sums would not be finite, and the box of an absent child, at infinity,
-/// would be entered.
-const FAR: f32 = 0.5 * f32::MAX;
+/// The number, or the largest there is: from a place that is not finite, the box of an absent child, at infinity, would
+/// be entered.
+#[inline(always)]
+fn finite(number: f32) -> f32 {
+    if number.abs() <= f32::MAX { number } else { f32::MAX.copysign(number) }
+}
 
 /// The largest 32-bit distance at which a box may begin that holds something at t or nearer.
 #[inline(always)]
@@ -79,14 +82,13 @@ impl Slabs {
             Self { backward, entry: [0.0; 3], exit: [0.0; 3], entry_inverse: [0.0; 3], exit_inverse: [0.0; 3] };
         for axis in 0..3 {
             let near = origin[axis] as f32;
-            let near = if near.abs() <= FAR { near } else { FAR.copysign(near) };
             // The conversion is off by u at most, and so is the sum; below the normal numbers by less than the
             // smallest.
             let slack = near.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
             let sign = direction[axis] as f32;
             let onward = slack.copysign(sign);
-            slabs.entry[axis] = near + onward;
-            slabs.exit[axis] = near - onward;
+            slabs.entry[axis] = finite(near + onward);
+            slabs.exit[axis] = finite(near - onward);
             let inverse = direction[axis].recip().abs() as f32;
             let entry = inverse.clamp(f32::MIN_POSITIVE, f32::MAX);
             slabs.entry_inverse[axis] = entry.copysign(sign);
