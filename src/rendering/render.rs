@@ -299,7 +299,7 @@ impl Rendering {
         self.image_of(self.passes.film())
     }
 
-    /// The same without its pixels and the values of its layers: all that is known of it, in little memory.
+    /// All that is known of the image so far, without its pixels and the values of its layers: it takes little memory.
     pub fn summary(&self) -> Image {
         self.image_of(self.passes.frame())
     }

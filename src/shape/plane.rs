@@ -22,7 +22,8 @@ impl Plane {
         self.point
     }
 
-    pub(super) fn normal(&self) -> DVec3 {
+    /// The unit vector on the side that is its front.
+    pub fn normal(&self) -> DVec3 {
         self.normal
     }
 
@@ -31,11 +32,6 @@ impl Plane {
         let far = self.point.length().max(other.point.length());
         let is_parallel = self.normal.cross(other.normal).length() < 1e-6;
         is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
-    }
-
-    /// The unit vector on the side that is its front.
-    pub fn front(&self) -> DVec3 {
-        self.normal
     }
 
     /// Whether a point lies on the side from which the normal points away.

@@ -30,9 +30,7 @@ impl Mixture {
         let steps = COUNT - 1;
         let mut probabilities = vec![0.0; steps + lines.len()];
         let mut add = |share: f64, density: &[f64], line: &dyn Fn(f64) -> f64| {
-            let mut part: Vec<f64> = density.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
-            // The eye begins at once.
-            part[..ULTRAVIOLET].fill(0.0);
+            let mut part = visible_steps(density);
             part.extend(lines.iter().map(|&nm| line(nm)));
             let total: f64 = part.iter().sum();
             if total > 0.0 {
@@ -61,16 +59,14 @@ impl Mixture {
         let eye: Vec<f64> = visible::observer().map(|cmf| cmf.iter().sum()).collect();
         for dye in shining {
             let seen: Vec<f64> = dye.spectrum().iter().zip(&eye).map(|(power, eye)| power * eye).collect();
-            let mut part: Vec<f64> = seen.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
-            // The eye begins at once.
-            part[..ULTRAVIOLET].fill(0.0);
+            let part = visible_steps(&seen);
             let scale = 0.5 / (part.iter().sum::<f64>() * shining.len() as f64);
             if scale.is_finite() {
                 weights.iter_mut().zip(part).for_each(|(weight, x)| *weight += scale * x);
             }
         }
         for Excited { smooth, lines } in excitations {
-            let mut part: Vec<f64> = smooth.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+            let mut part = steps(smooth);
             let of_line = |nm: f64| lines.iter().filter(|line| line[0] == nm).map(|line| line[1]).sum::<f64>();
             part.extend(self.lines.iter().map(|&nm| of_line(nm)));
             let total: f64 = part.iter().sum();
@@ -114,4 +110,16 @@ impl Mixture {
             Hero { below: drawn.index + 1, fraction: 0.0, factor }
         }
     }
+}
+
+/// The means of a density over the steps between its wavelengths.
+fn steps(density: &[f64]) -> Vec<f64> {
+    density.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect()
+}
+
+/// The means over those steps that the eye sees, and 0 over the others: it begins at once.
+fn visible_steps(density: &[f64]) -> Vec<f64> {
+    let mut steps = steps(density);
+    steps[..ULTRAVIOLET].fill(0.0);
+    steps
 }

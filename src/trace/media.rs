@@ -224,8 +224,8 @@ fn behind_planes(
         }
     }
     let count = |planes: &[&Plane]| {
-        let around = |way: DVec3| planes.iter().filter(|plane| plane.front().dot(aside(way)) < 0.0).count();
-        let fronts = planes.iter().map(|plane| plane.front()).sum::<DVec3>().try_normalize();
+        let around = |way: DVec3| planes.iter().filter(|plane| plane.normal().dot(aside(way)) < 0.0).count();
+        let fronts = planes.iter().map(|plane| plane.normal()).sum::<DVec3>().try_normalize();
         let least = [Some(direction), Some(-direction), fronts].into_iter().flatten().map(around).min();
         planes.iter().filter(|plane| plane.is_behind(start)).count().saturating_sub(least.unwrap_or(0)) as u32
     };

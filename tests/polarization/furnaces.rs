@@ -11,7 +11,8 @@ fn in_an_even_sky(material: &str, turned: f64) -> [(f64, f64); 4] {
     of_objects(&sheets(&[material.to_owned()], turned))
 }
 
-/// The same of any objects and the sky.
+/// What is seen straight on of any objects and the sky: S0 to S3, each its mean and variance, of renders by other
+/// seeds.
 fn of_objects(objects: &str) -> [(f64, f64); 4] {
     let view = "camera = { position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6 }\n\
                 film = { width = 1, height = 1, filter = \"center\", stokes = true }\n";
