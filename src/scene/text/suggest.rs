@@ -8,7 +8,7 @@ use crate::scene::share;
 use crate::spectrum::ColorSpace;
 
 /// Words of other renderers, and what is called so here.
-const ELSEWHERE: [(&str, &str); 32] = [
+const ELSEWHERE: [(&str, &str); 34] = [
     ("ior", "index"),
     ("eta", "index"),
     ("albedo", "reflectance"),
@@ -41,6 +41,8 @@ const ELSEWHERE: [(&str, &str); 32] = [
     ("glass", "dielectric"),
     ("glossy", "plastic"),
     ("light", "emissive"),
+    ("spp", "samples"),
+    ("max_depth", "max_bounces"),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
@@ -76,6 +78,17 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 8] = [
     ),
 ];
 
+/// Sections whose keys are taken for each other's: a key that this one alone has, and others that are looked for elsewhere.
+const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
+    ("camera", "look_at", &["position", "up", "vertical_fov", "lens", "projection", "shift", "polarizer", "near"]),
+    ("film", "color_space", &["width", "filter", "crop", "overscan", "layers", "precision", "compression", "stokes"]),
+    (
+        "render",
+        "diffuse_bounces",
+        &["samples", "seed", "error", "time", "model", "max_bounces", "adaptive", "caustics", "polarization", "spp"],
+    ),
+];
+
 /// The known name that was meant by the value or key `word`, or all of them; `key` is the key of a value.
 pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
     let layer = || (key == "layers").then(|| layer_elsewhere(word)).flatten().map(str::to_owned);
@@ -98,7 +111,17 @@ fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
         let (key, _) = spectra.into_iter().find(|(key, fits)| is_kind && *fits && known.contains(key))?;
         Some(format!("write {key} = {{ {word} = .. }}"))
     };
-    help.map(|(.., help)| (*help).to_owned()).or_else(of_spectrum)
+    help.map(|(.., help)| (*help).to_owned()).or_else(of_spectrum).or_else(|| in_another_section(word, known))
+}
+
+/// Where a key belongs that one section has, and another, or the file outside of all of them, does not know.
+fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
+    let is_mistakable =
+        MISTAKEN_SECTIONS.iter().any(|(section, own, _)| known.contains(own) || known.contains(section));
+    let has_it = |own: &str, keys: &[&str]| !known.contains(&own) && (own == word || keys.contains(&word));
+    let (section, ..) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
+    let here = ELSEWHERE.iter().find(|(there, _)| *there == word).map_or(word, |(_, here)| here);
+    Some(format!("write {here} in [{section}]"))
 }
 
 /// The known name that was meant by the value or key `word`, if any is near.
