@@ -6,7 +6,7 @@ use crate::scene::Hit;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 use crate::trace::media::Media;
-use crate::trace::walk::{Path, Polarized, Through, shading, straight_at};
+use crate::trace::walk::{Meeting, Path, Polarized, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
@@ -102,8 +102,7 @@ impl Walk {
 #[derive(Clone, Copy)]
 struct Surface<'a> {
     ray: &'a Ray,
-    hit: &'a Hit,
-    point: &'a SurfacePoint,
+    meeting: &'a Meeting,
     u: [f64; 4],
     lane: usize,
     way: Way,
@@ -164,13 +163,13 @@ impl<'a> Colors<'a> {
         for _ in 0..LONGEST {
             walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.crossing.t)));
             let Some(met) = hit else { return walk };
-            let point = self.world.scene.objects[met.object as usize].point(&ray, &met.crossing);
+            let meeting = Meeting::new(self.world, &ray, met);
             key = key.child(0);
-            let at = Surface { ray: &ray, hit: &met, point: &point, u: sampler.four_plain(key, SURFACE), lane, way };
+            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, way };
             match self.beyond(&mut walk, &at) {
-                Next::Toward(direction) => ray = point.leave(direction),
+                Next::Toward(direction) => ray = meeting.point.leave(direction),
                 Next::End => {
-                    walk.end = Some((point, met.object));
+                    walk.end = Some((meeting.point, met.object));
                     return walk;
                 }
                 Next::Lost => break,
@@ -184,23 +183,19 @@ impl<'a> Colors<'a> {
 
     /// The way on from a surface.
     fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
-        let Surface { ray, hit, point, u, way, .. } = *at;
+        let Surface { ray, meeting, u, way, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
-        let [_, normal] = shading::normals(point, wo);
-        if world.is_see_through(hit.object) {
-            let inside = walk.media.inside(&world.scene);
-            let through = Through { ray, present: draw.start(), inside };
-            let onward = straight_at(world, draw, &through, hit, point, Polarized::NOT);
-            if onward.is_some_and(|onward| walk.takes(f64::from(onward.straight.holes[0]), way)) {
-                return Next::Toward(ray.direction);
-            }
+        let [_, normal] = shading::normals(&meeting.point, wo);
+        let inside = walk.media.inside(&world.scene);
+        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), way) {
+            return Next::Toward(ray.direction);
         }
-        match world.scene.material_of(hit.object) {
+        match world.scene.material_of(meeting.hit.object) {
             Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
                 let index: [f64; 4] = draw.read_exact(&pane.index);
-                let here = media::index(&world.scene, draw, walk.media.inside(&world.scene))[0];
+                let here = media::index(&world.scene, draw, inside)[0];
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
@@ -221,7 +216,7 @@ impl<'a> Colors<'a> {
 
     /// The way on from the surface of a clear body.
     fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
-        let Surface { ray, hit, point, u, lane, way } = *at;
+        let Surface { ray, meeting: Meeting { hit, point }, u, lane, way } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         let front = point.normal.dot(ray.direction) < 0.0;
@@ -229,7 +224,7 @@ impl<'a> Colors<'a> {
         let Some(boundary) = walk.media.boundary(&world.scene, material, front) else {
             return Next::Toward(ray.direction);
         };
-        let indices = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, draw, inside));
+        let indices = boundary.sides().map(|inside| media::index(&world.scene, draw, inside));
         walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
         let [n1, n2] = indices.map(|index| index[lane]);
         // The same facet for both colors.

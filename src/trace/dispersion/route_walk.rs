@@ -4,10 +4,8 @@ use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
-use crate::scene::Hit;
-use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes, Table};
-use crate::trace::walk::{Path, Polarized, Through, shading, straight_at};
+use crate::trace::walk::{Meeting, Path, Polarized, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces that are met for one pixel.
@@ -78,9 +76,10 @@ impl<'a> Walker<'a> {
         };
         let walk = self.inside(walk, hit.crossing.t);
         let object = &world.scene.objects[hit.object as usize];
-        let point = object.point(&walk.ray, &hit.crossing);
+        let meeting = Meeting::new(world, &walk.ray, hit);
+        let point = &meeting.point;
         let u = self.sampler.four_plain(walk.key, 0);
-        if self.passes(&walk, &hit, &point, u[3]) {
+        if self.passes(&walk, &meeting, u[3]) {
             let (ray, key) = (point.leave(walk.ray.direction), walk.key.child(0));
             self.pending.push(Walk { ray, key, ..walk });
             return;
@@ -92,10 +91,10 @@ impl<'a> Walker<'a> {
             self.record(&walk, light);
         }
         let material = world.scene.material_of(hit.object);
-        let [flat, normal] = shading::normals(&point, -walk.ray.direction);
-        let uv = object.uv(&hit.crossing, &point);
+        let [flat, normal] = shading::normals(point, -walk.ray.direction);
+        let uv = object.uv(&hit.crossing, point);
         let part = self.part(material, uv, u[2]);
-        let at = At { walk: &walk, material: object.material, point: &point, normal, uv, part, u };
+        let at = At { walk: &walk, material: object.material, point, normal, uv, part, u };
         self.leave(&at, material.with_parts()[part], flat);
     }
 
@@ -165,18 +164,9 @@ impl<'a> Walker<'a> {
     }
 
     /// Whether a hole lets the way pass, by chance.
-    fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
-        let (draw, inside) = (&self.draw, walk.media.inside(&self.world.scene));
-        self.world.is_see_through(hit.object)
-            && straight_at(
-                self.world,
-                draw,
-                &Through { ray: &walk.ray, present: Lanes::ONE, inside },
-                hit,
-                point,
-                Polarized::NOT,
-            )
-            .is_some_and(|onward| u < f64::from(onward.straight.holes[1]))
+    fn passes(&self, walk: &Walk, meeting: &Meeting, u: f64) -> bool {
+        let inside = walk.media.inside(&self.world.scene);
+        u < straight::holes(self.world, &self.draw, &walk.ray, inside, meeting)[1].into()
     }
 
     /// The material that is met, by chance where there are several.
@@ -217,7 +207,7 @@ impl<'a> Walker<'a> {
         let Some(boundary) = walk.media.boundary(&world.scene, at.material, front) else {
             return self.go_on(at, walk.clone(), walk.ray.direction, 0);
         };
-        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
+        let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
             return self.go_on(at, crossed, walk.ray.direction, 0);
@@ -268,9 +258,10 @@ impl<'a> Walker<'a> {
             walk = self.inside(walk, hit.crossing.t);
             left -= hit.crossing.t;
             let object = &world.scene.objects[hit.object as usize];
-            let point = object.point(&walk.ray, &hit.crossing);
-            if !self.passes(&walk, &hit, &point, at.u[2]) {
-                let uv = object.uv(&hit.crossing, &point);
+            let meeting = Meeting::new(world, &walk.ray, hit);
+            let point = &meeting.point;
+            if !self.passes(&walk, &meeting, at.u[2]) {
+                let uv = object.uv(&hit.crossing, point);
                 let material = world.scene.material_of(hit.object);
                 let part = self.part(material, uv, at.u[2]);
                 let transmittance = match material.with_parts()[part] {

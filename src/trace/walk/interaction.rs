@@ -16,6 +16,13 @@ pub struct Meeting {
     pub point: SurfacePoint,
 }
 
+impl Meeting {
+    #[inline(always)]
+    pub fn new(world: &World, ray: &Ray, hit: Hit) -> Self {
+        Self { hit, point: world.scene.objects[hit.object as usize].point(ray, &hit.crossing) }
+    }
+}
+
 /// A ray that arrives at a surface.
 pub struct Arriving<'a, const N: usize> {
     pub ray: &'a Ray,
