@@ -1,4 +1,4 @@
-use super::interaction::Arriving;
+use super::interaction::{Arriving, Interaction};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use crate::math::{BranchKey, DVec3, Ray};
@@ -218,9 +218,23 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
     }
 
-    /// By which lobe the first surface sends its light to the camera; none before it has left one.
-    pub fn lobe(&self) -> Option<Option<FirstLobe>> {
-        (self.bounces > 0).then_some(self.first)
+    /// The lobe by which the first surface sends light to the camera that the path finds at a surface, in a direction
+    /// that may lead beyond it; none if layers do not tell that apart.
+    #[inline]
+    pub fn first_lobe(
+        &self,
+        world: &World,
+        Interaction { material, lobes, arrival, .. }: &Interaction<N>,
+        wi: DVec3,
+        crosses: bool,
+    ) -> Option<FirstLobe> {
+        if self.bounces > 0 || !world.layers.tell_lobes_apart() {
+            return self.first;
+        }
+        Some(match crosses {
+            true => FirstLobe::Transmitted,
+            false => FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi),
+        })
     }
 
     /// Its ray, as it arrives at a surface.

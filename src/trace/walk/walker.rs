@@ -347,7 +347,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.excitation = path.excitation;
         next.first = match path.bounces {
             0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
-            _ => at.first_lobe(world, path.lobe(), branch.wi, crosses),
+            _ => path.first_lobe(world, at, branch.wi, crosses),
         };
     }
 }
