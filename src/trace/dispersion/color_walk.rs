@@ -6,7 +6,7 @@ use crate::scene::Hit;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 use crate::trace::media::Media;
-use crate::trace::walk::{Meeting, Path, Polarized, shading, straight};
+use crate::trace::walk::{Meeting, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
@@ -135,7 +135,7 @@ impl<'a> Colors<'a> {
     /// Follows the ray through a place of the film.
     pub fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
         let ray = self.world.scene.camera.ray(at);
-        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
+        let media = self.world.media_at_camera(&ray);
         let first = self.world.scene.intersect_seen(&ray, None);
         self.walk(lane, ray, first, media, sampler, way)
     }

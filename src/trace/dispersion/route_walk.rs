@@ -5,7 +5,7 @@ use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::spectrum::{Draw, Lanes, Table};
-use crate::trace::walk::{Meeting, Path, Polarized, shading, straight};
+use crate::trace::walk::{Meeting, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces that are met for one pixel.
@@ -34,7 +34,7 @@ impl<'a> Walker<'a> {
 
     /// Answers how many surfaces it met.
     pub fn walk(&mut self, ray: Ray) -> usize {
-        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
+        let media = self.world.media_at_camera(&ray);
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
         self.pending.push(Walk { ray, media, key, steps, weight: 1.0, left: Lanes::ONE, scattered: 0 });
         let mut best = 0.0_f32;

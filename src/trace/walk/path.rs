@@ -146,16 +146,9 @@ impl<const N: usize, P> Path<N, P> {
 impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// The path of a camera ray.
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
-        let camera = &world.scene.camera;
-        let media = if world.has_media && camera.starts_away() {
-            world
-                .camera_media
-                .after_walk(&world.scene, [camera.position(), ray.origin], &|object| world.scene.is_seen(object))
-        } else {
-            world.camera_media
-        };
-        let throughput = Throughput::starting(draw.start()).scaled(camera.transmittance());
-        Self::starting(world, PathKind::Camera, throughput, ray, media, P::of_camera(world, &ray))
+        let throughput = Throughput::starting(draw.start()).scaled(world.scene.camera.transmittance());
+        let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));
+        Self::starting(world, PathKind::Camera, throughput, ray, media, polarization)
     }
 
     /// The path of a ray that leaves a light, inside of some bodies.
