@@ -229,7 +229,7 @@ impl<'a> Colors<'a> {
         let [n1, n2] = indices.map(|index| index[lane]);
         // The same facet for both colors.
         let facets = glass.roughness.interface().map(|rough| rough.facets());
-        let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, [u[2], u[3]]));
+        let facet = facets.map_or(normal, |facets| visible_facet(facets, wo, normal, [u[2], u[3]]));
         let interface = Interface::new(n1, n2, wo.dot(facet));
         // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
@@ -248,7 +248,7 @@ impl<'a> Colors<'a> {
 }
 
 /// The normal of a facet that is visible from `wo`.
-fn visible(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
+pub fn visible_facet(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
     let frame = Frame::about(normal);
     let local = frame.to_local(wo);
     frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, u))

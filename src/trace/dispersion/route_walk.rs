@@ -114,14 +114,14 @@ impl<'a> Walker<'a> {
             Material::Thin(pane) => {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
                 let index = self.draw.read_exact(&pane.index);
-                let cos = (-walk.ray.direction).dot(normal);
+                let cos = at.wo().dot(normal);
                 let r = if index[1] == inside[1] { 0.0 } else { Interface::new(inside[1], index[1], cos).reflectance };
                 let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
                 let crossed = at.step(Way::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
                 self.go_on(at, straight, walk.ray.direction, 0);
                 // Mirrored by the first surface, and by the second.
-                let back = reflect(-walk.ray.direction, normal);
+                let back = reflect(at.wo(), normal);
                 self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
                 let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
                 self.go_on(at, behind, back, 2);
@@ -137,12 +137,8 @@ impl<'a> Walker<'a> {
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
-                let r = if index == 1.0 {
-                    0.0
-                } else {
-                    Interface::new(1.0, index, (-walk.ray.direction).dot(normal)).reflectance
-                };
-                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
+                let r = if index == 1.0 { 0.0 } else { Interface::new(1.0, index, at.wo().dot(normal)).reflectance };
+                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(at.wo(), normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
                 self.scattered(at, flat, tint, 1.0 - r);
             }
@@ -195,18 +191,15 @@ impl<'a> Walker<'a> {
     }
 
     fn mirrored(&mut self, at: &At, facet: DVec3, tint: Lanes<4>, factor: f64) {
-        let wo = -at.walk.ray.direction;
-        let step = at.step(Way::Reflected(wo.dot(facet).abs().min(1.0)));
+        let step = at.step(Way::Reflected(at.wo().dot(facet).abs().min(1.0)));
         let next = at.walk.after(Some(step), tint, factor);
-        self.go_on(at, next, reflect(wo, facet), 0);
+        self.go_on(at, next, reflect(at.wo(), facet), 0);
     }
 
     fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
         let front = at.point.normal.dot(walk.ray.direction) < 0.0;
-        let Some(boundary) = walk.media.boundary(&world.scene, at.material, front) else {
-            return self.go_on(at, walk.clone(), walk.ray.direction, 0);
-        };
+        let (boundary, _) = walk.media.at_surface(&world.scene, at.material, front);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
@@ -217,7 +210,7 @@ impl<'a> Walker<'a> {
         if n1 == n2 {
             return self.go_on(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
         }
-        let (wo, facet) = (-walk.ray.direction, facets.map_or(at.normal, |facets| at.facet(facets)));
+        let (wo, facet) = (at.wo(), facets.map_or(at.normal, |facets| at.facet(facets)));
         let interface = Interface::new(n1, n2, wo.dot(facet));
         if interface.transmittance > 0.0 {
             let next = crossed.after(step, tint, interface.transmittance);
