@@ -104,7 +104,7 @@ impl Media {
 
     /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
     /// different ones than there is room for.
-    pub(super) fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
+    fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let (here, at) = (self.inside(scene), self.place(material));
         let beyond = if enters {
             let has_room = at.map_or((self.len as usize) < MOST_MEDIA, |at| self.counts[at] < u16::MAX);

@@ -2,7 +2,6 @@
 
 use crate::material::{Dielectric, Facets, Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
-use crate::scene::Hit;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 use crate::trace::media::Media;
@@ -110,6 +109,8 @@ struct Surface<'a> {
 
 /// How a walk goes on at a surface.
 enum Next {
+    /// As if nothing were there.
+    Straight,
     Toward(DVec3),
     End,
     Lost,
@@ -135,18 +136,25 @@ impl<'a> Colors<'a> {
     /// Follows the ray through a place of the film.
     pub fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
         let ray = self.world.scene.camera.ray(at);
-        let media = self.world.media_at_camera(&ray);
-        let first = self.world.scene.intersect_seen(&ray, None);
-        self.walk(lane, ray, first, media, sampler, way)
+        self.walk(lane, ray, true, self.world.media_at_camera(&ray), sampler, way)
     }
 
     /// Follows one lane of light.
     pub fn walk_from_light(&self, lane: usize, ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
-        self.walk(lane, ray, self.world.scene.intersect(&ray), media, sampler, way)
+        self.walk(lane, ray, false, media, sampler, way)
     }
 
-    /// Follows one lane from what its ray meets first; the first lane decides for both where light may go two ways.
-    fn walk(&self, lane: usize, mut ray: Ray, mut hit: Option<Hit>, media: Media, sampler: &Sampler, way: Way) -> Walk {
+    /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
+    /// not there for its ray as long as that goes straight on.
+    fn walk(
+        &self,
+        lane: usize,
+        mut ray: Ray,
+        mut is_from_camera: bool,
+        media: Media,
+        sampler: &Sampler,
+        way: Way,
+    ) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = Walk {
             legs,
@@ -161,13 +169,18 @@ impl<'a> Colors<'a> {
         };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
+            let hit = match is_from_camera {
+                true => self.world.scene.intersect_seen(&ray, None),
+                false => self.world.scene.intersect(&ray),
+            };
             walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.crossing.t)));
             let Some(met) = hit else { return walk };
             let meeting = Meeting::new(self.world, &ray, met);
             key = key.child(0);
             let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, way };
             match self.beyond(&mut walk, &at) {
-                Next::Toward(direction) => ray = meeting.point.leave(direction),
+                Next::Straight => ray = meeting.point.leave(ray.direction),
+                Next::Toward(direction) => (ray, is_from_camera) = (meeting.point.leave(direction), false),
                 Next::End => {
                     walk.end = Some((meeting.point, met.object));
                     return walk;
@@ -175,7 +188,6 @@ impl<'a> Colors<'a> {
                 Next::Lost => break,
             }
             walk.met.push(met.object);
-            hit = self.world.scene.intersect(&ray);
         }
         walk.weight = 0.0;
         walk
@@ -188,7 +200,7 @@ impl<'a> Colors<'a> {
         let [_, normal] = shading::normals(&meeting.point, wo);
         let inside = walk.media.inside(&world.scene);
         if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), way) {
-            return Next::Toward(ray.direction);
+            return Next::Straight;
         }
         match world.scene.material_of(meeting.hit.object) {
             Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
@@ -199,7 +211,7 @@ impl<'a> Colors<'a> {
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
-                Next::Toward(if walk.takes(mirrored, way) { reflect(wo, normal) } else { ray.direction })
+                if walk.takes(mirrored, way) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
@@ -221,9 +233,11 @@ impl<'a> Colors<'a> {
         let [_, normal] = shading::normals(point, wo);
         let front = point.normal.dot(ray.direction) < 0.0;
         let material = world.scene.objects[hit.object as usize].material;
-        let Some(boundary) = walk.media.boundary(&world.scene, material, front) else {
-            return Next::Toward(ray.direction);
-        };
+        let (boundary, _) = walk.media.at_surface(&world.scene, material, front);
+        if boundary.here == boundary.beyond {
+            walk.media = walk.media.beyond(&boundary);
+            return Next::Straight;
+        }
         let indices = boundary.sides().map(|inside| media::index(&world.scene, draw, inside));
         walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
         let [n1, n2] = indices.map(|index| index[lane]);

@@ -54,6 +54,8 @@ pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 #[derive(Clone)]
 pub struct Walk {
     pub ray: Ray,
+    /// Whether the camera sees straight what it meets next, if it sees that at all.
+    pub is_from_camera: bool,
     pub media: Media,
     pub key: BranchKey,
     pub steps: Vec<Step>,

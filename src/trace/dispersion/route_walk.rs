@@ -36,7 +36,8 @@ impl<'a> Walker<'a> {
     pub fn walk(&mut self, ray: Ray) -> usize {
         let media = self.world.media_at_camera(&ray);
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
-        self.pending.push(Walk { ray, media, key, steps, weight: 1.0, left: Lanes::ONE, scattered: 0 });
+        let (weight, left) = (1.0, Lanes::ONE);
+        self.pending.push(Walk { ray, is_from_camera: true, media, key, steps, weight, left, scattered: 0 });
         let mut best = 0.0_f32;
         for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
@@ -62,13 +63,15 @@ impl<'a> Walker<'a> {
     /// Follows a way to the next surface and finds out how it goes on.
     fn meet(&mut self, walk: Walk) {
         let world = self.world;
-        let hit = match walk.key == BranchKey::CAMERA {
+        let hit = match walk.is_from_camera {
             true => world.scene.intersect_seen(&walk.ray, None),
             false => world.scene.intersect(&walk.ray),
         };
         let Some(hit) = hit else {
             for &id in &world.scene.infinite_lights {
-                if !matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none()) {
+                let is_hidden = walk.is_from_camera && world.scene.hidden_lights.contains(&id);
+                let is_beside = matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none());
+                if !is_hidden && !is_beside {
                     self.record(&walk, id);
                 }
             }
@@ -119,7 +122,7 @@ impl<'a> Walker<'a> {
                 let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
                 let crossed = at.step(Way::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
-                self.go_on(at, straight, walk.ray.direction, 0);
+                self.go_straight(at, straight);
                 // Mirrored by the first surface, and by the second.
                 let back = reflect(at.wo(), normal);
                 self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
@@ -143,7 +146,7 @@ impl<'a> Walker<'a> {
                 self.scattered(at, flat, tint, 1.0 - r);
             }
             Material::Polarizer(_) | Material::Retarder(_) => {
-                self.go_on(at, walk.after(None, Lanes::ONE, 1.0), walk.ray.direction, 0);
+                self.go_straight(at, walk.after(None, Lanes::ONE, 1.0));
             }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
@@ -182,8 +185,17 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Goes on from a surface in a direction.
+    /// Goes on from a surface in a direction, where it is turned or scattered, or light crosses a body's surface.
     fn go_on(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
+        self.follow(at, Walk { is_from_camera: false, ..next }, direction, number);
+    }
+
+    /// Goes straight on as if nothing were there.
+    fn go_straight(&mut self, at: &At, next: Walk) {
+        self.follow(at, next, at.walk.ray.direction, 0);
+    }
+
+    fn follow(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
         if next.brightest() > 0.0 {
             let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
             self.pending.push(Walk { ray, key, ..next });
@@ -203,7 +215,7 @@ impl<'a> Walker<'a> {
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
-            return self.go_on(at, crossed, walk.ray.direction, 0);
+            return self.go_straight(at, crossed);
         }
         let tint = self.draw.read_at(transmittance, at.uv);
         let step = Some(at.step(Way::Crossed));
