@@ -133,12 +133,6 @@ impl<'a> Colors<'a> {
         index[0] != index[1]
     }
 
-    /// Follows the ray through a place of the film.
-    pub fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
-        let ray = self.world.scene.camera.ray(at);
-        self.walk(lane, ray, true, self.world.media_at_camera(&ray), sampler, way)
-    }
-
     /// Follows one lane of light.
     pub fn walk_from_light(&self, lane: usize, ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
         self.walk(lane, ray, false, media, sampler, way)
@@ -258,6 +252,22 @@ impl<'a> Colors<'a> {
             (if n1 == n2 { ray.direction } else { interface.refract(wo, facet) }, -1.0)
         };
         if facets.is_some() && direction.dot(normal) * side <= 0.0 { Next::Lost } else { Next::Toward(direction) }
+    }
+}
+
+/// Rays of the camera that share their random numbers, and which way they go where light may go two ways.
+pub struct CameraRays<'a> {
+    pub colors: &'a Colors<'a>,
+    pub sampler: Sampler,
+    pub way: Way,
+}
+
+impl CameraRays<'_> {
+    /// Follows one lane through a place of the film.
+    pub fn walk(&self, at: DVec2, lane: usize) -> Walk {
+        let world = self.colors.world;
+        let ray = world.scene.camera.ray(at);
+        self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.way)
     }
 }
 
