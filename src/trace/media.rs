@@ -81,46 +81,20 @@ impl Media {
         counts: &dyn Fn(u32) -> bool,
     ) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
-        let mut ray = Ray { origin: start, direction };
-        for _ in 0..MOST_CROSSINGS {
-            let Some(hit) = scene.nearest(&ray, f64::INFINITY, counts) else { break };
-            let object = &scene.objects[hit.object as usize];
-            let point = object.shape.point(&ray, &hit.crossing);
-            if scene.material_of(hit.object).medium().is_some() {
-                let step = if point.normal.dot(direction) > 0.0 { 1 } else { -1 };
-                match balance.iter_mut().find(|(material, _)| *material == object.material) {
-                    Some((_, count)) => *count += step,
-                    None => balance.push((object.material, step)),
-                }
+        for Crossing { material, enters } in crossings(scene, Ray { origin: start, direction }, None, counts) {
+            let step = if enters { -1 } else { 1 };
+            match balance.iter_mut().find(|(known, _)| *known == material) {
+                Some((_, count)) => *count += step,
+                None => balance.push((material, step)),
             }
-            ray = point.leave(direction);
         }
         balance
     }
 
     /// The media after walking from one point to another along a straight line, through those objects that count.
-    pub(super) fn after_walk(
-        mut self,
-        scene: &Scene<Table>,
-        [from, to]: [DVec3; 2],
-        counts: &dyn Fn(u32) -> bool,
-    ) -> Self {
+    pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: &dyn Fn(u32) -> bool) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
-        let mut ray = Ray { origin: from, direction };
-        for _ in 0..MOST_CROSSINGS {
-            let left = (to - ray.origin).dot(direction);
-            let hit = scene.nearest(&ray, f64::INFINITY, counts);
-            let Some(hit) = hit.filter(|hit| hit.crossing.t <= left) else { break };
-            let object = &scene.objects[hit.object as usize];
-            let point = object.shape.point(&ray, &hit.crossing);
-            if scene.material_of(hit.object).medium().is_some() {
-                let enters = point.normal.dot(direction) < 0.0;
-                let walked = if enters { self.entered(object.material) } else { self.left(object.material) };
-                self = walked.unwrap_or(self);
-            }
-            ray = point.leave(direction);
-        }
-        self
+        crossings(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
     }
 
     /// The medium that is really there.
@@ -130,7 +104,7 @@ impl Media {
 
     /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
     /// different ones than there is room for.
-    pub(super) fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
+    fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let (here, at) = (self.inside(scene), self.place(material));
         let beyond = if enters {
             let has_room = at.map_or((self.len as usize) < MOST_MEDIA, |at| self.counts[at] < u16::MAX);
@@ -146,7 +120,11 @@ impl Media {
 
     /// The media behind a boundary of these.
     pub(super) fn beyond(self, boundary: &Boundary) -> Self {
-        let Some(Crossing { material, enters }) = boundary.crossing else { return self };
+        boundary.crossing.map_or(self, |crossing| self.behind(crossing))
+    }
+
+    /// The media behind the surface of a body; these if they do not fit to it.
+    fn behind(self, Crossing { material, enters }: Crossing) -> Self {
         if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
@@ -203,6 +181,29 @@ impl Media {
     }
 }
 
+/// Surfaces a straight walk crosses at most; more are taken for a walk that never ends.
+const MOST_CROSSINGS: usize = 100_000;
+
+/// The clear bodies that a straight walk enters and leaves, to a point or to infinity, of those objects that count.
+fn crossings(
+    scene: &Scene<Table>,
+    mut ray: Ray,
+    to: Option<DVec3>,
+    counts: &dyn Fn(u32) -> bool,
+) -> impl Iterator<Item = Crossing> {
+    let surfaces = std::iter::from_fn(move || {
+        let left = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
+        let hit = scene.nearest(&ray, f64::INFINITY, counts).filter(|hit| hit.crossing.t <= left)?;
+        let object = &scene.objects[hit.object as usize];
+        let point = object.shape.point(&ray, &hit.crossing);
+        let enters = point.normal.dot(ray.direction) < 0.0;
+        ray = point.leave(ray.direction);
+        Some(Crossing { material: object.material, enters })
+    });
+    let is_of_body = move |crossing: &Crossing| scene.materials[crossing.material as usize].material.medium().is_some();
+    surfaces.take(MOST_CROSSINGS).filter(is_of_body)
+}
+
 /// How many half spaces of each medium a point lies in, of those planes that count.
 ///
 /// What is between two planes that look away from each other is a slab: behind which of them one is everywhere does not
@@ -242,9 +243,6 @@ fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> O
 fn aside(direction: DVec3) -> DVec3 {
     unit(Frame::about(direction).to_world(DVec3::new(7.31e-4, 4.19e-4, 1.0)))
 }
-
-/// Surfaces a straight walk crosses at most; more are taken for a walk that never ends.
-const MOST_CROSSINGS: usize = 100_000;
 
 /// The dielectric that fills a medium.
 pub(super) fn medium(scene: &Scene<Table>, material: MaterialId) -> &Dielectric<Table> {

@@ -268,6 +268,15 @@ impl World {
         self.scene.objects[object as usize].sight
     }
 
+    /// The media around the start of a ray of the camera, but for those that it does not see.
+    pub(super) fn media_at_camera(&self, ray: &Ray) -> Media {
+        if !self.has_media || !self.scene.camera.starts_away() {
+            return self.camera_media;
+        }
+        let way = [self.scene.camera.position(), ray.origin];
+        self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
+    }
+
     /// The media around a ray, but for those that the camera does not see.
     pub(super) fn seen_media(&self, ray: &Ray) -> Media {
         Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))

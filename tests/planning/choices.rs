@@ -1,6 +1,8 @@
 //! What the plan chooses for scenes whose needs are known.
 
 use abbe::plan::{Plan, plan};
+use abbe::spectrum::Basis;
+use abbe::trace::{Method, ROUTES_NM, Transport, World, routes};
 
 use crate::support::scenes::{scene, view};
 
@@ -137,4 +139,29 @@ fn the_seed_decides_nothing() {
     };
     let first = decided(0);
     (1..5).for_each(|seed| assert_eq!(decided(seed), first, "seed {seed}"));
+}
+
+/// Light comes to the camera straight, without being scattered, where it sees the lamp or the sky.
+#[test]
+fn lamps_and_skies_that_the_camera_does_not_see_are_not_seen_through_holes_and_panes_either() {
+    let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 30.0, 64);
+    let lamp = "[[object]]\nshape.quad = { center = [0, 0, 0], u = [9, 0, 0], v = [0, 9, 0] }\nmaterial = \"gray\"\n\
+                [[object]]\nshape.sphere = { center = [0, 0, 2], radius = 0.5 }\nmaterial = \"lamp\"\n";
+    let sky = "[[light]]\nenvironment = { radiance = 1 }\n";
+    for (sheet, shines) in [("holes", lamp), ("pane", lamp), ("holes", sky)] {
+        for is_hidden in [false, true] {
+            let hidden = if is_hidden { "visible_to_camera = false\n" } else { "" };
+            let scene = scene(&format!(
+                "{view}\n[material]\ngray.diffuse.reflectance = 0.5\nlamp.emissive.radiance = 1\n\
+                 pane.thin.index = 1.5\nholes.mask = {{ material = \"gray\", opacity = 0 }}\n\
+                 [[object]]\nshape.quad = {{ center = [0, 0, 4], u = [9, 0, 0], v = [0, 9, 0] }}\n\
+                 material = \"{sheet}\"\n{shines}{hidden}"
+            ));
+            let basis = Basis::wavelengths(scene.film.color_space, ROUTES_NM.into(), &[]);
+            let method = Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, 1);
+            let found = routes(&World::new(&scene, method)).concat();
+            let [straight, lit] = [0, 1].map(|least| found.iter().any(|route| route.scattered.min(1) == least));
+            assert_eq!([straight, lit], [!is_hidden, shines == lamp], "{sheet} before {shines}{hidden}");
+        }
+    }
 }

@@ -163,7 +163,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let (rgb, dispersed) = (met.rgb, met.dispersed);
         let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
         let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
-        let first = self.at.first_lobe(world, self.path.lobe(), wi, side.normal != self.at.flat);
+        let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
     }
 

@@ -78,7 +78,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let rgb = met.rgb;
         let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.surfaces, self.path.parted || vertex.parted);
-        let first = at.first_lobe(world, self.path.lobe(), direction, false);
+        let first = self.path.first_lobe(world, at, direction, false);
         let light = Some(vertex.light);
         let found = if vertex.is_of_photon { Found::Gathered } else { Found::Connected };
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);

@@ -1,9 +1,9 @@
 //! How far apart two colors show what lies behind.
 
-use super::color_walk::{Colors, Walk, Way};
+use super::color_walk::{CameraRays, Walk};
 use super::targets::SEEN_PIXELS;
 use crate::light::Light;
-use crate::math::{DVec2, DVec3, Sampler};
+use crate::math::{DVec2, DVec3};
 use crate::spectrum::Table;
 use crate::trace::World;
 
@@ -14,24 +14,24 @@ const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 const PLACES: u32 = 6;
 
 /// How many pixels apart both colors show what lies behind; none so close to an edge that it cannot be told.
-pub fn pixels_apart(colors: &Colors, at: DVec2, first: &Walk, sampler: &Sampler, way: Way) -> Option<f64> {
-    let second = colors.walk_from_camera(at, 1, sampler, way);
-    let far = apart_by(colors, STEPS[0], at, [first, &second], sampler, way);
-    (far >= SEEN_PIXELS || apart_by(colors, STEPS[1], at, [first, &second], sampler, way) < SEEN_PIXELS).then_some(far)
+pub fn pixels_apart(rays: &CameraRays, at: DVec2, first: &Walk) -> Option<f64> {
+    let second = rays.walk(at, 1);
+    let far = apart_by(rays, STEPS[0], at, [first, &second]);
+    (far >= SEEN_PIXELS || apart_by(rays, STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)
 }
 
 /// The share of a pixel's light that dispersion pulls apart: facets far smaller than a pixel count as they fill it.
-pub fn share_apart(colors: &Colors, middle: DVec2, sampler: &Sampler, way: Way) -> f64 {
+pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES) - 0.5;
     let share = |i: u32| {
         let at = middle + DVec2::new(place(i % PLACES), place(i / PLACES));
-        let walks = [0, 1].map(|lane| colors.walk_from_camera(at, lane, sampler, way));
+        let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
         let part = || {
             // After other surfaces, light comes from elsewhere: between facets so small the ways of neighbors tell
             // nothing.
-            see_something(colors, [first, second]) && first.legs.len() != second.legs.len()
-                || apart_by(colors, STEPS[1], at, [first, second], sampler, way) >= SEEN_PIXELS
+            see_something(rays, [first, second]) && first.legs.len() != second.legs.len()
+                || apart_by(rays, STEPS[1], at, [first, second]) >= SEEN_PIXELS
         };
         if first.dispersive && part() { first.weight } else { 0.0 }
     };
@@ -39,28 +39,28 @@ pub fn share_apart(colors: &Colors, middle: DVec2, sampler: &Sampler, way: Way) 
 }
 
 /// Whether no walk is lost, and what they show may differ.
-fn see_something(colors: &Colors, walks: [&Walk; 2]) -> bool {
+fn see_something(rays: &CameraRays, walks: [&Walk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
     let out = walks.iter().all(|walk| walk.is_out());
-    !(lost || out && shows_nothing(colors.world))
+    !(lost || out && shows_nothing(rays.colors.world))
 }
 
 /// How many pixels apart both colors show what lies behind.
 ///
 /// The ways of a ray's neighbors, a step aside, show how far a pixel goes. Both colors are compared at one distance, so
 /// that an edge behind the glass, which one of them misses, does not count.
-fn apart_by(colors: &Colors, step: f64, at: DVec2, walks: [&Walk; 2], sampler: &Sampler, way: Way) -> f64 {
+fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&Walk; 2]) -> f64 {
     let [first, second] = walks;
-    if !see_something(colors, walks) {
+    if !see_something(rays, walks) {
         return 0.0;
     }
     let distance = walks.map(Walk::length).into_iter().find(|length| length.is_finite());
     let apart = between(first, second, distance);
-    let beside = |x: f64, y: f64| colors.walk_from_camera(at + DVec2::new(x, y) * step, 0, sampler, way);
+    let beside = |x: f64, y: f64| rays.walk(at + DVec2::new(x, y) * step, 0);
     let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
     let stretch = ways.map(|(x, y)| between(first, &beside(x, y), distance)).into_iter().fold(0.0, f64::max);
     // Parallel rays stay parallel behind flat glass: there a pixel has the angle that the camera gives it.
-    let least = if distance.is_none() { colors.world.scene.camera.pixel_angle() * step } else { 0.0 };
+    let least = if distance.is_none() { rays.colors.world.scene.camera.pixel_angle() * step } else { 0.0 };
     let stretch = if stretch > 0.0 { stretch } else { least };
     if stretch > 0.0 { apart / (stretch / step) } else { 0.0 }
 }

@@ -2,11 +2,10 @@
 
 use crate::material::{Dielectric, Facets, Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
-use crate::scene::Hit;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 use crate::trace::media::Media;
-use crate::trace::walk::{Path, Polarized, Through, shading, straight_at};
+use crate::trace::walk::{Meeting, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
@@ -102,8 +101,7 @@ impl Walk {
 #[derive(Clone, Copy)]
 struct Surface<'a> {
     ray: &'a Ray,
-    hit: &'a Hit,
-    point: &'a SurfacePoint,
+    meeting: &'a Meeting,
     u: [f64; 4],
     lane: usize,
     way: Way,
@@ -111,6 +109,8 @@ struct Surface<'a> {
 
 /// How a walk goes on at a surface.
 enum Next {
+    /// As if nothing were there.
+    Straight,
     Toward(DVec3),
     End,
     Lost,
@@ -133,21 +133,22 @@ impl<'a> Colors<'a> {
         index[0] != index[1]
     }
 
-    /// Follows the ray through a place of the film.
-    pub fn walk_from_camera(&self, at: DVec2, lane: usize, sampler: &Sampler, way: Way) -> Walk {
-        let ray = self.world.scene.camera.ray(at);
-        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
-        let first = self.world.scene.intersect_seen(&ray, None);
-        self.walk(lane, ray, first, media, sampler, way)
-    }
-
     /// Follows one lane of light.
     pub fn walk_from_light(&self, lane: usize, ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
-        self.walk(lane, ray, self.world.scene.intersect(&ray), media, sampler, way)
+        self.walk(lane, ray, false, media, sampler, way)
     }
 
-    /// Follows one lane from what its ray meets first; the first lane decides for both where light may go two ways.
-    fn walk(&self, lane: usize, mut ray: Ray, mut hit: Option<Hit>, media: Media, sampler: &Sampler, way: Way) -> Walk {
+    /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
+    /// not there for its ray as long as that goes straight on.
+    fn walk(
+        &self,
+        lane: usize,
+        mut ray: Ray,
+        mut is_from_camera: bool,
+        media: Media,
+        sampler: &Sampler,
+        way: Way,
+    ) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = Walk {
             legs,
@@ -162,21 +163,25 @@ impl<'a> Colors<'a> {
         };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
+            let hit = match is_from_camera {
+                true => self.world.scene.intersect_seen(&ray, None),
+                false => self.world.scene.intersect(&ray),
+            };
             walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.crossing.t)));
             let Some(met) = hit else { return walk };
-            let point = self.world.scene.objects[met.object as usize].point(&ray, &met.crossing);
+            let meeting = Meeting::new(self.world, &ray, met);
             key = key.child(0);
-            let at = Surface { ray: &ray, hit: &met, point: &point, u: sampler.four_plain(key, SURFACE), lane, way };
+            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, way };
             match self.beyond(&mut walk, &at) {
-                Next::Toward(direction) => ray = point.leave(direction),
+                Next::Straight => ray = meeting.point.leave(ray.direction),
+                Next::Toward(direction) => (ray, is_from_camera) = (meeting.point.leave(direction), false),
                 Next::End => {
-                    walk.end = Some((point, met.object));
+                    walk.end = Some((meeting.point, met.object));
                     return walk;
                 }
                 Next::Lost => break,
             }
             walk.met.push(met.object);
-            hit = self.world.scene.intersect(&ray);
         }
         walk.weight = 0.0;
         walk
@@ -184,27 +189,23 @@ impl<'a> Colors<'a> {
 
     /// The way on from a surface.
     fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
-        let Surface { ray, hit, point, u, way, .. } = *at;
+        let Surface { ray, meeting, u, way, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
-        let [_, normal] = shading::normals(point, wo);
-        if world.is_see_through(hit.object) {
-            let inside = walk.media.inside(&world.scene);
-            let through = Through { ray, present: draw.start(), inside };
-            let onward = straight_at(world, draw, &through, hit, point, Polarized::NOT);
-            if onward.is_some_and(|onward| walk.takes(f64::from(onward.straight.holes[0]), way)) {
-                return Next::Toward(ray.direction);
-            }
+        let [_, normal] = shading::normals(&meeting.point, wo);
+        let inside = walk.media.inside(&world.scene);
+        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), way) {
+            return Next::Straight;
         }
-        match world.scene.material_of(hit.object) {
+        match world.scene.material_of(meeting.hit.object) {
             Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
                 let index: [f64; 4] = draw.read_exact(&pane.index);
-                let here = media::index(&world.scene, draw, walk.media.inside(&world.scene))[0];
+                let here = media::index(&world.scene, draw, inside)[0];
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
-                Next::Toward(if walk.takes(mirrored, way) { reflect(wo, normal) } else { ray.direction })
+                if walk.takes(mirrored, way) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
@@ -221,20 +222,22 @@ impl<'a> Colors<'a> {
 
     /// The way on from the surface of a clear body.
     fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
-        let Surface { ray, hit, point, u, lane, way } = *at;
+        let Surface { ray, meeting: Meeting { hit, point }, u, lane, way } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         let front = point.normal.dot(ray.direction) < 0.0;
         let material = world.scene.objects[hit.object as usize].material;
-        let Some(boundary) = walk.media.boundary(&world.scene, material, front) else {
-            return Next::Toward(ray.direction);
-        };
-        let indices = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, draw, inside));
+        let (boundary, _) = walk.media.at_surface(&world.scene, material, front);
+        if boundary.here == boundary.beyond {
+            walk.media = walk.media.beyond(&boundary);
+            return Next::Straight;
+        }
+        let indices = boundary.sides().map(|inside| media::index(&world.scene, draw, inside));
         walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
         let [n1, n2] = indices.map(|index| index[lane]);
         // The same facet for both colors.
         let facets = glass.roughness.interface().map(|rough| rough.facets());
-        let facet = facets.map_or(normal, |facets| visible(facets, wo, normal, [u[2], u[3]]));
+        let facet = facets.map_or(normal, |facets| visible_facet(facets, wo, normal, [u[2], u[3]]));
         let interface = Interface::new(n1, n2, wo.dot(facet));
         // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
@@ -252,8 +255,24 @@ impl<'a> Colors<'a> {
     }
 }
 
+/// Rays of the camera that share their random numbers, and which way they go where light may go two ways.
+pub struct CameraRays<'a> {
+    pub colors: &'a Colors<'a>,
+    pub sampler: Sampler,
+    pub way: Way,
+}
+
+impl CameraRays<'_> {
+    /// Follows one lane through a place of the film.
+    pub fn walk(&self, at: DVec2, lane: usize) -> Walk {
+        let world = self.colors.world;
+        let ray = world.scene.camera.ray(at);
+        self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.way)
+    }
+}
+
 /// The normal of a facet that is visible from `wo`.
-fn visible(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
+pub fn visible_facet(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
     let frame = Frame::about(normal);
     let local = frame.to_local(wo);
     frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, u))

@@ -1,8 +1,9 @@
 //! A way of light to the camera: what it meets, how far it has been followed back, and the surface that it meets there.
 
+use super::color_walk::visible_facet;
 use crate::light::LightId;
 use crate::material::Facets;
-use crate::math::{BranchKey, DVec3, Frame, Ray};
+use crate::math::{BranchKey, DVec3, Ray};
 use crate::scene::MaterialId;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Lanes;
@@ -48,10 +49,13 @@ pub struct Route {
 
 /// Wavelengths in nm of the lanes that decide which ways matter.
 pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
+
 /// The end of a way that is followed back from the camera.
 #[derive(Clone)]
 pub struct Walk {
     pub ray: Ray,
+    /// Whether the camera sees straight what it meets next, if it sees that at all.
+    pub is_from_camera: bool,
     pub media: Media,
     pub key: BranchKey,
     pub steps: Vec<Step>,
@@ -91,10 +95,13 @@ impl At<'_> {
         Step { material: self.material, part: self.part, way }
     }
 
+    /// The unit vector to the viewer.
+    pub fn wo(&self) -> DVec3 {
+        -self.walk.ray.direction
+    }
+
     /// The normal of a facet that the viewer sees.
     pub fn facet(&self, facets: &Facets) -> DVec3 {
-        let frame = Frame::about(self.normal);
-        let local = frame.to_local(-self.walk.ray.direction);
-        frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, [self.u[0], self.u[1]]))
+        visible_facet(facets, self.wo(), self.normal, [self.u[0], self.u[1]])
     }
 }

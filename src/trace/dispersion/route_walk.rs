@@ -4,10 +4,8 @@ use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
-use crate::scene::Hit;
-use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes, Table};
-use crate::trace::walk::{Path, Polarized, Through, shading, straight_at};
+use crate::trace::walk::{Meeting, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces that are met for one pixel.
@@ -36,9 +34,10 @@ impl<'a> Walker<'a> {
 
     /// Answers how many surfaces it met.
     pub fn walk(&mut self, ray: Ray) -> usize {
-        let media = Path::<4, Polarized>::from_camera(self.world, &self.draw, ray).media;
+        let media = self.world.media_at_camera(&ray);
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
-        self.pending.push(Walk { ray, media, key, steps, weight: 1.0, left: Lanes::ONE, scattered: 0 });
+        let (weight, left) = (1.0, Lanes::ONE);
+        self.pending.push(Walk { ray, is_from_camera: true, media, key, steps, weight, left, scattered: 0 });
         let mut best = 0.0_f32;
         for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
@@ -64,13 +63,15 @@ impl<'a> Walker<'a> {
     /// Follows a way to the next surface and finds out how it goes on.
     fn meet(&mut self, walk: Walk) {
         let world = self.world;
-        let hit = match walk.key == BranchKey::CAMERA {
+        let hit = match walk.is_from_camera {
             true => world.scene.intersect_seen(&walk.ray, None),
             false => world.scene.intersect(&walk.ray),
         };
         let Some(hit) = hit else {
             for &id in &world.scene.infinite_lights {
-                if !matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none()) {
+                let is_hidden = walk.is_from_camera && world.scene.hidden_lights.contains(&id);
+                let is_beside = matches!(&world.scene.lights[id], Light::Sun(sun) if sun.pdf(&walk.ray).is_none());
+                if !is_hidden && !is_beside {
                     self.record(&walk, id);
                 }
             }
@@ -78,9 +79,10 @@ impl<'a> Walker<'a> {
         };
         let walk = self.inside(walk, hit.crossing.t);
         let object = &world.scene.objects[hit.object as usize];
-        let point = object.point(&walk.ray, &hit.crossing);
+        let meeting = Meeting::new(world, &walk.ray, hit);
+        let point = &meeting.point;
         let u = self.sampler.four_plain(walk.key, 0);
-        if self.passes(&walk, &hit, &point, u[3]) {
+        if self.passes(&walk, &meeting, u[3]) {
             let (ray, key) = (point.leave(walk.ray.direction), walk.key.child(0));
             self.pending.push(Walk { ray, key, ..walk });
             return;
@@ -92,10 +94,10 @@ impl<'a> Walker<'a> {
             self.record(&walk, light);
         }
         let material = world.scene.material_of(hit.object);
-        let [flat, normal] = shading::normals(&point, -walk.ray.direction);
-        let uv = object.uv(&hit.crossing, &point);
+        let [flat, normal] = shading::normals(point, -walk.ray.direction);
+        let uv = object.uv(&hit.crossing, point);
         let part = self.part(material, uv, u[2]);
-        let at = At { walk: &walk, material: object.material, point: &point, normal, uv, part, u };
+        let at = At { walk: &walk, material: object.material, point, normal, uv, part, u };
         self.leave(&at, material.with_parts()[part], flat);
     }
 
@@ -115,14 +117,14 @@ impl<'a> Walker<'a> {
             Material::Thin(pane) => {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
                 let index = self.draw.read_exact(&pane.index);
-                let cos = (-walk.ray.direction).dot(normal);
+                let cos = at.wo().dot(normal);
                 let r = if index[1] == inside[1] { 0.0 } else { Interface::new(inside[1], index[1], cos).reflectance };
                 let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
                 let crossed = at.step(Way::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
-                self.go_on(at, straight, walk.ray.direction, 0);
+                self.go_straight(at, straight);
                 // Mirrored by the first surface, and by the second.
-                let back = reflect(-walk.ray.direction, normal);
+                let back = reflect(at.wo(), normal);
                 self.go_on(at, walk.after(None, Lanes::ONE, r), back, 1);
                 let behind = walk.after(Some(crossed), tint, r * through).after(Some(crossed), tint, 1.0);
                 self.go_on(at, behind, back, 2);
@@ -138,17 +140,13 @@ impl<'a> Walker<'a> {
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
-                let r = if index == 1.0 {
-                    0.0
-                } else {
-                    Interface::new(1.0, index, (-walk.ray.direction).dot(normal)).reflectance
-                };
-                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(-walk.ray.direction, normal), 1);
+                let r = if index == 1.0 { 0.0 } else { Interface::new(1.0, index, at.wo().dot(normal)).reflectance };
+                self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(at.wo(), normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
                 self.scattered(at, flat, tint, 1.0 - r);
             }
             Material::Polarizer(_) | Material::Retarder(_) => {
-                self.go_on(at, walk.after(None, Lanes::ONE, 1.0), walk.ray.direction, 0);
+                self.go_straight(at, walk.after(None, Lanes::ONE, 1.0));
             }
             Material::Emissive(_) | Material::Mix(_) | Material::Mask(_) => {}
         }
@@ -165,18 +163,9 @@ impl<'a> Walker<'a> {
     }
 
     /// Whether a hole lets the way pass, by chance.
-    fn passes(&self, walk: &Walk, hit: &Hit, point: &SurfacePoint, u: f64) -> bool {
-        let (draw, inside) = (&self.draw, walk.media.inside(&self.world.scene));
-        self.world.is_see_through(hit.object)
-            && straight_at(
-                self.world,
-                draw,
-                &Through { ray: &walk.ray, present: Lanes::ONE, inside },
-                hit,
-                point,
-                Polarized::NOT,
-            )
-            .is_some_and(|onward| u < f64::from(onward.straight.holes[1]))
+    fn passes(&self, walk: &Walk, meeting: &Meeting, u: f64) -> bool {
+        let inside = walk.media.inside(&self.world.scene);
+        u < straight::holes(self.world, &self.draw, &walk.ray, inside, meeting)[1].into()
     }
 
     /// The material that is met, by chance where there are several.
@@ -196,8 +185,17 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// Goes on from a surface in a direction.
+    /// Goes on from a surface in a direction, where it is turned or scattered, or light crosses a body's surface.
     fn go_on(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
+        self.follow(at, Walk { is_from_camera: false, ..next }, direction, number);
+    }
+
+    /// Goes straight on as if nothing were there.
+    fn go_straight(&mut self, at: &At, next: Walk) {
+        self.follow(at, next, at.walk.ray.direction, 0);
+    }
+
+    fn follow(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
         if next.brightest() > 0.0 {
             let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
             self.pending.push(Walk { ray, key, ..next });
@@ -205,29 +203,26 @@ impl<'a> Walker<'a> {
     }
 
     fn mirrored(&mut self, at: &At, facet: DVec3, tint: Lanes<4>, factor: f64) {
-        let wo = -at.walk.ray.direction;
-        let step = at.step(Way::Reflected(wo.dot(facet).abs().min(1.0)));
+        let step = at.step(Way::Reflected(at.wo().dot(facet).abs().min(1.0)));
         let next = at.walk.after(Some(step), tint, factor);
-        self.go_on(at, next, reflect(wo, facet), 0);
+        self.go_on(at, next, reflect(at.wo(), facet), 0);
     }
 
     fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
         let front = at.point.normal.dot(walk.ray.direction) < 0.0;
-        let Some(boundary) = walk.media.boundary(&world.scene, at.material, front) else {
-            return self.go_on(at, walk.clone(), walk.ray.direction, 0);
-        };
-        let [n1, n2] = [boundary.here, boundary.beyond].map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
+        let (boundary, _) = walk.media.at_surface(&world.scene, at.material, front);
+        let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
-            return self.go_on(at, crossed, walk.ray.direction, 0);
+            return self.go_straight(at, crossed);
         }
         let tint = self.draw.read_at(transmittance, at.uv);
         let step = Some(at.step(Way::Crossed));
         if n1 == n2 {
             return self.go_on(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
         }
-        let (wo, facet) = (-walk.ray.direction, facets.map_or(at.normal, |facets| at.facet(facets)));
+        let (wo, facet) = (at.wo(), facets.map_or(at.normal, |facets| at.facet(facets)));
         let interface = Interface::new(n1, n2, wo.dot(facet));
         if interface.transmittance > 0.0 {
             let next = crossed.after(step, tint, interface.transmittance);
@@ -268,9 +263,10 @@ impl<'a> Walker<'a> {
             walk = self.inside(walk, hit.crossing.t);
             left -= hit.crossing.t;
             let object = &world.scene.objects[hit.object as usize];
-            let point = object.point(&walk.ray, &hit.crossing);
-            if !self.passes(&walk, &hit, &point, at.u[2]) {
-                let uv = object.uv(&hit.crossing, &point);
+            let meeting = Meeting::new(world, &walk.ray, hit);
+            let point = &meeting.point;
+            if !self.passes(&walk, &meeting, at.u[2]) {
+                let uv = object.uv(&hit.crossing, point);
                 let material = world.scene.material_of(hit.object);
                 let part = self.part(material, uv, at.u[2]);
                 let transmittance = match material.with_parts()[part] {

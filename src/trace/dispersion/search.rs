@@ -6,7 +6,7 @@
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
 use super::apart::{is_dark, pixels_apart as colors_apart, share_apart};
-use super::color_walk::{Colors, Walk, Way};
+use super::color_walk::{CameraRays, Colors, Walk, Way};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
@@ -112,10 +112,9 @@ pub fn search(colors: &Colors, targets: &Targets) -> Found {
 }
 
 fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reached>, forks: &mut Vec<Cell>) -> Look {
-    let (middle, sampler) = cell.middle(colors);
-    let walk = |at| colors.walk_from_camera(at, 0, &sampler, cell.way);
+    let rays = cell.rays(colors);
     let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
-    let walks = at.map(|place| walk(cell.corner + cell.size * place));
+    let walks = at.map(|place| rays.walk(cell.corner + cell.size * place, 0));
     let first = &walks[0];
     if cell.is_whole(colors) && cell.way == Way::Brighter {
         if first.fork > 0.0 {
@@ -134,7 +133,7 @@ fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reache
     };
     let off = first.weight == 0.0 || !forked;
     let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
-    let apart = if dispersive > 0.0 { colors_apart(colors, middle, first, &sampler, cell.way) } else { None };
+    let apart = if dispersive > 0.0 { colors_apart(&rays, cell.middle(), first) } else { None };
     let width = colors.world.scene.camera.pixel_angle() * cell.size.length();
     let dark = first.is_out() && is_dark(colors.world);
     Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
@@ -147,8 +146,7 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
         looks.iter_mut().filter(|look| look.dispersive > 0.0 && look.apart.is_none()).collect();
     let step = untold.len().div_ceil(CLOSER).max(1);
     for look in untold.into_iter().step_by(step) {
-        let (middle, sampler) = look.cell.middle(colors);
-        let share = share_apart(colors, middle, &sampler, look.cell.way);
+        let share = share_apart(&look.cell.rays(colors), look.cell.middle());
         look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
         if share >= SEEN_SHARE {
             // It was all of a pixel.
@@ -167,9 +165,14 @@ fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
 }
 
 impl Cell {
-    fn middle(&self, colors: &Colors) -> (DVec2, Sampler) {
-        let middle = self.corner + self.size * 0.5;
-        (middle, Sampler::of_pixel(colors.world.method.seed, [middle.x as i32, middle.y as i32], 0))
+    fn middle(&self) -> DVec2 {
+        self.corner + self.size * 0.5
+    }
+
+    fn rays<'a>(&self, colors: &'a Colors) -> CameraRays<'a> {
+        let DVec2 { x, y } = self.middle();
+        let sampler = Sampler::of_pixel(colors.world.method.seed, [x as i32, y as i32], 0);
+        CameraRays { colors, sampler, way: self.way }
     }
 
     fn is_whole(&self, colors: &Colors) -> bool {

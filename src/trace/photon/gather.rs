@@ -152,7 +152,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
         found: found_here,
         rgb,
         moved: 0.0,
-        first: at.first_lobe(world, path.lobe(), back, back.dot(flat) < 0.0),
+        first: path.first_lobe(world, at, back, back.dot(flat) < 0.0),
         bounces: path.bounces + surfaces,
         dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
     };

@@ -6,7 +6,6 @@ use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes, Table};
-use crate::trace::first_lobe::FirstLobe;
 use crate::trace::media::Boundary;
 use crate::trace::{World, media};
 
@@ -14,6 +13,13 @@ use crate::trace::{World, media};
 pub struct Meeting {
     pub hit: Hit,
     pub point: SurfacePoint,
+}
+
+impl Meeting {
+    #[inline(always)]
+    pub fn new(world: &World, ray: &Ray, hit: Hit) -> Self {
+        Self { hit, point: world.scene.objects[hit.object as usize].point(ray, &hit.crossing) }
+    }
 }
 
 /// A ray that arrives at a surface.
@@ -87,28 +93,6 @@ impl<'a, const N: usize> Interaction<'a, N> {
     pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let arrival = Arrival { draw, present: draw.start(), ..self.arrival };
         Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, arrival, parts: false, ..*self }
-    }
-
-    /// The lobe by which the first surface sends light to the camera that a path finds here, in a direction that may
-    /// lead beyond the surface; none if layers do not tell that apart. `known` is that of a path that has left the
-    /// first surface, none before.
-    #[inline]
-    pub fn first_lobe(
-        &self,
-        world: &World,
-        known: Option<Option<FirstLobe>>,
-        wi: DVec3,
-        crosses: bool,
-    ) -> Option<FirstLobe> {
-        match known {
-            None if !world.layers.tell_lobes_apart() => None,
-            None if crosses => Some(FirstLobe::Transmitted),
-            None => {
-                let Self { material, lobes, arrival, .. } = self;
-                Some(FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi))
-            }
-            Some(first) => first,
-        }
     }
 }
 

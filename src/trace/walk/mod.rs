@@ -22,5 +22,5 @@ pub use path::{Among, Path, PathKind, ScatterSample};
 pub use polarization::{MetLight, Onward, Polarization, SeenPhoton};
 pub use polarized::Polarized;
 pub use rows::Rows;
-pub use straight::{Passage, Past, Through, straight_at};
+pub use straight::{Passage, Past};
 pub use walker::{Departure, Walker};

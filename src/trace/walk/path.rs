@@ -1,4 +1,4 @@
-use super::interaction::Arriving;
+use super::interaction::{Arriving, Interaction};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use crate::math::{BranchKey, DVec3, Ray};
@@ -146,16 +146,9 @@ impl<const N: usize, P> Path<N, P> {
 impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// The path of a camera ray.
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
-        let camera = &world.scene.camera;
-        let media = if world.has_media && camera.starts_away() {
-            world
-                .camera_media
-                .after_walk(&world.scene, [camera.position(), ray.origin], &|object| world.scene.is_seen(object))
-        } else {
-            world.camera_media
-        };
-        let throughput = Throughput::starting(draw.start()).scaled(camera.transmittance());
-        Self::starting(world, PathKind::Camera, throughput, ray, media, P::of_camera(world, &ray))
+        let throughput = Throughput::starting(draw.start()).scaled(world.scene.camera.transmittance());
+        let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));
+        Self::starting(world, PathKind::Camera, throughput, ray, media, polarization)
     }
 
     /// The path of a ray that leaves a light, inside of some bodies.
@@ -218,9 +211,23 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
     }
 
-    /// By which lobe the first surface sends its light to the camera; none before it has left one.
-    pub fn lobe(&self) -> Option<Option<FirstLobe>> {
-        (self.bounces > 0).then_some(self.first)
+    /// The lobe by which the first surface sends light to the camera that the path finds at a surface, in a direction
+    /// that may lead beyond it; none if layers do not tell that apart.
+    #[inline]
+    pub fn first_lobe(
+        &self,
+        world: &World,
+        Interaction { material, lobes, arrival, .. }: &Interaction<N>,
+        wi: DVec3,
+        crosses: bool,
+    ) -> Option<FirstLobe> {
+        if self.bounces > 0 || !world.layers.tell_lobes_apart() {
+            return self.first;
+        }
+        Some(match crosses {
+            true => FirstLobe::Transmitted,
+            false => FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi),
+        })
     }
 
     /// Its ray, as it arrives at a surface.

@@ -2,14 +2,14 @@
 
 use std::cell::Cell;
 
-use super::interaction::arrival;
+use super::interaction::{Meeting, arrival};
 use super::path::{Among, Path};
 use super::polarization::{Onward, Polarization};
+use super::polarized::Polarized;
 use super::shading;
 use crate::material::Scatter;
 use crate::math::{Ray, Sampler};
-use crate::scene::{Ends, Hit, MaterialId, Sight};
-use crate::shape::SurfacePoint;
+use crate::scene::{Ends, MaterialId, Sight};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
 
@@ -22,10 +22,9 @@ pub fn straight_on<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     path: &Path<N, P>,
-    hit: &Hit,
-    point: &SurfacePoint,
+    meeting: &Meeting,
 ) -> Option<Onward<N, P>> {
-    if world.is_see_through(hit.object) { through_surface(world, draw, path, hit, point) } else { None }
+    if world.is_see_through(meeting.hit.object) { through_surface(world, draw, path, meeting) } else { None }
 }
 
 /// The same of a surface that lets light straight on.
@@ -35,13 +34,27 @@ fn through_surface<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     path: &Path<N, P>,
-    hit: &Hit,
-    point: &SurfacePoint,
+    meeting: &Meeting,
 ) -> Option<Onward<N, P>> {
     let present = path.throughput.present();
-    let through = Through { ray: &path.ray, present, inside: path.media.inside(&world.scene) };
-    let onward = straight_at(world, draw, &through, hit, point, path.polarization)?;
+    let through = Through { ray: &path.ray, meeting, present, inside: path.media.inside(&world.scene) };
+    let onward = straight_at(world, draw, &through, path.polarization)?;
     (!(onward.straight.share() * present).is_zero()).then_some(onward)
+}
+
+/// The share of each lane that goes through the holes of a surface, which a ray inside of a medium has met.
+pub fn holes<const N: usize>(
+    world: &World,
+    draw: &Draw<N>,
+    ray: &Ray,
+    inside: Option<MaterialId>,
+    meeting: &Meeting,
+) -> Lanes<N> {
+    if !world.is_see_through(meeting.hit.object) {
+        return Lanes::ZERO;
+    }
+    let through = Through { ray, meeting, present: draw.start(), inside };
+    straight_at(world, draw, &through, Polarized::NOT).map_or(Lanes::ZERO, |onward| onward.straight.holes)
 }
 
 /// What a ray from the camera makes of a surface, which may have holes: a pane is met, a hole is not.
@@ -163,9 +176,9 @@ impl Passage<'_> {
         let (mut ray, mut left, mut all) = (*self.ray, self.distance, Lanes::ONE);
         let counts = |object: u32| world.is_see_through(object) && self.past.has(world, object);
         while let Some(hit) = world.scene.nearest(&ray, left, &counts) {
-            let point = world.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
-            let through = Through { ray: &ray, present: Lanes::ONE, inside: self.inside };
-            let onward = straight_at(world, draw, &through, &hit, &point, polarization)?;
+            let meeting = Meeting::new(world, &ray, hit);
+            let through = Through { ray: &ray, meeting: &meeting, present: Lanes::ONE, inside: self.inside };
+            let onward = straight_at(world, draw, &through, polarization)?;
             let is_held_out = self.past == Past::Seen && world.sight(hit.object) == Sight::Holdout;
             let straight = if is_held_out { onward.straight.through_holes() } else { onward.straight };
             (all, polarization) = (all * straight.share(), onward.polarization);
@@ -173,31 +186,30 @@ impl Passage<'_> {
                 return None;
             }
             left -= hit.crossing.t;
-            ray = point.leave(ray.direction);
+            ray = meeting.point.leave(ray.direction);
         }
         Some((all, polarization))
     }
 }
 
 /// A ray that meets a surface which may let some of its light straight on.
-pub struct Through<'a, const N: usize> {
-    pub ray: &'a Ray,
+struct Through<'a, const N: usize> {
+    ray: &'a Ray,
+    meeting: &'a Meeting,
     /// The lanes on it.
-    pub present: Lanes<N>,
+    present: Lanes<N>,
     /// The medium around it.
-    pub inside: Option<MaterialId>,
+    inside: Option<MaterialId>,
 }
 
 /// What a material lets straight on where a ray meets it: what every ray asks.
-pub fn straight_at<const N: usize, P: Polarization<N>>(
+fn straight_at<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     through: &Through<N>,
-    hit: &Hit,
-    point: &SurfacePoint,
     polarization: P,
 ) -> Option<Onward<N, P>> {
-    let Through { ray, present, inside } = *through;
+    let Through { ray, meeting: Meeting { hit, point }, present, inside } = *through;
     let (wo, uv) = (-ray.direction, world.scene.objects[hit.object as usize].uv(&hit.crossing, point));
     let [_, normal] = shading::normals(point, wo);
     let arrival = arrival(world, draw, wo, normal, uv, present, [inside; 2]);

@@ -82,14 +82,13 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             self.world.enter_hidden(path.left.is_none(), &path.ray, &hit, &mut path.media);
         }
         path.left = Some(hit.primitive());
-        let point = self.world.scene.objects[hit.object as usize].point(&path.ray, &hit.crossing);
-        Some(Meeting { hit, point })
+        Some(Meeting::new(self.world, &path.ray, hit))
     }
 
     /// What goes straight on through the surface that a path has met; none if nothing does.
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting) -> Option<Onward<N, P>> {
-        straight::straight_on(self.world, draw, path, &meeting.hit, &meeting.point)
+        straight::straight_on(self.world, draw, path, meeting)
     }
 
     /// The media at the surface that a path has met.
@@ -348,7 +347,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.excitation = path.excitation;
         next.first = match path.bounces {
             0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
-            _ => at.first_lobe(world, path.lobe(), branch.wi, crosses),
+            _ => path.first_lobe(world, at, branch.wi, crosses),
         };
     }
 }
