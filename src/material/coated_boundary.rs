@@ -3,7 +3,7 @@
 use super::coating::MetCoating;
 use super::degree::of_all_lanes;
 use super::stack::StackShares;
-use super::{Arrival, Block, Branch, Coating, Interface, reflect};
+use super::{Arrival, Block, Branch, Coating, Interface};
 use crate::spectrum::{Lanes, Table};
 
 /// A smooth surface of a clear body under a coating.
@@ -55,8 +55,7 @@ impl CoatedBoundary<'_> {
         };
         branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
         if !reflected.is_zero() {
-            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degree(&reflected, 0));
-            branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+            branches.push(Branch::mirrored(arrival, reflected, degree(&reflected, 0)));
         }
     }
 }

@@ -169,9 +169,7 @@ impl Dielectric<Table> {
             branch.share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
         }
         if !reflected.is_zero() {
-            let wi = reflect(arrival.wo, arrival.normal);
-            let polarization = polarization as f32;
-            branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+            branches.push(Branch::mirrored(arrival, reflected, polarization as f32));
         }
     }
 

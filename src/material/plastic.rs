@@ -6,7 +6,6 @@ use super::degree::{LANES, largest, of_all_lanes};
 use super::plastic_film::PlasticFilm;
 use super::{
     Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, StackShares,
-    reflect,
 };
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -110,23 +109,14 @@ impl Plastic<Table> {
                 of_lanes[lane] = [reflected.s, reflected.p];
             }
             polarization = of_all_lanes(of_lanes.into_iter()) as f32;
-            let wi = reflect(arrival.wo, arrival.normal);
-            return (!share.is_zero()).then_some(Branch {
-                wi,
-                share,
-                pdf: None,
-                crosses: false,
-                eta_scale: 1.0,
-                polarization,
-            });
+            return (!share.is_zero()).then(|| Branch::mirrored(arrival, share, polarization));
         }
         for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident_of(i)) {
             let interface = Interface::new(arrival.incident_of(lane), index[lane], cos);
             share.0[lane] = interface.reflectance as f32;
             polarization = interface.polarization_reflected.abs().max(f64::from(polarization)) as f32;
         }
-        let wi = reflect(arrival.wo, arrival.normal);
-        (!share.is_zero()).then_some(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization })
+        (!share.is_zero()).then(|| Branch::mirrored(arrival, share, polarization))
     }
 
     /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
@@ -332,6 +322,5 @@ fn chance_of_coat(reflected: &[[f64; 2]]) -> f64 {
 /// The branch of a direction in the surface's frame.
 fn branch<const N: usize>(arrival: &Arrival<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
     let wi = unit(Frame::about(arrival.normal).to_world(wi));
-    let share = Lanes::from_fn(|i| share[i] as f32);
-    Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale: 1.0, polarization: 0.0 }
+    Branch::drawn(wi, Lanes::from_fn(|i| share[i] as f32), pdf)
 }

@@ -1,5 +1,5 @@
 use super::degree::{degree, of_all_lanes};
-use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight, reflect};
+use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight};
 use crate::spectrum::{LaneSet, Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
@@ -52,8 +52,7 @@ impl Thin<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
         let (_, share, degrees) = self.shares(arrival);
         if !share.is_zero() {
-            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degrees[1] as f32);
-            branches.push(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+            branches.push(Branch::mirrored(arrival, share, degrees[1] as f32));
         }
     }
 
