@@ -108,10 +108,10 @@ impl Facets {
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
 
-    /// The visible facets from the cosine `z` for a quadrature: the direction they are seen from, their normals, and
-    /// weights that sum to 1.
-    pub(super) fn visible_from(&self, z: f64, places: u32) -> impl Iterator<Item = ([DVec3; 2], f64)> {
-        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+    /// The visible facets from the cosine `z` for a quadrature, where the index beyond is `ratio` times that on this
+    /// side: the direction they are seen from, their normals, and weights that sum to 1.
+    pub(super) fn visible_from(&self, z: f64, ratio: f64) -> impl Iterator<Item = ([DVec3; 2], f64)> {
+        let (wo, places) = (DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z), places(ratio));
         (0..places).map(move |i| {
             // A lattice of the golden ratio, whose rows lie along no edge: total reflection sets in along a curve.
             let turn = (f64::from(i) * GOLDEN).fract();
@@ -119,6 +119,11 @@ impl Facets {
             let v = (f64::from(i) + 0.5) / f64::from(places);
             ([wo, self.visible_normal_from_end(wo, turn, v * v)], 2.0 * v / f64::from(places))
         })
+    }
+
+    /// The mean over these of something that a facet does with light.
+    pub(super) fn mean_over_visible(&self, z: f64, ratio: f64, of: impl Fn([DVec3; 2]) -> f64) -> f64 {
+        self.visible_from(z, ratio).map(|(directions, weight)| weight * of(directions)).sum()
     }
 }
 
@@ -129,7 +134,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 ///
 /// Shares are off by 1e-4 at most, and by 8e-4 where some facets reflect totally and others do not: beside those of
 /// half a million facets, at 13 cosines and 6 roughnesses.
-pub(super) fn places(ratio: f64) -> u32 {
+fn places(ratio: f64) -> u32 {
     if ratio < 1.0 { 4096 } else { 2048 }
 }
 
