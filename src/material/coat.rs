@@ -84,7 +84,7 @@ impl Coat {
     }
 
     /// What crosses into index `n2` under `n1`, from two directions of the given cosines.
-    pub(super) fn crossing(&self, n1: f64, n2: f64, from: f64, to: f64) -> Crossing {
+    pub(super) fn crossing(&self, [n1, n2]: [f64; 2], [from, to]: [f64; 2]) -> Crossing {
         let m = n2 / n1;
         let squared = m * m;
         let around = diffuse_transmittance(m);
@@ -110,11 +110,11 @@ impl Coat {
     pub(super) fn crossing_under(
         &self,
         averages: &FilmAverages,
-        [n1, n2]: [f64; 2],
-        [from, to]: [f64; 2],
+        indices @ [n1, n2]: [f64; 2],
+        cosines @ [from, to]: [f64; 2],
         smooth: impl Fn(f64) -> f64,
     ) -> Crossing {
-        let bare = self.crossing(n1, n2, from, to);
+        let bare = self.crossing(indices, cosines);
         let lost = bare.squared * averages.lost_inside;
         let Some(surface) = self.roughness.surface() else {
             return Crossing { from: smooth(from), to: smooth(to), around: averages.mean[1], lost, ..bare };

@@ -162,7 +162,7 @@ impl Conductor<Table> {
 
 /// What a metal n - i k under layers reflects of a lane, in a medium of index `n1`.
 fn reflected_under<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> PolarizedShare {
-    met.shares(lane, n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected
+    met.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected
 }
 
 /// The reflectance of a coated metal at a cosine, and its mean over the hemisphere.

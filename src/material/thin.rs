@@ -71,7 +71,7 @@ impl Thin<Table> {
         mueller.set_lanes(axis, lanes, |lane| {
             if let Some(film) = &film {
                 let n = arrival.incident_of(lane);
-                let shares = film.shares(lane, n, n.into(), n * cos.clamp(0.0, 1.0));
+                let shares = film.at_cosine(lane, n, n, cos);
                 return [shares.refracted, shares.reflected][way as usize].block();
             }
             let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
@@ -115,11 +115,11 @@ impl Thin<Table> {
 
 /// [`Thin::shares`] of a film in which light interferes.
 fn interfering<const N: usize>(film: &Coating<Table>, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
-    let (cos, met) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), film.met(arrival, false));
+    let (cos, met) = (arrival.wo.dot(arrival.normal), film.met(arrival, false));
     let (mut through, mut back, mut of_lanes) = (Lanes::ZERO, Lanes::ZERO, [[[0.0; 2]; N]; 2]);
     for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
         let n = arrival.incident_of(lane);
-        let StackShares { reflected, refracted } = met.shares(lane, n, n.into(), n * cos);
+        let StackShares { reflected, refracted } = met.at_cosine(lane, n, n, cos);
         [through.0[lane], back.0[lane]] = [refracted, reflected].map(|share| share.mean() as f32);
         let both = [refracted, reflected].map(|share| [share.s, share.p]);
         (0..2).for_each(|way| of_lanes[way][lane] = both[way]);
