@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::data::{self, Glass, Illuminant, Metal, Reflectance};
+use super::data::{self, Glass, Grid, Metal};
 use super::texture::square;
 use super::{Quantity, Texture, Upsampler};
 
@@ -66,9 +66,9 @@ pub enum CurveKind {
     /// n or k of a metal of the catalog.
     Metal(Named<Metal>),
     /// A measured reflectance of the catalog.
-    Reflectance(Named<Reflectance>),
+    Reflectance(Named<Grid>),
     /// A standard light of the catalog, Y = 1.
-    Illuminant(Arc<Illuminant>),
+    Illuminant(Arc<Grid>),
     /// A blackbody's light at a temperature in kelvin, Y = 1.
     Blackbody(f64),
     /// Ideal lines: (wavelength in nm, power).
