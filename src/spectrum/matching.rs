@@ -76,9 +76,7 @@ impl<const N: usize> Matching<N> {
         };
         let own_lines = &basis.wavelengths_nm()[functions.len()..];
         let between = |nm: f64| {
-            let (below, fraction) = visible::place(nm);
-            let at = |f: &Vec<f64>| (f[below] + fraction * (f[below + 1] - f[below])) as f32;
-            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, at))
+            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, |function| visible::read(function, nm) as f32))
         };
         let line = |nm: f64| match own_lines.iter().position(|&line| line == nm) {
             Some(own) => Lanes::from_fn(|lane| if lane == functions.len() + own { 1.0 } else { 0.0 }),
