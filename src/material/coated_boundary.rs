@@ -97,10 +97,10 @@ pub(super) fn shares_of_lane<const N: usize>(
 ) -> StackShares {
     let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
     let [here, _] = arrival.refracting(lane);
-    let (c, total) = (cos.clamp(0.0, 1.0), || StackShares::all_reflected());
+    let c = cos.clamp(0.0, 1.0);
     let q1_squared = (n1 - here) * (n1 + here) + (here * c) * (here * c);
     if q1_squared < 0.0 {
-        return total();
+        return StackShares::all_reflected();
     }
     let mut shares = of_stack(n1, n2, q1_squared.sqrt());
     if !goes_on {
