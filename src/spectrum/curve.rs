@@ -252,6 +252,7 @@ impl Curve {
         let dark = match &self.kind {
             CurveKind::Number(value) => *value == 0.0,
             CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
+            CurveKind::Samples(pairs) | CurveKind::Lines(pairs) => pairs.iter().all(|pair| pair[1] == 0.0),
             kind => self.varies() && kind.mean() == 0.0,
         };
         dark || self.scale == 0.0 || self.luminance == Some(0.0)
