@@ -52,7 +52,7 @@ impl Facets {
     ///
     /// D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17,
     /// without the difference n1 cos - n2 cos, which keeps its digits for nearly equal indices.
-    pub fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
+    pub(super) fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
         let turn = (n1 * cos[0] + n2 * cos[1]) / ((n2 - n1) * (n2 + n1));
         let visible = self.density(h) * 2.0 * cos[0] / (wo.z + self.slant(wo));
         visible * n2 * n2 * cos[1] * turn * turn
@@ -97,7 +97,7 @@ impl Facets {
     }
 
     /// The same for `left` = 1 - `u[1]`, with all its digits where few facets are left.
-    pub(super) fn visible_normal_from_end(&self, wo: DVec3, around: f64, left: f64) -> DVec3 {
+    fn visible_normal_from_end(&self, wo: DVec3, around: f64, left: f64) -> DVec3 {
         let slant = self.slant(wo);
         let stretched = DVec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z) / slant;
         let height = 1.0 + stretched.z;

@@ -153,7 +153,7 @@ impl Side<'_> {
 
     /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
     /// there.
-    pub fn blocked_and_density(&self, z: f64) -> [f64; 2] {
+    fn blocked_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
         let [a, b] = self.rows.map(|row| row.value_and_density_at(place, z));
         let often = self.often();

@@ -87,13 +87,13 @@ pub struct StackShares {
 
 impl StackShares {
     /// All light is reflected as where it grazes a surface: both amplitudes are -1.
-    pub fn all_reflected() -> Self {
+    pub(super) fn all_reflected() -> Self {
         let reflected = PolarizedShare { s: 1.0, p: 1.0, cross: Complex::ONE };
         Self { reflected, refracted: PolarizedShare::default() }
     }
 
     /// Reflects what would cross, with the phase of what is reflected.
-    pub fn reflect_all(&mut self) {
+    pub(super) fn reflect_all(&mut self) {
         let PolarizedShare { s, p, .. } = self.reflected;
         self.reflected.s += self.refracted.s;
         self.reflected.p += self.refracted.p;

@@ -127,7 +127,7 @@ impl ColorSpace {
     }
 
     /// The space that a `colorInteropID` names.
-    pub fn of_interop_id(id: &str) -> Option<Self> {
+    fn of_interop_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|space| space.interop_id() == id)
     }
 
@@ -195,7 +195,7 @@ impl ColorSpace {
     }
 
     /// Linear Rec.709 to film color, adapted to the film's white.
-    pub fn of_rec709(self) -> Matrix {
+    pub(super) fn of_rec709(self) -> Matrix {
         if self == Self::Rec709 {
             return IDENTITY;
         }

@@ -311,7 +311,7 @@ pub fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
 
 /// Radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901), with c2 = 1.438776877e-2 m K
 /// (CODATA 2018).
-pub(super) fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
+fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
     const SECOND_RADIATION_CONSTANT: f64 = 1.438_776_877e7; // nm K
     const REFERENCE_NM: f64 = 560.0;
     let exponent = |nm: f64| SECOND_RADIATION_CONSTANT / (nm * kelvin);
