@@ -6,7 +6,7 @@
 //! ```
 
 use crate::layers::arrivals::{arrival, material, points, toward};
-use abbe::material::{Arrival, Index, Material, Scatter};
+use abbe::material::{Arrival, Index, Lobes, Material, Scatter};
 use abbe::spectrum::{Draw, Table};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -25,7 +25,7 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] 
     let draw = Draw::<4>::fixed(3);
     let arrival = Arrival { beyond: Index::Same(indices[1]), ..arrival(&draw, toward(cos, 0.4), indices[0]) };
     let (mut sum, mut squares, mut branches) = (0.0, 0.0, Vec::new());
-    let glass = material.scatters_through();
+    let glass = material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION);
     let draws = if glass { DRAWS_OF_GLASS } else { DRAWS };
     for u in points(draws) {
         material.scatter(&arrival, u, &mut branches);

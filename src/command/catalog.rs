@@ -158,21 +158,19 @@ fn metal_lines(words: &[String]) -> Vec<Vec<String>> {
 }
 
 fn illuminant_lines(words: &[String]) -> Vec<Vec<String>> {
-    let found = data::illuminants().filter(|light| matches(words, &[light.name], ""));
-    let line = |light: data::Illuminant| {
-        let last = light.start_nm + light.step_nm * (light.values.len() - 1) as f64;
-        vec![light.name.into(), range(light.start_nm, last), light.source.into()]
-    };
-    found.map(line).collect()
+    grid_lines(data::illuminants(), words)
 }
 
 fn reflectance_lines(words: &[String]) -> Vec<Vec<String>> {
-    let found = data::reflectances().filter(|chip| matches(words, &[chip.name], ""));
-    let line = |chip: data::Reflectance| {
-        let last = chip.start_nm + chip.step_nm * (chip.values.len() - 1) as f64;
-        vec![chip.name.into(), range(chip.start_nm, last), chip.source.into()]
+    grid_lines(data::reflectances(), words)
+}
+
+fn grid_lines(grids: impl Iterator<Item = data::Grid>, words: &[String]) -> Vec<Vec<String>> {
+    let line = |grid: data::Grid| {
+        let [first, last] = grid.range_nm();
+        vec![grid.name.into(), range(first, last), grid.source.into()]
     };
-    found.map(line).collect()
+    grids.filter(|grid| matches(words, &[grid.name], "")).map(line).collect()
 }
 
 fn range(low: f64, high: f64) -> String {

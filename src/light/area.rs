@@ -215,7 +215,7 @@ impl<S> Area<S> {
 
     /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
     /// meets it first at a crossing; none where it is seen exactly edge-on.
-    pub fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
+    pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
         usable(match (&self.visible_cap, &self.parts) {
             (Some(cap), _) => self.shape.pdf_cap(cap, ray, crossing),
             (None, None) => self.pdf_part(ray, crossing),

@@ -36,7 +36,7 @@ impl LightBounds {
     /// A shape of radiance 1; none of an infinite one.
     ///
     /// A convex body shows a quarter of its area on average (Cauchy 1841).
-    pub fn of_shape(shape: &Shape, two_sided: bool) -> Option<Self> {
+    pub(super) fn of_shape(shape: &Shape, two_sided: bool) -> Option<Self> {
         let seen = if shape.is_closed() { 0.25 } else { 1.0 };
         let intensity = seen * shape.area();
         Some(Self { bounds: shape.bounds()?, normal: shape.flat_normal(), two_sided, intensity })
@@ -48,7 +48,7 @@ impl LightBounds {
     }
 
     /// A point that shines in all directions with an intensity of 1.
-    pub fn of_point(position: DVec3) -> Self {
+    pub(super) fn of_point(position: DVec3) -> Self {
         Self { bounds: Bounds::around([position]), normal: None, two_sided: false, intensity: 1.0 }
     }
 }

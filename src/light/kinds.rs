@@ -75,7 +75,7 @@ impl<S> Light<S> {
             Self::Point(point) => LightSample::of_point(from, point.position.into(), |_| 1.0),
             Self::Spot(spot) => LightSample::of_point(from, spot.position.into(), |direction| spot.part(direction)),
             Self::Environment(environment) => environment.sample_li(from, normal, u),
-            Self::Sun(sun) => sun.sample_li(from, u),
+            Self::Sun(sun) => Some(sun.sample_li(from, u)),
         }
     }
 
@@ -231,7 +231,7 @@ impl Light<Table> {
         let brightest = || self.emission().range().1.max(0.0);
         match self {
             Self::Area(_) | Self::Point(_) | Self::Spot(_) => 0.0,
-            Self::Environment(environment) => brightest() * environment.mean() * std::f64::consts::PI,
+            Self::Environment(environment) => brightest() * environment.mean() * PI,
             Self::Sun(_) => brightest(),
         }
     }

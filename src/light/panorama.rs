@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::math::{DVec3, Distribution, Distribution2d};
-use crate::spectrum::Image;
+use crate::spectrum::{Image, Wrap};
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
 ///
@@ -45,6 +45,8 @@ pub struct BrightPart {
 const PLAINLY: f64 = 0.1;
 /// How many times as bright as the mean a texel of the bright part is at least.
 const BRIGHT: f64 = 8.0;
+/// Columns go around, and beyond the top and bottom row come those rows again.
+const AROUND: [Wrap; 2] = [Wrap::Repeat, Wrap::Clamp];
 /// The largest solid angle of the bright part, and the least share of the light that is worth telling it apart.
 const MOST_SOLID_ANGLE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.02;
@@ -138,15 +140,7 @@ impl Panorama {
 
     /// What is seen in a direction, linear Rec.709.
     pub fn color(&self, direction: DVec3) -> [f32; 3] {
-        let [x, y] = self.place(direction).map(|x| x - 0.5);
-        let (left, above) = (x.floor(), y.floor());
-        let (right, below) = ((x - left) as f32, (y - above) as f32);
-        let texel = |i: isize, j: isize| texel(&self.image, left as isize + i, above as isize + j);
-        let [a, b, c, d] = [texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1)];
-        std::array::from_fn(|i| {
-            let (upper, lower) = (a[i] + right * (b[i] - a[i]), c[i] + right * (d[i] - c[i]));
-            upper + below * (lower - upper)
-        })
+        self.image.linear(self.place(direction), AROUND)
     }
 
     /// A direction for two random numbers, not turned into the world, and its density per steradian.
@@ -210,20 +204,15 @@ impl Panorama {
 /// The mean over a texel of what is shown there: it and its neighbors, weighed as linear interpolation does.
 fn brightness(image: &Image, [column, row]: [usize; 2]) -> f64 {
     const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
-    let mut sum = 0.0;
+    let ([across, down], mut sum) = (AROUND, 0.0);
     for (i, by_row) in SHARES.iter().enumerate() {
+        let row = down.entry((row + i) as isize - 1, image.height());
         for (j, by_column) in SHARES.iter().enumerate() {
-            let texel = texel(image, column as isize + j as isize - 1, row as isize + i as isize - 1);
+            let texel = image.texel(across.entry((column + j) as isize - 1, image.width()), row);
             sum += by_row * by_column * texel.iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0;
         }
     }
     sum
-}
-
-/// A texel; columns go around, and beyond the top and bottom row come those rows again.
-fn texel(image: &Image, column: isize, row: isize) -> [f32; 3] {
-    let column = column.rem_euclid(image.width() as isize) as usize;
-    image.texel(column, row.clamp(0, image.height() as isize - 1) as usize)
 }
 
 #[cfg(test)]

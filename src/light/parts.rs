@@ -90,7 +90,7 @@ impl LightParts {
     }
 
     /// A part by what it sends at all.
-    pub fn sample_by_flux(&self, u: f64) -> DiscreteSample {
+    pub(super) fn sample_by_flux(&self, u: f64) -> DiscreteSample {
         self.shared.flux.sample(u)
     }
 }

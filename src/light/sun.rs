@@ -21,12 +21,12 @@ pub struct Sun<S> {
     /// Irradiance on a surface that faces the sun: radiance times the disc's projected solid angle.
     pub irradiance: S,
     /// What every ray asks of it.
-    pub(crate) disc: OnceLock<Disc>,
+    disc: OnceLock<Disc>,
 }
 
 /// The disc as rays ask for it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Disc {
+struct Disc {
     /// Directions toward it.
     cone: Cone,
     /// The factor on the irradiance that makes the disc's radiance of it.
@@ -34,14 +34,13 @@ pub(crate) struct Disc {
 }
 
 impl<S> Sun<S> {
+    /// A sun in a direction of any length, so many degrees wide.
+    pub fn new(toward: [f64; 3], angular_diameter: f64, irradiance: S) -> Self {
+        Self { toward, angular_diameter, irradiance, disc: OnceLock::new() }
+    }
+
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Sun<T> {
-        let Self { toward, angular_diameter, irradiance, .. } = self;
-        Sun {
-            toward: *toward,
-            angular_diameter: *angular_diameter,
-            irradiance: convert(Quantity::Emission, irradiance),
-            disc: OnceLock::new(),
-        }
+        Sun::new(self.toward, self.angular_diameter, convert(Quantity::Emission, &self.irradiance))
     }
 
     fn disc(&self) -> &Disc {
@@ -64,17 +63,17 @@ impl<S> Sun<S> {
         if self.angular_diameter == 0.0 { cone.axis } else { unit(cone.sample_uniform(u)) }
     }
 
-    pub(super) fn sample_li(&self, from: &SurfacePoint, u: [f64; 2]) -> Option<LightSample> {
+    pub(super) fn sample_li(&self, from: &SurfacePoint, u: [f64; 2]) -> LightSample {
         self.along(from.leave(self.sample(u)))
     }
 
-    fn along(&self, ray: Ray) -> Option<LightSample> {
+    fn along(&self, ray: Ray) -> LightSample {
         let (pdf, factor) = match self.angular_diameter {
             0.0 => (None, 1.0),
             // What is drawn lies in the disc, though rounding may put it beyond the rim of a very small one.
             _ => (Some(self.disc().cone.uniform_pdf()), self.radiance_factor()),
         };
-        Some(LightSample::of_sky(ray, pdf, factor))
+        LightSample::of_sky(ray, pdf, factor)
     }
 
     /// Density per steradian with which a ray's direction is drawn; none beside the disc and for parallel light.
@@ -93,7 +92,7 @@ impl<S> Sun<S> {
     /// A photon through a disc across the ball.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let ray = Beam::ray_from_sky(ball, self.sample(u), guide_uv)?;
-        let light = self.along(Ray { direction: -ray.direction, ..ray })?;
+        let light = self.along(Ray { direction: -ray.direction, ..ray });
         Some(LeSample { ray, factor: light.factor / light.pdf.unwrap_or(1.0), surface: None })
     }
 }
@@ -107,7 +106,7 @@ mod tests {
     fn a_sun_is_sampled_within_its_disc_and_met_nowhere_else() {
         let toward = [0.3, 0.8, -0.2];
         for angular_diameter in [1e-6, 0.533, 20.0, 120.0, 180.0] {
-            let sun = Sun { toward, angular_diameter, irradiance: (), disc: OnceLock::new() };
+            let sun = Sun::new(toward, angular_diameter, ());
             let half = 0.5 * angular_diameter.to_radians();
             let density = 1.0 / (2.0 * PI * 2.0 * libm::pow(libm::sin(0.5 * half), 2.0));
             let pdf = |direction: DVec3| sun.pdf(&Ray { origin: DVec3::ZERO, direction });
@@ -126,12 +125,12 @@ mod tests {
     #[test]
     fn a_very_small_sun_loses_no_light() {
         for angular_diameter in [1e-9, 1e-11, 1e-13, 1e-14, 1e-15] {
-            let sun = Sun { toward: [0.3, 0.8, -0.2], angular_diameter, irradiance: (), disc: OnceLock::new() };
+            let sun = Sun::new([0.3, 0.8, -0.2], angular_diameter, ());
             for u in (0..64).flat_map(|i| (0..64).map(move |j| [f64::from(i) / 63.001, f64::from(j) / 63.001])) {
                 let ray = Ray { origin: DVec3::ZERO, direction: sun.sample(u) };
-                let light = sun.along(ray).unwrap_or_else(|| panic!("{angular_diameter} degrees, {u:?}"));
+                let light = sun.along(ray);
                 let irradiance = light.factor / light.pdf.unwrap_or(f64::NAN);
-                assert!((irradiance - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {irradiance}");
+                assert!((irradiance - 1.0).abs() < 1e-9, "{angular_diameter} degrees: {u:?}: {irradiance}");
             }
         }
     }

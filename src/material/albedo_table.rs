@@ -9,7 +9,7 @@ use crate::math::DVec3;
 /// facets whose slopes are as wide as alpha block changes as z log z near 0, most where z is about alpha, and as 1 /
 /// z^2 beyond.
 #[derive(Clone, Debug)]
-pub(crate) struct AlbedoTable {
+pub(super) struct AlbedoTable {
     alpha: f64,
     /// ln(1 + 1 / alpha).
     span: f64,
@@ -23,8 +23,8 @@ pub(crate) struct AlbedoTable {
 }
 
 impl AlbedoTable {
-    /// The table of `value` in a number of steps, for facets as wide as `alpha`.
-    pub(crate) fn new(alpha: f64, steps: usize, value: impl Fn(f64) -> f64) -> Self {
+    /// The table of `value` in a number of steps, for facets as wide as `alpha`; it is asked once for each, in order.
+    pub(super) fn new(alpha: f64, steps: usize, mut value: impl FnMut(f64) -> f64) -> Self {
         let zeros = vec![0.0; steps + 1];
         let span = libm::log1p(1.0 / alpha);
         let mut table = Self { alpha, span, values: zeros.clone(), mean: 0.0, lobe: zeros.clone(), below: zeros };
@@ -49,12 +49,12 @@ impl AlbedoTable {
     }
 
     /// The cosine at a place of the table.
-    pub(crate) fn cosine(&self, place: f64) -> f64 {
+    pub(super) fn cosine(&self, place: f64) -> f64 {
         (self.alpha * libm::expm1(self.span * place * place)).min(1.0)
     }
 
     /// The place of a cosine in 0..1, the same in all tables of as wide facets.
-    pub(crate) fn place(&self, z: f64) -> f64 {
+    pub(super) fn place(&self, z: f64) -> f64 {
         (libm::log1p(z / self.alpha) / self.span).clamp(0.0, 1.0).sqrt()
     }
 
@@ -80,35 +80,35 @@ impl AlbedoTable {
     }
 
     /// The mean over the hemisphere, by cosine: the share of light that comes evenly from all around.
-    pub(crate) fn mean(&self) -> f64 {
+    pub(super) fn mean(&self) -> f64 {
         self.mean
     }
 
     /// The share at the cosine `z`.
-    pub(crate) fn value(&self, z: f64) -> f64 {
+    pub(super) fn value(&self, z: f64) -> f64 {
         self.at(self.place(z))
     }
 
     /// The share at a place.
-    pub(crate) fn at(&self, place: f64) -> f64 {
+    pub(super) fn at(&self, place: f64) -> f64 {
         between(&self.values, place)
     }
 
     /// The share at the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws directions
     /// there.
-    pub(crate) fn value_and_density(&self, z: f64) -> (f64, f64) {
+    pub(super) fn value_and_density(&self, z: f64) -> (f64, f64) {
         self.value_and_density_at(self.place(z), z)
     }
 
     /// The same where the place of `z` is known.
-    pub(crate) fn value_and_density_at(&self, place: f64, z: f64) -> (f64, f64) {
+    pub(super) fn value_and_density_at(&self, place: f64, z: f64) -> (f64, f64) {
         let place = place.max(f64::MIN_POSITIVE);
         (self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z)))
     }
 
     /// A direction in the frame in which +z is the normal, drawn by nearly the share times the cosine: its place is
     /// drawn from a density that is linear between the places of the table.
-    pub(crate) fn draw(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn draw(&self, u: [f64; 2]) -> DVec3 {
         let steps = self.steps();
         let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, steps) - 1;
         let [low, high] = [self.lobe[step], self.lobe[step + 1]];

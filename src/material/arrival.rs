@@ -86,7 +86,7 @@ impl<const N: usize> Arrival<'_, N> {
     }
 
     /// The indices by which a lane's ray is refracted, on both sides.
-    pub fn refracting(&self, lane: usize) -> [f64; 2] {
+    pub(super) fn refracting(&self, lane: usize) -> [f64; 2] {
         let [here, beyond] = self.direction_indices;
         [here.unwrap_or_else(|| self.incident_of(lane)), beyond.unwrap_or_else(|| self.beyond_of(lane))]
     }
@@ -99,7 +99,7 @@ impl<const N: usize> Arrival<'_, N> {
 
     /// What of each lane crosses a smooth boundary between the media that its ray meets at an angle of some cosine;
     /// none where all rays are refracted by the lanes' own indices.
-    pub fn own_transmittance(&self, cos: f64) -> Option<[f64; N]> {
+    pub(super) fn own_transmittance(&self, cos: f64) -> Option<[f64; N]> {
         if self.direction_indices == [None; 2] {
             return None;
         }

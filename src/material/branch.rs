@@ -1,5 +1,6 @@
 //! Light that leaves a surface: by ways of its own, or straight on.
 
+use super::{Arrival, reflect};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{LaneSet, Lanes};
 
@@ -36,6 +37,17 @@ pub struct Incoming {
 }
 
 impl<const N: usize> Branch<N> {
+    /// The mirror image of the viewer's direction; `polarization` is the degree that it gives to unpolarized light.
+    pub(super) fn mirrored(arrival: &Arrival<N>, share: Lanes<N>, polarization: f32) -> Self {
+        let wi = reflect(arrival.wo, arrival.normal);
+        Self { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
+    }
+
+    /// A way on the viewer's side that was drawn with a density.
+    pub(super) fn drawn(wi: DVec3, share: Lanes<N>, pdf: f64) -> Self {
+        Self { wi, share, pdf: Some(pdf), crosses: false, eta_scale: 1.0, polarization: 0.0 }
+    }
+
     /// From where its light arrives, of the lanes that are present on the ray.
     #[inline(always)]
     pub fn incoming(&self, present: &Lanes<N>) -> Incoming {

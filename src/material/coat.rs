@@ -2,7 +2,6 @@ use std::array;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::facets::places;
 use super::film_averages::FilmAverages;
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
@@ -85,7 +84,7 @@ impl Coat {
     }
 
     /// What crosses into index `n2` under `n1`, from two directions of the given cosines.
-    pub(super) fn crossing(&self, n1: f64, n2: f64, from: f64, to: f64) -> Crossing {
+    pub(super) fn crossing(&self, [n1, n2]: [f64; 2], [from, to]: [f64; 2]) -> Crossing {
         let m = n2 / n1;
         let squared = m * m;
         let around = diffuse_transmittance(m);
@@ -111,11 +110,11 @@ impl Coat {
     pub(super) fn crossing_under(
         &self,
         averages: &FilmAverages,
-        [n1, n2]: [f64; 2],
-        [from, to]: [f64; 2],
+        indices @ [n1, n2]: [f64; 2],
+        cosines @ [from, to]: [f64; 2],
         smooth: impl Fn(f64) -> f64,
     ) -> Crossing {
-        let bare = self.crossing(n1, n2, from, to);
+        let bare = self.crossing(indices, cosines);
         let lost = bare.squared * averages.lost_inside;
         let Some(surface) = self.roughness.surface() else {
             return Crossing { from: smooth(from), to: smooth(to), around: averages.mean[1], lost, ..bare };
@@ -191,8 +190,7 @@ fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     };
     AlbedoTable::new(facets.alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
-        let mean: f64 = facets.visible_from(z, places(m)).map(|(facet, weight)| weight * polarized(facet)).sum();
-        mean - Block::at_boundary([1.0, m, z], false).d
+        facets.mean_over_visible(z, m, polarized) - Block::at_boundary([1.0, m, z], false).d
     })
 }
 
@@ -201,7 +199,7 @@ fn kernel(surface: &RoughSurface) -> FilmKernel {
     let facets = surface.facets();
     // As if the body were denser than what is around it, which it nearly always is.
     FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
-        for ([wo, h], weight) in facets.visible_from(z.max(HORIZON), places(1.0)) {
+        for ([wo, h], weight) in facets.visible_from(z.max(HORIZON), 1.0) {
             let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
             add(wo.dot(h), weight, [blocked, 1.0]);
         }
@@ -214,11 +212,10 @@ const HORIZON: f64 = 1e-9;
 /// Share of the light from the cosine `z` that facets of relative index m reflect and no facet blocks.
 fn reflected_once(surface: &RoughSurface, m: f64, z: f64) -> f64 {
     let facets = surface.facets();
-    let reflected = |[wo, h]: [DVec3; 2]| {
+    facets.mean_over_visible(z, m, |[wo, h]| {
         let reflectance = 1.0 - transmittance(1.0, m, wo.dot(h).clamp(0.0, 1.0));
         reflectance * facets.left_and_blocked(wo, reflect(wo, h))[0]
-    };
-    facets.visible_from(z, places(m)).map(|(directions, weight)| weight * reflected(directions)).sum()
+    })
 }
 
 /// Share of the light that crosses a smooth boundary; all of it where there is none.

@@ -3,7 +3,7 @@
 use super::coating::MetCoating;
 use super::degree::of_all_lanes;
 use super::stack::StackShares;
-use super::{Arrival, Block, Branch, Coating, Interface, reflect};
+use super::{Arrival, Block, Branch, Coating, Interface};
 use crate::spectrum::{Lanes, Table};
 
 /// A smooth surface of a clear body under a coating.
@@ -55,8 +55,7 @@ impl CoatedBoundary<'_> {
         };
         branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
         if !reflected.is_zero() {
-            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degree(&reflected, 0));
-            branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+            branches.push(Branch::mirrored(arrival, reflected, degree(&reflected, 0)));
         }
     }
 }
@@ -98,10 +97,10 @@ pub(super) fn shares_of_lane<const N: usize>(
 ) -> StackShares {
     let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
     let [here, _] = arrival.refracting(lane);
-    let (c, total) = (cos.clamp(0.0, 1.0), || StackShares::all_reflected());
+    let c = cos.clamp(0.0, 1.0);
     let q1_squared = (n1 - here) * (n1 + here) + (here * c) * (here * c);
     if q1_squared < 0.0 {
-        return total();
+        return StackShares::all_reflected();
     }
     let mut shares = of_stack(n1, n2, q1_squared.sqrt());
     if !goes_on {

@@ -149,6 +149,11 @@ impl<const N: usize> MetCoating<'_, N> {
         })
     }
 
+    /// The same of light that meets them at an angle of a cosine.
+    pub(super) fn at_cosine(&self, lane: usize, n1: f64, n2: impl Into<Complex>, cos: f64) -> StackShares {
+        self.shares(lane, n1, n2.into(), n1 * cos.clamp(0.0, 1.0))
+    }
+
     /// The layers for a lane, the viewer's side first.
     pub(super) fn stack(&self, lane: usize) -> Stack {
         Stack::new(self.light(lane), self.layers(lane))

@@ -3,7 +3,7 @@ use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
 use super::{
     Arrival, Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
-    conductor_reflectance, reflect,
+    conductor_reflectance,
 };
 use crate::math::{Complex, DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -44,14 +44,8 @@ impl Conductor<Table> {
         let Some(surface) = self.roughness.surface() else { return Some(self.mirror(arrival)) };
         let frame = Frame::about(arrival.normal);
         let reflection = surface.scatter(above(&frame, arrival.wo), u)?;
-        Some(Branch {
-            wi: unit(frame.to_world(reflection.wi)),
-            share: self.reflected(arrival, surface, &reflection, 1.0 / reflection.pdf),
-            pdf: Some(reflection.pdf),
-            crosses: false,
-            eta_scale: 1.0,
-            polarization: 0.0,
-        })
+        let share = self.reflected(arrival, surface, &reflection, 1.0 / reflection.pdf);
+        Some(Branch::drawn(unit(frame.to_world(reflection.wi)), share, reflection.pdf))
     }
 
     /// Of a smooth metal.
@@ -67,17 +61,12 @@ impl Conductor<Table> {
                 [reflected.s, reflected.p]
             }
         });
-        Branch {
-            wi: reflect(arrival.wo, arrival.normal),
-            share: Lanes::from_fn(|i| (0.5 * (reflected[i][0] + reflected[i][1])) as f32),
-            pdf: None,
-            crosses: false,
-            eta_scale: 1.0,
-            polarization: match met {
-                None => reflected.into_iter().map(degree).fold(0.0, f64::max) as f32,
-                Some(_) => of_all_lanes(reflected.into_iter()) as f32,
-            },
-        }
+        let share = Lanes::from_fn(|i| (0.5 * (reflected[i][0] + reflected[i][1])) as f32);
+        let polarization = match met {
+            None => largest(reflected.into_iter().map(degree)),
+            Some(_) => of_all_lanes(reflected.into_iter()) as f32,
+        };
+        Branch::mirrored(arrival, share, polarization)
     }
 
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
@@ -173,7 +162,7 @@ impl Conductor<Table> {
 
 /// What a metal n - i k under layers reflects of a lane, in a medium of index `n1`.
 fn reflected_under<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> PolarizedShare {
-    met.shares(lane, n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected
+    met.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected
 }
 
 /// The reflectance of a coated metal at a cosine, and its mean over the hemisphere.

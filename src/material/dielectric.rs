@@ -104,8 +104,7 @@ impl Dielectric<Table> {
             let h = if crosses { (arrival.wo * n1 + wi * n2) * (n1 - n2).signum() } else { arrival.wo + wi };
             let Some(h) = h.try_normalize() else { continue };
             if let Some(met) = &met {
-                let cos = arrival.wo.dot(h).clamp(0.0, 1.0);
-                let shares = met.stack(lane).shares(n1, n2.into(), n1 * cos);
+                let shares = met.at_cosine(lane, n1, n2, arrival.wo.dot(h));
                 let share = if crosses { shares.refracted } else { shares.reflected };
                 most = most.max(share.degree());
                 continue;
@@ -169,9 +168,7 @@ impl Dielectric<Table> {
             branch.share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
         }
         if !reflected.is_zero() {
-            let wi = reflect(arrival.wo, arrival.normal);
-            let polarization = polarization as f32;
-            branches.push(Branch { wi, share: reflected, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+            branches.push(Branch::mirrored(arrival, reflected, polarization as f32));
         }
     }
 

@@ -27,14 +27,8 @@ impl<S> Diffuse<S> {
 impl Diffuse<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2]) -> Branch<N> {
         let local = cosine_hemisphere(u);
-        Branch {
-            wi: unit(Frame::about(arrival.normal).to_world(local)),
-            share: arrival.read(&self.reflectance),
-            pdf: Some(local.z * FRAC_1_PI),
-            crosses: false,
-            eta_scale: 1.0,
-            polarization: 0.0,
-        }
+        let wi = unit(Frame::about(arrival.normal).to_world(local));
+        Branch::drawn(wi, arrival.read(&self.reflectance), local.z * FRAC_1_PI)
     }
 
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {

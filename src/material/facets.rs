@@ -52,7 +52,7 @@ impl Facets {
     ///
     /// D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17,
     /// without the difference n1 cos - n2 cos, which keeps its digits for nearly equal indices.
-    pub fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
+    pub(super) fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
         let turn = (n1 * cos[0] + n2 * cos[1]) / ((n2 - n1) * (n2 + n1));
         let visible = self.density(h) * 2.0 * cos[0] / (wo.z + self.slant(wo));
         visible * n2 * n2 * cos[1] * turn * turn
@@ -97,7 +97,7 @@ impl Facets {
     }
 
     /// The same for `left` = 1 - `u[1]`, with all its digits where few facets are left.
-    pub(super) fn visible_normal_from_end(&self, wo: DVec3, around: f64, left: f64) -> DVec3 {
+    fn visible_normal_from_end(&self, wo: DVec3, around: f64, left: f64) -> DVec3 {
         let slant = self.slant(wo);
         let stretched = DVec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z) / slant;
         let height = 1.0 + stretched.z;
@@ -108,10 +108,10 @@ impl Facets {
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
 
-    /// The visible facets from the cosine `z` for a quadrature: the direction they are seen from, their normals, and
-    /// weights that sum to 1.
-    pub(super) fn visible_from(&self, z: f64, places: u32) -> impl Iterator<Item = ([DVec3; 2], f64)> {
-        let wo = DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+    /// The visible facets from the cosine `z` for a quadrature, where the index beyond is `ratio` times that on this
+    /// side: the direction they are seen from, their normals, and weights that sum to 1.
+    pub(super) fn visible_from(&self, z: f64, ratio: f64) -> impl Iterator<Item = ([DVec3; 2], f64)> {
+        let (wo, places) = (DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z), places(ratio));
         (0..places).map(move |i| {
             // A lattice of the golden ratio, whose rows lie along no edge: total reflection sets in along a curve.
             let turn = (f64::from(i) * GOLDEN).fract();
@@ -119,6 +119,11 @@ impl Facets {
             let v = (f64::from(i) + 0.5) / f64::from(places);
             ([wo, self.visible_normal_from_end(wo, turn, v * v)], 2.0 * v / f64::from(places))
         })
+    }
+
+    /// The mean over these of something that a facet does with light.
+    pub(super) fn mean_over_visible(&self, z: f64, ratio: f64, of: impl Fn([DVec3; 2]) -> f64) -> f64 {
+        self.visible_from(z, ratio).map(|(directions, weight)| weight * of(directions)).sum()
     }
 }
 
@@ -129,7 +134,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 ///
 /// Shares are off by 1e-4 at most, and by 8e-4 where some facets reflect totally and others do not: beside those of
 /// half a million facets, at 13 cosines and 6 roughnesses.
-pub(super) fn places(ratio: f64) -> u32 {
+fn places(ratio: f64) -> u32 {
     if ratio < 1.0 { 4096 } else { 2048 }
 }
 

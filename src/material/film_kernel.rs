@@ -1,7 +1,5 @@
 //! What facets block of the light that each hat of a film's differences stands for.
 
-use std::cell::Cell;
-
 use super::albedo_table::AlbedoTable;
 use super::film_averages::{FilmAverages, HATS, hats};
 
@@ -32,8 +30,8 @@ impl FilmKernel {
         };
         let rows: Vec<_> = (0..=steps).map(row).collect();
         let table = |number: usize, way: usize| {
-            let at = Cell::new(0);
-            AlbedoTable::new(alpha, steps, |_| rows[at.replace(at.get() + 1)][number][way])
+            let mut values = rows.iter().map(|row| row[number][way]);
+            AlbedoTable::new(alpha, steps, |_| values.next().unwrap_or_default())
         };
         Self { tables: (0..HATS).map(|number| [table(number, 0), table(number, 1)]).collect() }
     }

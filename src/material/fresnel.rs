@@ -68,6 +68,11 @@ impl Interface {
     }
 }
 
+/// The mirror image of the unit vector `wo` about the unit `normal`, normalized so that bounces do not drift.
+pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
+    unit(normal * (2.0 * wo.dot(normal)) - wo)
+}
+
 /// What crosses a smooth boundary of lanes that go one way though their indices differ; the rest is reflected.
 ///
 /// `own` are the indices of each lane on both sides, `direction` those by which their ray is refracted, which meets the

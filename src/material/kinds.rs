@@ -113,11 +113,6 @@ impl<S> Material<S> {
         self.lobes().is_transmissive()
     }
 
-    /// Whether light also comes from beyond the surface in every direction.
-    pub fn scatters_through(&self) -> bool {
-        self.lobes().intersects(Lobes::GLOSSY_TRANSMISSION)
-    }
-
     /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
     pub fn is_diffuse(&self) -> bool {
         self.lobes().is_diffuse()

@@ -64,7 +64,7 @@ impl Block<f64> {
     /// What becomes of radiance at a smooth boundary between two indices, met at an angle of a cosine, where it crosses
     /// it or is reflected. Between equal indices nothing happens.
     #[inline]
-    pub fn at_boundary([n1, n2, cos]: [f64; 3], crosses: bool) -> Self {
+    pub(super) fn at_boundary([n1, n2, cos]: [f64; 3], crosses: bool) -> Self {
         match (n1 == n2, crosses) {
             (true, true) => Self::IDENTITY,
             (true, false) => Self::default(),
@@ -77,7 +77,7 @@ impl Block<f64> {
     ///
     /// With u - i b = sqrt((n - i k)^2 / n1^2 - sin^2), r_s = (cos - u + i b) / (cos + u - i b) and r_p / r_s =
     /// -(u - i b - e) / (u - i b + e), e = sin^2 / cos (Born & Wolf 1999, section 14.4, in the signs of this module).
-    pub fn of_metal(n1: f64, n: f64, k: f64, cos: f64) -> Self {
+    pub(super) fn of_metal(n1: f64, n: f64, k: f64, cos: f64) -> Self {
         let cos = cos.clamp(0.0, 1.0);
         let (eta, kappa) = (n / n1, k / n1);
         let (c2, s2) = (cos * cos, 1.0 - cos * cos);
@@ -105,14 +105,14 @@ impl Block<f64> {
     }
 
     /// A sheet in which light along its fast axis, which is s, is ahead by a phase.
-    pub fn of_retarder(phase: f64) -> Self {
+    pub(super) fn of_retarder(phase: f64) -> Self {
         let (sin, cos) = libm::sincos(phase);
         Self { a: 1.0, d: 0.0, c: cos, q: -sin }
     }
 
     /// What goes through two parallel surfaces alike, of which each reflects `one` and lets `crossing` through, and
     /// what comes back; `t` is left after one way between them. No phase is kept from surface to surface.
-    pub fn of_pane(one: Self, crossing: Self, t: f64) -> [Self; 2] {
+    pub(super) fn of_pane(one: Self, crossing: Self, t: f64) -> [Self; 2] {
         if crossing.a <= 0.0 {
             return [Self::default(), one];
         }
@@ -241,7 +241,7 @@ impl<const N: usize> Mueller<N> {
     }
 
     /// Becomes that of a share that is left as it is.
-    pub fn set_unchanged(&mut self, share: Lanes<N>) {
+    pub(super) fn set_unchanged(&mut self, share: Lanes<N>) {
         let block = Block { a: share, d: Lanes::ZERO, c: share, q: Lanes::ZERO };
         (self.axis, self.block, self.base) = (DVec3::ZERO, block, None);
     }

@@ -6,7 +6,6 @@ use super::degree::{LANES, largest, of_all_lanes};
 use super::plastic_film::PlasticFilm;
 use super::{
     Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, StackShares,
-    reflect,
 };
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -49,12 +48,12 @@ impl Plastic<Table> {
         let Some(surface) = self.coat.roughness().surface() else {
             branches.extend(self.mirrored(arrival));
             let wi = cosine_hemisphere(u);
-            let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], |crossing, r, _| crossing.base(r));
+            let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], CoatLane::base);
             branches.push(branch(arrival, wi, base, wi.z * FRAC_1_PI));
             return;
         };
         let wo = above(&Frame::about(arrival.normal), arrival.wo);
-        let chance = chance_of_coat(&self.lanes(arrival, [wo.z; 2], |crossing, r, _| crossing.reflected(r)));
+        let chance = chance_of_coat(&self.lanes(arrival, [wo.z; 2], CoatLane::reflected));
         let wi = if u[0] < chance {
             surface.scatter(wo, [u[0] / chance, u[1]]).map(|reflection| reflection.wi)
         } else {
@@ -75,7 +74,7 @@ impl Plastic<Table> {
                     return None;
                 }
                 let (cosines, pdf) = ([arrival.wo.dot(arrival.normal), cos], cos * FRAC_1_PI);
-                (self.lanes(arrival, cosines, |crossing, r, _| crossing.base(r) * pdf), pdf)
+                (self.lanes(arrival, cosines, |lane| lane.base() * pdf), pdf)
             }
             Some(surface) => {
                 let frame = Frame::about(arrival.normal);
@@ -92,41 +91,31 @@ impl Plastic<Table> {
             return Lanes::ZERO;
         }
         let wo = above(&Frame::about(arrival.normal), arrival.wo);
-        let light = self.lanes(arrival, [wo.z, cos], |crossing, r, _| crossing.base(r) * cos * FRAC_1_PI);
+        let light = self.lanes(arrival, [wo.z, cos], |lane| lane.base() * cos * FRAC_1_PI);
         Lanes::from_fn(|i| light[i] as f32)
     }
 
     /// What a smooth coat reflects.
     fn mirrored<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Branch<N>> {
         let (index, cos) = (arrival.draw.read_exact(&self.index), arrival.wo.dot(arrival.normal));
-        let (mut share, mut polarization) = (Lanes::ZERO, 0.0);
-        if let Some(coating) = &self.coating {
-            let met = coating.met(arrival, false);
-            let mut of_lanes = [[0.0; 2]; N];
-            for lane in (0..N).filter(|&i| arrival.present[i] != 0.0) {
-                let reflected =
-                    PlasticFilm::new(&met, lane, [arrival.incident_of(lane), index[lane]]).shares(cos).reflected;
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        let (mut share, mut degree, mut of_lanes) = (Lanes::ZERO, 0.0_f64, [[0.0; 2]; N]);
+        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+            let [n1, n2] = [arrival.incident_of(lane), index[lane]];
+            if let Some(met) = &met {
+                let reflected = met.at_cosine(lane, n1, n2, cos).reflected;
                 share.0[lane] = reflected.mean() as f32;
                 of_lanes[lane] = [reflected.s, reflected.p];
+            } else if n1 != n2 {
+                let interface = Interface::new(n1, n2, cos);
+                share.0[lane] = interface.reflectance as f32;
+                degree = degree.max(interface.polarization_reflected.abs());
             }
-            polarization = of_all_lanes(of_lanes.into_iter()) as f32;
-            let wi = reflect(arrival.wo, arrival.normal);
-            return (!share.is_zero()).then_some(Branch {
-                wi,
-                share,
-                pdf: None,
-                crosses: false,
-                eta_scale: 1.0,
-                polarization,
-            });
         }
-        for lane in (0..N).filter(|&i| arrival.present[i] != 0.0 && index[i] != arrival.incident_of(i)) {
-            let interface = Interface::new(arrival.incident_of(lane), index[lane], cos);
-            share.0[lane] = interface.reflectance as f32;
-            polarization = interface.polarization_reflected.abs().max(f64::from(polarization)) as f32;
+        if met.is_some() {
+            degree = of_all_lanes(of_lanes.into_iter());
         }
-        let wi = reflect(arrival.wo, arrival.normal);
-        (!share.is_zero()).then_some(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization })
+        (!share.is_zero()).then(|| Branch::mirrored(arrival, share, degree as f32))
     }
 
     /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
@@ -139,79 +128,37 @@ impl Plastic<Table> {
     ) -> Option<([f64; N], f64)> {
         let reflection = surface.evaluate(wo, wi)?;
         let base_pdf = wi.z * FRAC_1_PI;
-        if let Some(coating) = &self.coating {
-            return self.rough_coated(arrival, surface, coating, [wo.z, wi.z], &reflection);
-        }
-        let of_lane = |crossing: &Crossing, r: f64, [n1, n2]: [f64; 2]| {
-            let once = if n1 == n2 { 0.0 } else { Interface::new(n1, n2, reflection.cos).reflectance };
-            let again = Coat::reflected_again(surface, n1, n2);
-            let light = once * reflection.once + again * reflection.again + crossing.base(r) * base_pdf;
-            (light, crossing.reflected(r))
-        };
-        let lanes = self.lanes(arrival, [wo.z, wi.z], of_lane);
-        let chance = chance_of_coat(&lanes.map(|lane| lane.1));
-        let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
-        (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
-    }
-
-    /// The same of a coated one.
-    fn rough_coated<const N: usize>(
-        &self,
-        arrival: &Arrival<N>,
-        surface: &RoughSurface,
-        coating: &Coating<Table>,
-        cosines: [f64; 2],
-        reflection: &RoughReflection,
-    ) -> Option<([f64; N], f64)> {
-        let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
-        let (met, base_pdf) = (coating.met(arrival, false), cosines[1] * FRAC_1_PI);
-        let lanes: [(f64, [f64; 2]); N] = std::array::from_fn(|i| {
-            if arrival.present[i] == 0.0 {
-                return Default::default();
-            }
-            let film = PlasticFilm::new(&met, i, [arrival.incident_of(i), index[i]]);
-            let (crossing, r) = (film.crossing(&self.coat, cosines), f64::from(base[i]));
-            let again = surface.reflected_again(film.averages.mean[0]);
-            let once = film.shares(reflection.cos).reflected.mean();
-            let light = once * reflection.once + again * reflection.again + crossing.base(r) * base_pdf;
-            (light, crossing.reflected(r))
+        let lanes = self.lanes(arrival, [wo.z, wi.z], |lane| {
+            (lane.coat(surface, &reflection) + lane.base() * base_pdf, lane.reflected())
         });
         let chance = chance_of_coat(&lanes.map(|lane| lane.1));
         let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
         (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
     }
 
-    /// Something of each lane on the ray, from what crosses the coat in two directions, the base's reflectance and the
-    /// indices on both sides.
+    /// Something of each lane on the ray, which crosses the coat from directions of two cosines.
     fn lanes<T: Default, const N: usize>(
         &self,
         arrival: &Arrival<N>,
-        [from, to]: [f64; 2],
-        of_lane: impl Fn(&Crossing, f64, [f64; 2]) -> T,
+        cosines: [f64; 2],
+        of_lane: impl Fn(&CoatLane) -> T,
     ) -> [T; N] {
         let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
-        if let Some(coating) = &self.coating {
-            let met = coating.met(arrival, false);
-            return std::array::from_fn(|i| match arrival.present[i] {
-                0.0 => T::default(),
-                _ => {
-                    let film = PlasticFilm::new(&met, i, [arrival.incident_of(i), index[i]]);
-                    of_lane(&film.crossing(&self.coat, [from, to]), f64::from(base[i]), film.indices)
-                }
-            });
-        }
+        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
         let mut last: Option<([f64; 2], Crossing)> = None;
         std::array::from_fn(|i| {
             if arrival.present[i] == 0.0 {
                 return T::default();
             }
-            let pair = [arrival.incident_of(i), index[i]];
-            let crossing = match last {
-                Some((of, crossing)) if of == pair => crossing,
-                _ => self.coat.crossing(pair[0], pair[1], from, to),
+            let indices = [arrival.incident_of(i), index[i]];
+            let film = met.as_ref().map(|met| PlasticFilm::new(met, i, indices));
+            let crossing = match (&film, last) {
+                (Some(film), _) => film.crossing(&self.coat, cosines),
+                (None, Some((of, crossing))) if of == indices => crossing,
+                (None, _) => self.coat.crossing(indices, cosines),
             };
-            last = Some((pair, crossing));
-            of_lane(&crossing, f64::from(base[i]), pair)
+            last = Some((indices, crossing));
+            of_lane(&CoatLane { crossing, r: f64::from(base[i]), indices, film })
         })
     }
 
@@ -220,8 +167,7 @@ impl Plastic<Table> {
         let index = arrival.draw.read_exact(&self.index);
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
         let film = |lane: usize, cos: f64| {
-            let indices = [arrival.incident_of(lane), index[lane]];
-            met.as_ref().map(|met| PlasticFilm::new(met, lane, indices).shares(cos))
+            met.as_ref().map(|met| met.at_cosine(lane, arrival.incident_of(lane), index[lane], cos))
         };
         let reflected = |lane: usize, cos: f64| match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
             (Some(shares), _) => shares.reflected.block(),
@@ -260,9 +206,8 @@ impl Plastic<Table> {
         film: impl Fn(usize, f64) -> Option<StackShares>,
     ) -> Base<N> {
         let index = arrival.draw.read_exact(&self.index);
-        let crossings = self.lanes(arrival, [from, to], |crossing, r, _| {
-            (crossing.base(r) * to * FRAC_1_PI, [crossing.from, crossing.to])
-        });
+        let crossings = self
+            .lanes(arrival, [from, to], |lane| (lane.base() * to * FRAC_1_PI, [lane.crossing.from, lane.crossing.to]));
         let mut last = None;
         let mut crossed = |lane: usize, cos: f64, share: f64| {
             if arrival.present[lane] == 0.0 {
@@ -295,14 +240,14 @@ impl Plastic<Table> {
         let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident_of(lane)).step_by(N.div_ceil(LANES));
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
         let coat = |lane: usize, cos: f64| {
-            let indices @ [n1, n2] = [arrival.incident_of(lane), index[lane]];
+            let [n1, n2] = [arrival.incident_of(lane), index[lane]];
             match &met {
                 None => {
                     let interface = Interface::new(n1, n2, cos);
                     [interface.polarization_reflected, interface.polarization_refracted]
                 }
                 Some(met) => {
-                    let shares = PlasticFilm::new(met, lane, indices).shares(cos);
+                    let shares = met.at_cosine(lane, n1, n2, cos);
                     [shares.reflected, shares.refracted].map(|share| share.degree())
                 }
             }
@@ -323,6 +268,40 @@ impl Plastic<Table> {
     }
 }
 
+/// What the light of a lane meets.
+struct CoatLane {
+    /// What crosses the coat from two directions.
+    crossing: Crossing,
+    /// The base's reflectance.
+    r: f64,
+    /// On both sides of the coat.
+    indices: [f64; 2],
+    film: Option<PlasticFilm>,
+}
+
+impl CoatLane {
+    /// BRDF times pi of the base.
+    fn base(&self) -> f64 {
+        self.crossing.base(self.r)
+    }
+
+    /// Shares of the light from the first direction that the coat and the base reflect.
+    fn reflected(&self) -> [f64; 2] {
+        self.crossing.reflected(self.r)
+    }
+
+    /// BRDF times cosine of a rough coat.
+    fn coat(&self, surface: &RoughSurface, reflection: &RoughReflection) -> f64 {
+        let (cos, [n1, n2]) = (reflection.cos, self.indices);
+        let bare = || if n1 == n2 { 0.0 } else { Interface::new(n1, n2, cos).reflectance };
+        let [once, again] = match &self.film {
+            Some(film) => [film.shares(cos).reflected.mean(), surface.reflected_again(film.averages.mean[0])],
+            None => [bare(), Coat::reflected_again(surface, n1, n2)],
+        };
+        once * reflection.once + again * reflection.again
+    }
+}
+
 /// How often a direction is drawn from the coat, and else from the base: by what each reflects of all lanes.
 fn chance_of_coat(reflected: &[[f64; 2]]) -> f64 {
     let [coat, base] = [0, 1].map(|part| reflected.iter().map(|lane| lane[part]).sum::<f64>());
@@ -332,6 +311,5 @@ fn chance_of_coat(reflected: &[[f64; 2]]) -> f64 {
 /// The branch of a direction in the surface's frame.
 fn branch<const N: usize>(arrival: &Arrival<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
     let wi = unit(Frame::about(arrival.normal).to_world(wi));
-    let share = Lanes::from_fn(|i| share[i] as f32);
-    Branch { wi, share, pdf: Some(pdf), crosses: false, eta_scale: 1.0, polarization: 0.0 }
+    Branch::drawn(wi, Lanes::from_fn(|i| share[i] as f32), pdf)
 }

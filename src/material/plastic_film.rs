@@ -7,7 +7,7 @@ use super::{Interface, Stack, StackShares};
 pub(super) struct PlasticFilm {
     stack: Stack,
     /// On the viewer's side, and of the coat.
-    pub(super) indices: [f64; 2],
+    indices: [f64; 2],
     pub(super) averages: FilmAverages,
 }
 

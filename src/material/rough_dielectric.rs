@@ -23,8 +23,9 @@ struct Meeting<'a, 'b, const N: usize> {
     kinds: Vec<Kind<'a, N>>,
     parts: bool,
     coating: Option<(&'a RoughInterface, MetCoating<'a, N>)>,
-    /// Cosine of the direction that was asked for last.
+    /// Cosine of the direction that was asked for last, and whether it lies beyond the surface.
     cos: f64,
+    crosses: bool,
 }
 
 /// Lanes that are refracted between the same two indices.
@@ -51,15 +52,8 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
                 continue;
             }
             let known = kinds.iter().position(|kind| kind.indices == indices).unwrap_or_else(|| {
-                let sides = interface.between(n1, n2);
-                kinds.push(Kind {
-                    indices,
-                    sides,
-                    present: Lanes::ZERO,
-                    count: 0.0,
-                    crossing: 0.0,
-                    flow: Flow::default(),
-                });
+                let (sides, flow) = (interface.between(n1, n2), Flow::default());
+                kinds.push(Kind { indices, sides, present: Lanes::ZERO, count: 0.0, crossing: 0.0, flow });
                 kinds.len() - 1
             });
             let kind = &mut kinds[known];
@@ -69,56 +63,57 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         }
         let frame = Frame::about(arrival.normal);
         let coating = boundary.coating.map(|coating| (interface, coating.met(arrival, arrival.from_inside)));
-        Self { arrival, wo: above(&frame, arrival.wo), frame, kinds, parts, coating, cos: 0.0 }
+        Self { arrival, wo: above(&frame, arrival.wo), frame, kinds, parts, coating, cos: 0.0, crosses: false }
     }
 
-    /// The lanes of a kind that cross the surface.
-    fn across(&self, kind: &Kind<N>) -> Lanes<N> {
-        if self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
-    }
-
-    /// Asks every kind of lanes about a direction above the surface, for the mean of the densities with which they draw
-    /// it. `drawn` is the kind that drew it, and the facet.
-    fn reflect(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
+    /// Asks every kind of lanes about a direction above the surface or beyond it, for the mean of the densities with
+    /// which they draw it. `drawn` is the kind that drew it, and the facet.
+    fn ask(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
+        (self.cos, self.crosses) = (wi.z.abs(), wi.z < 0.0);
         let (mut pdf, mut lanes) = (0.0, 0.0);
-        self.cos = wi.z;
         for (number, kind) in self.kinds.iter_mut().enumerate() {
-            kind.flow = kind.sides.reflected(self.wo, wi, facet_of(number, drawn));
-            pdf += kind.count * kind.flow.pdf;
-            lanes += kind.count;
+            let count = kind.counted(self.crosses);
+            if count == 0.0 {
+                continue;
+            }
+            let facet = drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1);
+            kind.flow = match self.crosses {
+                true => kind.sides.crossed(self.wo, wi, facet),
+                false => kind.sides.reflected(self.wo, wi, facet),
+            };
+            pdf += count * kind.flow.pdf;
+            lanes += count;
         }
         if lanes > 0.0 { pdf / lanes } else { 0.0 }
     }
 
-    /// The same of a direction beyond it.
-    fn cross(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
-        let (mut pdf, mut lanes) = (0.0, 0.0);
-        self.cos = -wi.z;
-        for (number, kind) in self.kinds.iter_mut().enumerate().filter(|(_, kind)| kind.crossing > 0.0) {
-            kind.flow = kind.sides.crossed(self.wo, wi, facet_of(number, drawn));
-            pdf += kind.crossing * kind.flow.pdf;
-            lanes += kind.crossing;
-        }
-        if lanes > 0.0 { pdf / lanes } else { 0.0 }
+    /// The kinds of lanes that go on in the direction that was asked for last.
+    fn going(&self) -> impl Iterator<Item = &Kind<'a, N>> {
+        self.kinds.iter().filter(|kind| kind.counted(self.crosses) > 0.0)
     }
 
-    /// What the lanes do that were asked last, the BSDF times the cosine, times a factor.
-    fn reflected(&self, factor: f64) -> Lanes<N> {
-        self.kinds.iter().fold(Lanes::ZERO, |sum, kind| sum + kind.present * self.flowing(kind, factor, false))
+    /// The lanes of such a kind that do.
+    fn lanes(&self, kind: &Kind<N>) -> Lanes<N> {
+        if self.crosses && self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
     }
 
-    /// The same beyond the surface.
-    fn crossed(&self, factor: f64) -> Lanes<N> {
-        let crossing = self.kinds.iter().filter(|kind| kind.crossing > 0.0);
-        crossing.fold(Lanes::ZERO, |sum, kind| sum + self.across(kind) * self.flowing(kind, factor, true))
+    /// What all lanes do there, the BSDF times the cosine, times a factor.
+    fn light(&self, factor: f64) -> Lanes<N> {
+        self.going().fold(Lanes::ZERO, |sum, kind| sum + self.light_of(kind, factor))
     }
 
-    /// What lanes of a kind do in the direction that was asked for last, each by its own indices, times a factor.
-    fn flowing(&self, kind: &Kind<N>, factor: f64, crosses: bool) -> Lanes<N> {
-        let Flow { value, facet, cos, .. } = kind.flow;
-        if let Some((interface, met)) = &self.coating {
-            return self.flowing_through(interface, met, kind, factor, crosses);
-        }
+    /// What those of a kind do, each by its own indices.
+    fn light_of(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
+        let light = match &self.coating {
+            Some((interface, met)) => self.coated(interface, met, kind, factor),
+            None => self.bare(kind, factor),
+        };
+        self.lanes(kind) * light
+    }
+
+    /// The same at a boundary without a coating, whether or not a lane goes on.
+    fn bare(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
+        let (Flow { value, facet, cos, .. }, crosses) = (kind.flow, self.crosses);
         let Some(own) = self.arrival.own_transmittance(cos) else {
             return Lanes::from_fn(|_| (value * factor) as f32);
         };
@@ -134,16 +129,9 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         })
     }
 
-    /// The same of a coated boundary.
-    fn flowing_through(
-        &self,
-        interface: &RoughInterface,
-        met: &MetCoating<N>,
-        kind: &Kind<N>,
-        factor: f64,
-        crosses: bool,
-    ) -> Lanes<N> {
-        let [here, beyond] = kind.indices;
+    /// The same at a coated one.
+    fn coated(&self, interface: &RoughInterface, met: &MetCoating<N>, kind: &Kind<N>, factor: f64) -> Lanes<N> {
+        let ([here, beyond], crosses) = (kind.indices, self.crosses);
         let kernels = interface.film_kernels(here, beyond);
         Lanes::from_fn(|lane| {
             if kind.present[lane] == 0.0 {
@@ -167,9 +155,11 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     }
 }
 
-/// The facet that sent light of a kind of lanes, if it is this kind that was drawn.
-fn facet_of(number: usize, drawn: Option<(usize, Facet)>) -> Option<Facet> {
-    drawn.filter(|drawn| drawn.0 == number).map(|drawn| drawn.1)
+impl<const N: usize> Kind<'_, N> {
+    /// How many of its lanes are asked about a direction on a side.
+    fn counted(&self, crosses: bool) -> f64 {
+        if crosses { self.crossing } else { self.count }
+    }
 }
 
 /// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
@@ -243,12 +233,12 @@ impl RoughBoundary<'_> {
             let way = if number == chosen { crossed } else { sides.draw(meeting.wo, u)[1] };
             let (Some(Way { wi, facet }), true) = (way, kind.crossing > 0.0) else { continue };
             let Some(world) = meeting.to_world(wi) else { continue };
-            let pdf = meeting.cross(wi, facet.map(|facet| (number, facet)));
+            let pdf = meeting.ask(wi, facet.map(|facet| (number, facet)));
             let share = if meeting.parts {
                 let kind = &meeting.kinds[number];
-                meeting.across(kind) * meeting.flowing(kind, 1.0 / kind.flow.pdf, true)
+                meeting.light_of(kind, 1.0 / kind.flow.pdf)
             } else {
-                meeting.crossed(1.0 / pdf)
+                meeting.light(1.0 / pdf)
             };
             if pdf > 0.0 && !(share * tint).is_zero() {
                 branches.push(branch(world, share * tint, pdf, true, square(indices)));
@@ -257,8 +247,8 @@ impl RoughBoundary<'_> {
         if let Some(Way { wi, facet }) = reflected
             && let Some(world) = meeting.to_world(wi)
         {
-            let pdf = meeting.reflect(wi, facet.map(|facet| (chosen, facet)));
-            let share = meeting.reflected(1.0 / pdf) * reflectance;
+            let pdf = meeting.ask(wi, facet.map(|facet| (chosen, facet)));
+            let share = meeting.light(1.0 / pdf) * reflectance;
             if pdf > 0.0 && !share.is_zero() {
                 branches.push(branch(world, share, pdf, false, 1.0));
             }
@@ -286,16 +276,14 @@ impl RoughBoundary<'_> {
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         let arrival = &Arrival { present: Lanes::one_in(incoming.lanes), ..*arrival };
         let mut meeting = Meeting::new(self, arrival);
-        let local = meeting.frame.to_local(incoming.wi);
-        let crosses = local.z < 0.0;
-        let pdf = if crosses { meeting.cross(local, None) } else { meeting.reflect(local, None) };
-        if pdf <= 0.0 {
+        if meeting.ask(meeting.frame.to_local(incoming.wi), None) <= 0.0 {
             return *mueller = Mueller::NONE;
         }
-        let tint = arrival.read(if crosses { self.transmittance } else { self.reflectance });
+        let crosses = meeting.crosses;
+        let tint = arrival.read(self.factor(crosses));
         *mueller = Mueller { axis: arrival.wo.cross(incoming.wi), ..Mueller::NONE };
-        for kind in meeting.kinds.iter().filter(|kind| !crosses || kind.crossing > 0.0) {
-            let lanes = if crosses { meeting.across(kind) } else { kind.present };
+        for kind in meeting.going() {
+            let lanes = meeting.lanes(kind);
             for lane in (0..N).filter(|&lane| lanes[lane] != 0.0) {
                 let block = match &meeting.coating {
                     None => Block::at_boundary(arrival.own_boundary(lane, kind.flow.cos), crosses),
@@ -313,11 +301,11 @@ impl RoughBoundary<'_> {
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         let mut meeting = Meeting::new(self, arrival);
         let local = meeting.frame.to_local(wi);
-        if local.z > 0.0 {
-            let pdf = meeting.reflect(local, None);
-            return (pdf > 0.0).then(|| (meeting.reflected(1.0) * arrival.read(self.reflectance), pdf));
-        }
-        let pdf = if local.z < 0.0 { meeting.cross(local, None) } else { 0.0 };
-        (pdf > 0.0).then(|| (meeting.crossed(1.0) * arrival.read(self.transmittance), pdf))
+        let pdf = if local.z == 0.0 { 0.0 } else { meeting.ask(local, None) };
+        (pdf > 0.0).then(|| (meeting.light(1.0) * arrival.read(self.factor(meeting.crosses)), pdf))
+    }
+
+    fn factor(&self, crosses: bool) -> &Table {
+        if crosses { self.transmittance } else { self.reflectance }
     }
 }

@@ -2,7 +2,7 @@ use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
 use super::albedo_table::AlbedoTable;
-use super::facets::{later_digits, places};
+use super::facets::later_digits;
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{Facet, Facets, Flow};
@@ -107,7 +107,7 @@ fn ratio(denser: bool, row: usize) -> f64 {
 fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
     let straight = straight(ratio);
     FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
-        for (directions, weight) in facets.visible_from(z, places(ratio)) {
+        for (directions, weight) in facets.visible_from(z, ratio) {
             let facet = Facet::new(facets, [1.0, ratio], straight, directions, None);
             add(facet.cos[0], weight, facet.all.map(|left| 1.0 - left));
         }
@@ -118,8 +118,7 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
 /// index beyond is `ratio` times that on this side.
 fn blocked(facets: &Facets, z: f64, ratio: f64) -> f64 {
     let straight = straight(ratio);
-    let again = |directions| Facet::new(facets, [1.0, ratio], straight, directions, None).again;
-    facets.visible_from(z, places(ratio)).map(|(directions, weight)| weight * again(directions)).sum()
+    facets.mean_over_visible(z, ratio, |directions| Facet::new(facets, [1.0, ratio], straight, directions, None).again)
 }
 
 /// The share of light from all around that crosses a boundary both there and back, the same from either side.
@@ -154,7 +153,7 @@ impl Side<'_> {
 
     /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
     /// there.
-    pub fn blocked_and_density(&self, z: f64) -> [f64; 2] {
+    fn blocked_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
         let [a, b] = self.rows.map(|row| row.value_and_density_at(place, z));
         let often = self.often();

@@ -2,7 +2,6 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::facets::places;
 use super::{Facets, RoughInterface, reflect};
 use crate::math::DVec3;
 
@@ -143,6 +142,5 @@ impl RoughSurface {
 
 /// The share of light from the cosine `z` that meets a second facet: the mean over the visible facets.
 fn blocked(facets: &Facets, z: f64) -> f64 {
-    let blocked = |[wo, h]: [DVec3; 2]| facets.left_and_blocked(wo, reflect(wo, h))[1];
-    facets.visible_from(z, places(1.0)).map(|(directions, weight)| weight * blocked(directions)).sum()
+    facets.mean_over_visible(z, 1.0, |[wo, h]| facets.left_and_blocked(wo, reflect(wo, h))[1])
 }

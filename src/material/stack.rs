@@ -86,16 +86,20 @@ pub struct StackShares {
 }
 
 impl StackShares {
-    /// All light is reflected, its polarization kept as at normal incidence.
-    pub fn all_reflected() -> Self {
-        let reflected = PolarizedShare { s: 1.0, p: 1.0, cross: -Complex::ONE };
+    /// All light is reflected as where it grazes a surface: both amplitudes are -1.
+    pub(super) fn all_reflected() -> Self {
+        let reflected = PolarizedShare { s: 1.0, p: 1.0, cross: Complex::ONE };
         Self { reflected, refracted: PolarizedShare::default() }
     }
 
-    /// Reflects what would cross.
-    pub fn reflect_all(&mut self) {
+    /// Reflects what would cross, with the phase of what is reflected.
+    pub(super) fn reflect_all(&mut self) {
+        let PolarizedShare { s, p, .. } = self.reflected;
         self.reflected.s += self.refracted.s;
         self.reflected.p += self.refracted.p;
+        if s * p > 0.0 {
+            self.reflected.cross = self.reflected.cross * (self.reflected.s * self.reflected.p / (s * p)).sqrt();
+        }
         self.refracted = PolarizedShare::default();
     }
 }

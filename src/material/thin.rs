@@ -1,5 +1,5 @@
 use super::degree::{degree, of_all_lanes};
-use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight, reflect};
+use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight};
 use crate::spectrum::{LaneSet, Lanes, Quantity, Table};
 
 /// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
@@ -52,8 +52,7 @@ impl Thin<Table> {
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
         let (_, share, degrees) = self.shares(arrival);
         if !share.is_zero() {
-            let (wi, polarization) = (reflect(arrival.wo, arrival.normal), degrees[1] as f32);
-            branches.push(Branch { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization });
+            branches.push(Branch::mirrored(arrival, share, degrees[1] as f32));
         }
     }
 
@@ -72,7 +71,7 @@ impl Thin<Table> {
         mueller.set_lanes(axis, lanes, |lane| {
             if let Some(film) = &film {
                 let n = arrival.incident_of(lane);
-                let shares = film.shares(lane, n, n.into(), n * cos.clamp(0.0, 1.0));
+                let shares = film.at_cosine(lane, n, n, cos);
                 return [shares.refracted, shares.reflected][way as usize].block();
             }
             let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
@@ -116,11 +115,11 @@ impl Thin<Table> {
 
 /// [`Thin::shares`] of a film in which light interferes.
 fn interfering<const N: usize>(film: &Coating<Table>, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
-    let (cos, met) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), film.met(arrival, false));
+    let (cos, met) = (arrival.wo.dot(arrival.normal), film.met(arrival, false));
     let (mut through, mut back, mut of_lanes) = (Lanes::ZERO, Lanes::ZERO, [[[0.0; 2]; N]; 2]);
     for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
         let n = arrival.incident_of(lane);
-        let StackShares { reflected, refracted } = met.shares(lane, n, n.into(), n * cos);
+        let StackShares { reflected, refracted } = met.at_cosine(lane, n, n, cos);
         [through.0[lane], back.0[lane]] = [refracted, reflected].map(|share| share.mean() as f32);
         let both = [refracted, reflected].map(|share| [share.s, share.p]);
         (0..2).for_each(|way| of_lanes[way][lane] = both[way]);

@@ -1,4 +1,4 @@
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// A complex number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,13 +71,6 @@ impl Sub for Complex {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Self::new(self.re - other.re, self.im - other.im)
-    }
-}
-
-impl Neg for Complex {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self::new(-self.re, -self.im)
     }
 }
 

@@ -17,15 +17,7 @@ pub(super) struct Metal(data::Metal);
 
 /// An illuminant or a reflectance.
 #[pyclass(frozen, module = "abbe._abbe")]
-pub(super) struct Tabulated {
-    #[pyo3(get)]
-    name: &'static str,
-    #[pyo3(get)]
-    source: &'static str,
-    #[pyo3(get)]
-    range_nm: (f64, f64),
-    at: Box<dyn Fn(f64) -> f64 + Send + Sync>,
-}
+pub(super) struct Tabulated(data::Grid);
 
 /// Wavelengths in nm, as the bytes of an array of 64-bit floats.
 fn wavelengths(bytes: &[u8]) -> impl Iterator<Item = f64> {
@@ -116,29 +108,36 @@ impl Metal {
 
 #[pymethods]
 impl Tabulated {
+    #[getter]
+    fn name(&self) -> &'static str {
+        self.0.name
+    }
+
+    #[getter]
+    fn source(&self) -> &'static str {
+        self.0.source
+    }
+
+    #[getter]
+    fn range_nm(&self) -> (f64, f64) {
+        self.0.range_nm().into()
+    }
+
     fn at(&self, nm: &[u8]) -> Plane {
-        each(nm, &self.at)
+        each(nm, |nm| self.0.at(nm))
     }
 }
 
 /// The illuminant of a name.
 #[pyfunction]
 pub(super) fn illuminant(name: &str) -> PyResult<Tabulated> {
-    let found = data::illuminant(name).ok_or_else(|| unknown("illuminant", name))?;
-    let range_nm = range(found.start_nm, found.step_nm, found.values.len());
-    Ok(Tabulated { name: found.name, source: found.source, range_nm, at: Box::new(move |nm| found.at(nm)) })
+    data::illuminant(name).map(Tabulated).ok_or_else(|| unknown("illuminant", name))
 }
 
 /// The reflectance of a name.
 #[pyfunction]
 pub(super) fn reflectance(name: &str) -> PyResult<Tabulated> {
-    let found = data::reflectance(name).ok_or_else(|| unknown("reflectance", name))?;
-    let range_nm = range(found.start_nm, found.step_nm, found.values.len());
-    Ok(Tabulated { name: found.name, source: found.source, range_nm, at: Box::new(move |nm| found.at(nm)) })
-}
-
-fn range(start: f64, step: f64, count: usize) -> (f64, f64) {
-    (start, start + step * count.saturating_sub(1) as f64)
+    data::reflectance(name).map(Tabulated).ok_or_else(|| unknown("reflectance", name))
 }
 
 /// The full names of all entries of a kind.

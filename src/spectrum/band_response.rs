@@ -43,9 +43,8 @@ impl BandResponse {
         parted: bool,
         mut found: impl FnMut(usize, f64),
     ) -> bool {
-        let Some(factor) = draw.hero_factor(parted) else { return false };
-        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
-            let weight = factor * hero.factor * f64::from(lanes[lane]);
+        let Some(heroes) = draw.carrying(lanes, parted) else { return false };
+        for (_, hero, weight) in heroes {
             if let Some((band, light)) = self.hero(hero, weight) {
                 found(band, light);
             }

@@ -68,9 +68,7 @@ impl Bands {
             _ => self.mean(value).map(|x| x.max(0.0)),
         }
     }
-}
 
-impl Bands {
     /// The index of each band that reflects at normal incidence as the light shows it: ((n - 1) / (n + 1))^2 is the
     /// mean over the band.
     pub(super) fn index(&self, value: &dyn Fn(f64) -> f64) -> [f64; 3] {

@@ -135,13 +135,8 @@ impl Basis {
             measure(&mut parts, smooth.chain(of_lines).map(shown).collect());
             for dye in dyes {
                 let excited = dye.excited_by(light);
-                let of_line = |&[nm, _]: &[f64; 2]| {
-                    excited.lines.iter().filter(|line| line[0] == nm).map(|line| line[1]).sum::<f64>()
-                };
-                measure(
-                    &mut parts,
-                    excited.smooth.iter().copied().chain(lines.iter().map(of_line)).map(|x| [x]).collect(),
-                );
+                let by_lines = lines.iter().map(|&[nm, _]| excited.by_line(nm));
+                measure(&mut parts, excited.smooth.iter().copied().chain(by_lines).map(|x| [x]).collect());
             }
         }
         if parts[0].worth.is_empty() {
@@ -439,9 +434,8 @@ impl Basis {
             match own {
                 Some(lane) => carries(part, functions.len() + lane, 1.0),
                 None => {
-                    let (below, fraction) = visible::place(nm);
-                    let between = |f: &Vec<f64>| f[below] + fraction * (f[below + 1] - f[below]);
-                    functions.iter().enumerate().for_each(|(lane, function)| carries(part, lane, between(function)));
+                    let carried = functions.iter().map(|function| visible::read(function, nm));
+                    carried.enumerate().for_each(|(lane, share)| carries(part, lane, share));
                 }
             }
         }

@@ -3,7 +3,7 @@
 use palette::{LinSrgb, Srgb};
 use serde::{Deserialize, Serialize};
 
-use super::data::{self, Illuminant};
+use super::data::{self, Grid};
 
 /// A 3 x 3 matrix, rows first.
 pub type Matrix = [[f64; 3]; 3];
@@ -127,7 +127,7 @@ impl ColorSpace {
     }
 
     /// The space that a `colorInteropID` names.
-    pub fn of_interop_id(id: &str) -> Option<Self> {
+    fn of_interop_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|space| space.interop_id() == id)
     }
 
@@ -168,7 +168,7 @@ impl ColorSpace {
     }
 
     /// The CIE illuminant that stands for the space's white where a spectrum is needed.
-    pub fn white_light(self) -> Illuminant {
+    pub fn white_light(self) -> Grid {
         let name = match self {
             Self::AcesCg | Self::Aces2065 => "D60",
             Self::Rec709 | Self::Rec2020 | Self::P3D65 | Self::Xyz => "D65",
@@ -195,7 +195,7 @@ impl ColorSpace {
     }
 
     /// Linear Rec.709 to film color, adapted to the film's white.
-    pub fn of_rec709(self) -> Matrix {
+    pub(super) fn of_rec709(self) -> Matrix {
         if self == Self::Rec709 {
             return IDENTITY;
         }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::data::{self, Glass, Illuminant, Metal, Reflectance};
+use super::data::{self, Glass, Grid, Metal};
 use super::texture::square;
 use super::{Quantity, Texture, Upsampler};
 
@@ -66,9 +66,9 @@ pub enum CurveKind {
     /// n or k of a metal of the catalog.
     Metal(Named<Metal>),
     /// A measured reflectance of the catalog.
-    Reflectance(Named<Reflectance>),
+    Reflectance(Named<Grid>),
     /// A standard light of the catalog, Y = 1.
-    Illuminant(Arc<Illuminant>),
+    Illuminant(Arc<Grid>),
     /// A blackbody's light at a temperature in kelvin, Y = 1.
     Blackbody(f64),
     /// Ideal lines: (wavelength in nm, power).
@@ -252,6 +252,7 @@ impl Curve {
         let dark = match &self.kind {
             CurveKind::Number(value) => *value == 0.0,
             CurveKind::Rgb(rgb) => rgb.iter().all(|x| *x == 0.0),
+            CurveKind::Samples(pairs) | CurveKind::Lines(pairs) => pairs.iter().all(|pair| pair[1] == 0.0),
             kind => self.varies() && kind.mean() == 0.0,
         };
         dark || self.scale == 0.0 || self.luminance == Some(0.0)
@@ -310,7 +311,7 @@ pub fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
 
 /// Radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901), with c2 = 1.438776877e-2 m K
 /// (CODATA 2018).
-pub(super) fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
+fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
     const SECOND_RADIATION_CONSTANT: f64 = 1.438_776_877e7; // nm K
     const REFERENCE_NM: f64 = 560.0;
     let exponent = |nm: f64| SECOND_RADIATION_CONSTANT / (nm * kelvin);

@@ -72,7 +72,7 @@ impl<const N: usize> Draw<N> {
     /// A weight: one number per lane.
     pub fn read(&self, table: &Table) -> Lanes<N> {
         let mut lanes = Lanes(*table.weights());
-        for (hero, lane) in self.heroes().zip(self.fixed..) {
+        for (lane, hero) in self.heroes() {
             lanes.0[lane] = table.between(hero.below, hero.fraction) as f32;
         }
         lanes
@@ -119,7 +119,7 @@ impl<const N: usize> Draw<N> {
     /// A refractive index: one number per lane with all its digits.
     pub fn read_exact(&self, table: &Table) -> [f64; N] {
         let mut lanes = *table.fixed();
-        for (hero, lane) in self.heroes().zip(self.fixed..) {
+        for (lane, hero) in self.heroes() {
             lanes[lane] = table.between(hero.below, hero.fraction);
         }
         lanes
@@ -136,7 +136,7 @@ impl<const N: usize> Draw<N> {
     /// The smallest and the largest number that a lane reads in a table.
     #[inline]
     pub fn range(&self, table: &Table) -> [f64; 2] {
-        self.heroes().fold(table.fixed_range(), |[least, most], hero| {
+        self.heroes().fold(table.fixed_range(), |[least, most], (_, hero)| {
             let x = table.between(hero.below, hero.fraction);
             [if x < least { x } else { least }, if x > most { x } else { most }]
         })
@@ -170,13 +170,15 @@ impl<const N: usize> Draw<N> {
         Lanes::from_fn(|i| if i < self.fixed + self.count { 1.0 } else { 0.0 })
     }
 
-    /// Number of fixed lanes.
-    pub(super) fn fixed_lanes(&self) -> usize {
-        self.fixed
+    /// The lane of each hero, and the hero.
+    pub(super) fn heroes(&self) -> impl Iterator<Item = (usize, &Hero)> {
+        (self.fixed..).zip(&self.heroes[..self.count])
     }
 
-    /// The heroes, in the order of their lanes.
-    pub(super) fn heroes(&self) -> impl Iterator<Item = &Hero> {
-        self.heroes[..self.count].iter()
+    /// The same with the weight of the light that arrives in its lane, where heroes carry it; none where the fixed
+    /// lanes do.
+    pub(super) fn carrying(&self, lanes: &Lanes<N>, parted: bool) -> Option<impl Iterator<Item = (usize, &Hero, f64)>> {
+        let factor = self.hero_factor(parted)?;
+        Some(self.heroes().map(move |(lane, hero)| (lane, hero, factor * hero.factor * f64::from(lanes[lane]))))
     }
 }

@@ -26,6 +26,11 @@ pub struct Excited {
 }
 
 impl Excited {
+    /// What the ideal lines at exactly a wavelength in nm add.
+    pub(super) fn by_line(&self, wavelength_nm: f64) -> f64 {
+        self.lines.iter().filter(|line| line[0] == wavelength_nm).map(|line| line[1]).sum()
+    }
+
     /// What all parts of the light add: first those of the grid, then the lines.
     pub fn parts(&self) -> impl Iterator<Item = f64> {
         self.smooth.iter().copied().chain(self.lines.iter().map(|line| line[1]))

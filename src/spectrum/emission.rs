@@ -106,8 +106,11 @@ impl Emission {
 
     /// All of its power over the width of the visible range, on the scale on which an even spectrum of 1 is 1 per nm.
     pub(super) fn power(&self) -> f64 {
-        let sum = self.spectrum.iter().sum::<f64>() + self.lines.iter().map(|line| line[1]).sum::<f64>();
-        sum * self.unit() / (visible::LAST_NM - visible::FIRST_NM)
+        self.total() * self.unit() / (visible::LAST_NM - visible::FIRST_NM)
+    }
+
+    fn total(&self) -> f64 {
+        self.spectrum.iter().sum::<f64>() + self.lines.iter().map(|line| line[1]).sum::<f64>()
     }
 
     /// The power of the ideal lines at exactly a wavelength.
@@ -168,10 +171,7 @@ impl Emission {
 
     /// Whether two spectra differ by a factor at most, whatever is made of them.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        let total = |emission: &Self| {
-            emission.spectrum.iter().sum::<f64>() + emission.lines.iter().map(|line| line[1]).sum::<f64>()
-        };
-        let (a, b) = (total(self), total(other));
+        let (a, b) = (self.total(), other.total());
         let same = |x: f64, y: f64| (x / a - y / b).abs() <= 1e-6;
         self.lines.len() == other.lines.len()
             && self.lines.iter().zip(&other.lines).all(|(x, y)| x[0] == y[0] && same(x[1], y[1]))

@@ -21,6 +21,18 @@ enum Texels {
     Floats(Vec<f32>),
 }
 
+/// What lies beyond the edges of an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// Its edge, on and on.
+    Clamp,
+    /// The image again, every other time as in a mirror.
+    Mirror,
+}
+
 impl Image {
     /// An image of 8 bits a number, which stand for sRGB or for 256 even steps from 0 to 1.
     ///
@@ -108,6 +120,21 @@ impl Image {
         }
     }
 
+    /// What lies at a place, in texels from the upper left corner: a smooth passage between their middles.
+    pub fn linear(&self, place: [f64; 2], [across, down]: [Wrap; 2]) -> [f32; 3] {
+        let [x, y] = place.map(|x| x - 0.5);
+        let (left, above) = (x.floor(), y.floor());
+        let (right, below) = ((x - left) as f32, (y - above) as f32);
+        let columns = [0, 1].map(|i| across.entry(left as isize + i, self.width));
+        let rows = [0, 1].map(|i| down.entry(above as isize + i, self.height));
+        let [upper, lower] = rows.map(|row| columns.map(|column| self.texel(column, row)));
+        std::array::from_fn(|c| {
+            let mix = |[a, b]: [[f32; 3]; 2]| a[c] + right * (b[c] - a[c]);
+            let (upper, lower) = (mix(upper), mix(lower));
+            upper + below * (lower - upper)
+        })
+    }
+
     /// The mean of all texels.
     pub fn mean(&self) -> [f64; 3] {
         self.mean
@@ -129,5 +156,27 @@ impl Image {
     /// The first of the texels that are farthest from gray, in proportion to their brightness.
     pub fn most_colorful(&self) -> [f32; 3] {
         self.most_colorful
+    }
+}
+
+impl Wrap {
+    /// Where in the image a place lies, 0 to 1.
+    pub(super) fn place(self, x: f64) -> f64 {
+        match self {
+            Self::Repeat => x - x.floor(),
+            Self::Clamp => x.clamp(0.0, 1.0),
+            Self::Mirror => {
+                let x = x - 2.0 * (0.5 * x).floor();
+                if x > 1.0 { 2.0 - x } else { x }
+            }
+        }
+    }
+
+    /// The column or row at a position, which may lie one beyond either end.
+    pub fn entry(self, at: isize, count: usize) -> usize {
+        match self {
+            Self::Repeat => at.rem_euclid(count as isize) as usize,
+            Self::Clamp | Self::Mirror => at.clamp(0, count as isize - 1) as usize,
+        }
     }
 }

@@ -76,9 +76,7 @@ impl<const N: usize> Matching<N> {
         };
         let own_lines = &basis.wavelengths_nm()[functions.len()..];
         let between = |nm: f64| {
-            let (below, fraction) = visible::place(nm);
-            let at = |f: &Vec<f64>| (f[below] + fraction * (f[below + 1] - f[below])) as f32;
-            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, at))
+            Lanes::from_fn(|lane| functions.get(lane).map_or(0.0, |function| visible::read(function, nm) as f32))
         };
         let line = |nm: f64| match own_lines.iter().position(|&line| line == nm) {
             Some(own) => Lanes::from_fn(|lane| if lane == functions.len() + own { 1.0 } else { 0.0 }),
@@ -91,12 +89,9 @@ impl<const N: usize> Matching<N> {
     /// Whether heroes carry light that arrives in lanes; `found` is told the lane, the wavelength
     /// and the weight of each.
     pub fn alone(draw: &Draw<N>, lanes: Lanes<N>, parted: bool, mut found: impl FnMut(usize, Wavelength, f64)) -> bool {
-        let Some(factor) = draw.hero_factor(parted) else { return false };
-        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
-            let weight = factor * hero.factor * f64::from(lanes[lane]);
-            if weight != 0.0 {
-                found(lane, Wavelength { hero: *hero }, weight);
-            }
+        let Some(heroes) = draw.carrying(&lanes, parted) else { return false };
+        for (lane, hero, weight) in heroes.filter(|(.., weight)| *weight != 0.0) {
+            found(lane, Wavelength { hero: *hero }, weight);
         }
         true
     }
@@ -109,7 +104,7 @@ impl<const N: usize> Matching<N> {
     /// What fixed lanes hold, read at the wavelengths of heroes.
     pub fn onto_heroes(&self, draw: &Draw<N>, lanes: Lanes<N>) -> Lanes<N> {
         let mut read = Lanes::ZERO;
-        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
+        for (lane, hero) in draw.heroes() {
             read.0[lane] = self.between(hero, lanes);
         }
         read
@@ -119,8 +114,8 @@ impl<const N: usize> Matching<N> {
     pub fn shared(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
         let bin = self.bins[wavelength.hero.below];
         let same = |hero: &Hero| self.bins[hero.below] == bin;
-        let heroes = draw.heroes().zip(draw.fixed_lanes()..);
-        let held: f64 = heroes.filter(|(hero, _)| same(hero)).map(|(_, lane)| f64::from(lanes[lane])).sum();
+        let heroes = draw.heroes().filter(|(_, hero)| same(hero));
+        let held: f64 = heroes.map(|(lane, _)| f64::from(lanes[lane])).sum();
         let mean = draw.hero_factor(parted).unwrap_or(0.0) / draw.heroes().count() as f64;
         held * mean / self.chances[bin as usize]
     }

@@ -23,7 +23,6 @@ impl Mixture {
     /// Nine tenths light times color matching functions, an equal share for every different light, one tenth color
     /// matching functions alone. Where all light is in ideal lines, only they are drawn.
     pub(super) fn new(lights: &[Emission]) -> Self {
-        let eye: Vec<f64> = visible::observer().map(|cmf| cmf.iter().sum()).collect();
         let mut lines: Vec<f64> = lights.iter().flat_map(|light| light.lines()).map(|line| line[0]).collect();
         lines.sort_by(f64::total_cmp);
         lines.dedup();
@@ -39,7 +38,7 @@ impl Mixture {
         };
         let mut even = lights.is_empty();
         for light in lights {
-            let density: Vec<f64> = light.spectrum().iter().zip(&eye).map(|(power, eye)| power * eye).collect();
+            let density = seen(light);
             even |= density.iter().any(|&x| x > 0.0);
             add(BY_LIGHT / lights.len() as f64, &density, &|nm| {
                 let here = light.lines().iter().filter(|line| line[0] == nm);
@@ -47,7 +46,7 @@ impl Mixture {
             });
         }
         if even {
-            add(1.0 - BY_LIGHT, &eye, &|_| 0.0);
+            add(1.0 - BY_LIGHT, &eye().collect::<Vec<_>>(), &|_| 0.0);
         }
         Self { entries: Distribution::new(probabilities), lines }
     }
@@ -56,24 +55,17 @@ impl Mixture {
     /// of what dyes send: under lines alone, nothing else would be drawn where they shine.
     pub(super) fn exciting(&self, excitations: &[Excited], shining: &[Emission]) -> Self {
         let mut weights: Vec<f64> = self.probabilities().collect();
-        let eye: Vec<f64> = visible::observer().map(|cmf| cmf.iter().sum()).collect();
-        for dye in shining {
-            let seen: Vec<f64> = dye.spectrum().iter().zip(&eye).map(|(power, eye)| power * eye).collect();
-            let part = visible_steps(&seen);
-            let scale = 0.5 / (part.iter().sum::<f64>() * shining.len() as f64);
+        let mut add = |part: Vec<f64>, share: f64, of: usize| {
+            let scale = share / (part.iter().sum::<f64>() * of as f64);
             if scale.is_finite() {
                 weights.iter_mut().zip(part).for_each(|(weight, x)| *weight += scale * x);
             }
-        }
-        for Excited { smooth, lines } in excitations {
-            let mut part = steps(smooth);
-            let of_line = |nm: f64| lines.iter().filter(|line| line[0] == nm).map(|line| line[1]).sum::<f64>();
-            part.extend(self.lines.iter().map(|&nm| of_line(nm)));
-            let total: f64 = part.iter().sum();
-            if total > 0.0 {
-                let scale = 1.0 / (total * excitations.len() as f64);
-                weights.iter_mut().zip(part).for_each(|(weight, x)| *weight += scale * x);
-            }
+        };
+        shining.iter().for_each(|dye| add(visible_steps(&seen(dye)), 0.5, shining.len()));
+        for excited in excitations {
+            let mut part = steps(&excited.smooth);
+            part.extend(self.lines.iter().map(|&nm| excited.by_line(nm)));
+            add(part, 1.0, excitations.len());
         }
         Self { entries: Distribution::new(weights), lines: self.lines.clone() }
     }
@@ -110,6 +102,16 @@ impl Mixture {
             Hero { below: drawn.index + 1, fraction: 0.0, factor }
         }
     }
+}
+
+/// What the eye sees of an even spectrum at each wavelength of the grid.
+fn eye() -> impl Iterator<Item = f64> {
+    visible::observer().map(|cmf| cmf.iter().sum())
+}
+
+/// The same of a light.
+fn seen(light: &Emission) -> Vec<f64> {
+    light.spectrum().iter().zip(eye()).map(|(power, eye)| power * eye).collect()
 }
 
 /// The means of a density over the steps between its wavelengths.

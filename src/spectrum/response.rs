@@ -25,8 +25,13 @@ impl Response {
 
     /// The film's red, green and blue of light that arrives in lanes; `parted` says whether they parted on the way.
     pub fn sensor<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
-        if let Some(factor) = draw.hero_factor(parted) {
-            return self.heroes(draw, lanes, factor);
+        if let Some(heroes) = draw.carrying(&lanes, parted) {
+            let mut sensor = [0.0; 3];
+            for (_, hero, weight) in heroes.filter(|(.., weight)| *weight != 0.0) {
+                let color = self.hero(hero);
+                (0..3).for_each(|c| sensor[c] += weight * color[c]);
+            }
+            return sensor;
         }
         // Four sums side by side, so that the processor need not wait for each addition.
         let columns: &[[f64; 4]; N] = self.columns.first_chunk().expect("no more lanes are compiled than fit");
@@ -37,18 +42,6 @@ impl Response {
             }
         }
         std::array::from_fn(|channel| (sums[0][channel] + sums[1][channel]) + (sums[2][channel] + sums[3][channel]))
-    }
-
-    fn heroes<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, factor: f64) -> [f64; 3] {
-        let mut sensor = [0.0; 3];
-        for (hero, lane) in draw.heroes().zip(draw.fixed_lanes()..) {
-            let weight = factor * hero.factor * f64::from(lanes[lane]);
-            if weight != 0.0 {
-                let color = self.hero(hero);
-                (0..3).for_each(|c| sensor[c] += weight * color[c]);
-            }
-        }
-        sensor
     }
 
     /// The film's red, green and blue of the light per nm at a hero's wavelength, or of its line.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Image;
+use super::{Image, Wrap};
 
 /// How an image lies in the coordinates (u, v) of a surface: its bottom left corner at (0, 0), u to the right, v up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,18 +19,6 @@ impl Default for Placement {
     fn default() -> Self {
         Self { repeat: [1.0; 2], wrap: Wrap::default(), filter: TexelFilter::default() }
     }
-}
-
-/// What lies beyond the edges of an image.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Wrap {
-    /// The image again.
-    #[default]
-    Repeat,
-    /// Its edge, on and on.
-    Clamp,
-    /// The image again, every other time as in a mirror.
-    Mirror,
 }
 
 /// What lies between the middles of texels.
@@ -93,17 +81,7 @@ impl Texture {
         if filter == TexelFilter::Nearest {
             return self.image.texel((across as usize).min(width - 1), (down as usize).min(height - 1));
         }
-        let (x, y) = (across - 0.5, down - 0.5);
-        let (left, above) = (x.floor(), y.floor());
-        let (right, below) = ((x - left) as f32, (y - above) as f32);
-        let columns = [0, 1].map(|i| wrap.entry(left as isize + i, width));
-        let rows = [0, 1].map(|i| wrap.entry(above as isize + i, height));
-        let [upper, lower] = rows.map(|row| columns.map(|column| self.image.texel(column, row)));
-        std::array::from_fn(|c| {
-            let mix = |[a, b]: [[f32; 3]; 2]| a[c] + right * (b[c] - a[c]);
-            let (upper, lower) = (mix(upper), mix(lower));
-            upper + below * (lower - upper)
-        })
+        self.image.linear([across, down], [wrap; 2])
     }
 
     /// The derivatives by u and v of the image as heights, those of colors being their means.
@@ -129,28 +107,6 @@ impl Texture {
             }
         }
         [slope[0] * repeat[0], slope[1] * repeat[1]]
-    }
-}
-
-impl Wrap {
-    /// Where in the image a place lies, 0 to 1.
-    pub(super) fn place(self, x: f64) -> f64 {
-        match self {
-            Self::Repeat => x - x.floor(),
-            Self::Clamp => x.clamp(0.0, 1.0),
-            Self::Mirror => {
-                let x = x - 2.0 * (0.5 * x).floor();
-                if x > 1.0 { 2.0 - x } else { x }
-            }
-        }
-    }
-
-    /// The texel at a position, which may lie one beyond either end.
-    pub(super) fn entry(self, at: isize, count: usize) -> usize {
-        match self {
-            Self::Repeat => at.rem_euclid(count as isize) as usize,
-            Self::Clamp | Self::Mirror => at.clamp(0, count as isize - 1) as usize,
-        }
     }
 }
 

@@ -30,6 +30,12 @@ pub fn place(wavelength_nm: f64) -> (usize, f64) {
     (below, at - below as f64)
 }
 
+/// A function of which the grid has the values, at a wavelength: linear within a step.
+pub(super) fn read(function: &[f64], wavelength_nm: f64) -> f64 {
+    let (below, fraction) = place(wavelength_nm);
+    function[below] + fraction * (function[below + 1] - function[below])
+}
+
 /// The CIE 1931 2 degree color matching functions at a wavelength, linear within a step; 0 outside the visible range.
 pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
     if !(FIRST_NM..=LAST_NM).contains(&wavelength_nm) {

@@ -1,6 +1,6 @@
 //! The white furnace under films: what is clear shows 1, and metal under a clear film what Abeles' matrices say.
 
-use abbe::material::{Arrival, Index, Material, Scatter};
+use abbe::material::{Arrival, Index, Lobes, Material, Scatter};
 use abbe::spectrum::{Draw, Table};
 
 use super::reference::shares;
@@ -28,12 +28,13 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos
             *sum = [sum[0] + shown / f64::from(DRAWS), sum[1] + shown * shown / f64::from(DRAWS)];
         }
     }
+    let by_chance = material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION);
     let straight =
         material.straight(&arrival).map_or([0.0; 3], |straight| [0, 1, 2].map(|i| straight.share()[i].into()));
     std::array::from_fn(|band| {
         let [mean, square] = sums[band];
         let error = ((square - mean * mean).max(0.0) / f64::from(DRAWS)).sqrt();
-        [mean + straight[band], if material.scatters_through() { 4.0 * error } else { 0.0 }]
+        [mean + straight[band], if by_chance { 4.0 * error } else { 0.0 }]
     })
 }
 

@@ -1,7 +1,10 @@
 //! The phase between both polarizations, which no image of unpolarized light shows.
 
-use abbe::material::{Block, Layer, PolarizedShare, Stack};
+use abbe::material::{Arrival, Block, Incoming, Index, Layer, Mueller, PolarizedShare, Scatter, Stack, reflect};
 use abbe::math::Complex;
+use abbe::spectrum::{Draw, Table};
+
+use crate::layers::arrivals::{arrival, material, toward};
 
 /// What is reflected at 550 nm by one clear layer on n - i k, under an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {
@@ -28,5 +31,44 @@ fn p_is_the_negative_of_s_along_the_normal_and_turns_as_abeles_has_it() {
         let found = q.atan2(c).to_degrees().abs();
         assert!((found - argument).abs() < 2e-3, "{found} for {argument} at {angle} degrees");
         assert!((c.hypot(q) - (share.s * share.p).sqrt()).abs() < 1e-12);
+    }
+}
+
+/// Lanes that share a direction are reflected totally where their ray is, and where they have no angle of their own.
+#[test]
+fn total_reflection_of_lanes_that_go_together_keeps_all_polarization_under_a_film_as_without() {
+    let materials = ["", ", coating = [{ index = 1.38, thickness_nm = 99.6 }]"]
+        .map(|coating| material(&format!("dielectric = {{ index = 1.5{coating} }}")));
+    let (draw, grazing) = (Draw::<4>::fixed(3), [0.001, 0.01, 0.05]);
+    // Beyond the critical angle of the ray alone: the first lane would cross in part.
+    let critical = (1.0 - (1.485_f64 / 1.62).powi(2)).sqrt();
+    for (inside, outside, cosines) in
+        [([1.49, 1.5, 1.51], [1.0; 3], &grazing[..]), ([1.6, 1.62, 1.64], [1.5, 1.48, 1.46], &[critical])]
+    {
+        let (direction_indices, [incident, beyond]) =
+            ([Some(inside[1]), Some(outside[1])], [inside, outside].map(Table::new));
+        for &cos in cosines {
+            let arrival = Arrival {
+                from_inside: true,
+                incident: Index::Own(&incident),
+                beyond: Index::Own(&beyond),
+                direction_indices,
+                ..arrival(&draw, toward(cos, 0.4), 1.0)
+            };
+            let (wi, lanes) = (reflect(arrival.wo, arrival.normal), arrival.present.not_zero());
+            let incoming = Incoming { wi, crosses: false, single: true, lanes };
+            for material in &materials {
+                let mut mueller = Mueller::NONE;
+                material.mueller(&arrival, incoming, &mut mueller);
+                let Block { a, d, c, q } = mueller.block;
+                for lane in 0..3 {
+                    let [a, d, c, q] = [a, d, c, q].map(|x| x[lane]);
+                    assert!((a - 1.0).abs() < 1e-6 && d.abs() < 1e-6, "{a} {d} of lane {lane} at {cos}");
+                    assert!((c.hypot(q) - 1.0).abs() < 1e-6, "{c} {q} of lane {lane} at {cos}");
+                    // p is ahead of s by 12 degrees at most: Born & Wolf 1999, section 1.5.4.
+                    assert!(cosines.len() == 1 || c > 0.975, "{c} of lane {lane} at {cos}");
+                }
+            }
+        }
     }
 }

@@ -18,7 +18,7 @@ fn emissions(lights: &[Curve]) -> Vec<Emission> {
 
 /// The reflectances of the ColorChecker.
 fn patches() -> Vec<Curve> {
-    let curve = |patch: data::Reflectance| {
+    let curve = |patch: data::Grid| {
         CurveKind::Reflectance(Named { name: patch.name.to_owned(), entry: Arc::new(patch) }).into()
     };
     data::reflectances().map(|patch| curve(patch.clone())).collect()

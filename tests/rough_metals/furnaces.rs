@@ -1,11 +1,11 @@
 //! Row G6: in an even environment, what reflects all light cannot be told from it.
 
-use abbe::material::{Arrival, Index, Material, Roughness, Scatter};
+use abbe::material::{Material, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
-use abbe::trace::prepare;
 
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view};
+use crate::layers::arrivals::{NORMAL, arrival, material, points};
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
 const ROUGHNESSES: [f64; 9] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const COSINES: [f64; 14] = [0.001, 0.003, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.0];
@@ -13,15 +13,8 @@ const COSINES: [f64; 14] = [0.001, 0.003, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3,
 const LOSSLESS: &str = "n = 1e-6, k = 100";
 const DRAWS: u32 = 1 << 16;
 
-/// The points of Hammersley in the unit square.
-fn points() -> impl Iterator<Item = [f64; 2]> {
-    (0..DRAWS).map(|i| [(f64::from(i) + 0.5) / f64::from(DRAWS), f64::from(i.reverse_bits()) / 4_294_967_296.0])
-}
-
 fn conductor(metal: &str, roughness: f64) -> Material<Table> {
-    let text = body("metal", &format!("conductor = {{ {metal}, roughness = {roughness:?} }}"), &[BALL]);
-    let scene = scene(&(view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + &text));
-    prepare(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
+    material(&format!("conductor = {{ {metal}, roughness = {roughness:?} }}"))
 }
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
@@ -29,24 +22,11 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 /// What a metal shows of an even environment of radiance 1, under a medium of an index.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    let normal = DVec3::new(0.6, -0.48, 0.64);
     let along = DVec3::new(0.8, 0.36, -0.48);
-    let wo = (normal * cos + along * (1.0 - cos * cos).max(0.0).sqrt()).normalize();
-    let arrival = Arrival {
-        wo,
-        normal,
-        uv: [0.0; 2],
-        draw: &draw,
-        present: draw.start(),
-        from_inside: false,
-        is_alone: false,
-        incident: Index::Same(index),
-        beyond: Index::Same(index),
-        direction_indices: [None; 2],
-        together: 0.0,
-    };
+    let wo = (NORMAL * cos + along * (1.0 - cos * cos).max(0.0).sqrt()).normalize();
+    let arrival = arrival(&draw, wo, index);
     let (mut sum, mut branches) = ([0.0; 3], Vec::new());
-    for u in points() {
+    for u in points(DRAWS) {
         material.scatter(&arrival, u, &mut branches);
         for branch in branches.drain(..) {
             for (lane, sum) in sum.iter_mut().enumerate() {
@@ -79,7 +59,7 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
             let cos = libm::pow(f64::from(step) / 59.0, 3.0);
             let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
             // Places dense toward upright facets, which block most.
-            let blocked: f64 = points()
+            let blocked: f64 = points(DRAWS)
                 .map(|[v, around]| {
                     let h = surface.facets().visible_normal(wo, [around, 1.0 - v * v]);
                     2.0 * v * surface.facets().left_and_blocked(wo, h * (2.0 * wo.dot(h)) - wo)[1]

@@ -1,11 +1,12 @@
 //! Rough metals under lamps: aiming at them and meeting them agree, and nearly smooth metals look smooth.
 
-use abbe::material::{Arrival, Index, Material, Roughness, Scatter};
+use abbe::material::{Arrival, Material, Roughness, Scatter};
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::spectrum::Draw;
 use abbe::trace::{Transport, prepare};
 
+use crate::layers::arrivals::arrival;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, image, images, method, scene, view};
 
 const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
@@ -55,20 +56,7 @@ fn a_point_light_shows_the_brdf_itself() {
         let draw = Draw::<4>::fixed(3);
         let here = DVec3::new(0.5, 0.0, 0.0);
         let (wo, to_light) = ((DVec3::new(4.0, 3.0, 0.5) - here).normalize(), DVec3::new(-1.0, 2.0, 0.3) - here);
-        let [incident, beyond] = [Index::Same(1.0); 2];
-        let arrival = Arrival {
-            wo,
-            normal: DVec3::Y,
-            uv: [0.0; 2],
-            draw: &draw,
-            present: draw.start(),
-            from_inside: false,
-            is_alone: false,
-            incident,
-            beyond,
-            direction_indices: [None; 2],
-            together: 0.0,
-        };
+        let arrival = Arrival { normal: DVec3::Y, ..arrival(&draw, wo, 1.0) };
         let evaluated = world.scene().material_of(0).evaluate(&arrival, to_light.normalize());
         let (brdf_cos, _) = evaluated.expect("the light is above the floor");
         let shown = image(&text, SINGLE_PATH).0.pixels[0].rgb;

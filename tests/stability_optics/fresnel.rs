@@ -7,6 +7,7 @@ use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
 use abbe::trace::prepare;
 
+use crate::layers::arrivals::arrival;
 use crate::support::exact::Exact;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, method, scene, view};
@@ -235,24 +236,8 @@ fn glass() -> Material<Table> {
 
 fn branches(material: &Material<Table>, wo: DVec3, normal: DVec3, incident: f64, beyond: f64) -> Vec<Branch<4>> {
     let draw = Draw::<4>::fixed(3);
-    let [incident, beyond] = [incident, beyond].map(Index::Same);
+    let arrival = Arrival { normal, beyond: Index::Same(beyond), ..arrival(&draw, wo, incident) };
     let mut branches = Vec::new();
-    material.scatter(
-        &Arrival {
-            wo,
-            normal,
-            uv: [0.0; 2],
-            draw: &draw,
-            present: draw.start(),
-            from_inside: false,
-            is_alone: false,
-            incident,
-            beyond,
-            direction_indices: [None; 2],
-            together: 0.0,
-        },
-        [0.5; 2],
-        &mut branches,
-    );
+    material.scatter(&arrival, [0.5; 2], &mut branches);
     branches
 }

@@ -1,7 +1,7 @@
 //! The lights that no surface gives.
 
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::context::Context;
 use super::curve::curve;
@@ -130,9 +130,7 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
         light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
         of_the_entry(light, "sun", &OF_AN_INFINITE_LIGHT);
-        let toward = toward?.to_array();
-        let (angular_diameter, irradiance) = (angular_diameter?, irradiance?);
-        Some(Light::Sun(Sun { toward, angular_diameter, irradiance, disc: OnceLock::new() }))
+        Some(Light::Sun(Sun::new(toward?.to_array(), angular_diameter?, irradiance?)))
     })
 }
 

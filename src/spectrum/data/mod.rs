@@ -7,6 +7,6 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
-pub use color::{Illuminant, Reflectance, color_matching, illuminant, illuminants, reflectance, reflectances};
+pub use color::{Grid, color_matching, illuminant, illuminants, reflectance, reflectances};
 pub use glass::{Formula, GLASS_MAKERS, Glass, bare, glass, glass_makers, glass_names, glasses, known_as};
 pub use metal::{Metal, metal, metal_names, metals};
