@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abbe, _arguments
-from ._image import Image, Path
+from ._arguments import Path
+from ._image import Image
 
 Whole = Union[int, "np.integer[Any]"]
 Real = Union[float, "np.floating[Any]", Whole]
