@@ -15,7 +15,7 @@ use super::text::shown;
 /// More threads than any one machine has processors for; many more would exhaust it.
 const MOST_THREADS: usize = 1024;
 
-/// The arguments of a render as the library takes them; None leaves one to the scene.
+/// The arguments of a render as the library takes them, of all that are given; None leaves one to the scene.
 ///
 /// # Errors
 /// If one of them is none of those that it may be.
