@@ -222,10 +222,7 @@ fn file_of_samples<'d>(
     if let Some(help) = image_called(file) {
         return place.advise(format!("{file} is an image, not a table of samples"), help);
     }
-    let table = match utf8(place.file(file, &TABLE)?, file, "save the table as CSV in UTF-8") {
-        Ok(table) => table,
-        Err(fault) => return place.tell(fault.message, fault.help),
-    };
+    let table = place.told(utf8(place.file(file, &TABLE)?, file, "save the table as CSV in UTF-8"))?;
     let rows = match read_columns(&table, column.it) {
         Ok(rows) => rows,
         Err(fault) => {

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::image_numbers::{Fault, Meaning, Texels};
+use super::image_numbers::{Meaning, Texels};
 use crate::film::guarded;
 use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
+use crate::scene::text::Fault;
 use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 
 /// How the names of images end.

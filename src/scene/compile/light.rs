@@ -1,13 +1,12 @@
 //! The lights that no surface gives.
 
-use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
-use super::image::{BRIGHT_IMAGE, factor_on_image};
-use super::image_file::{ImageFile, read_image};
+use super::image::{BRIGHT_IMAGE, factor_on_image, read_file};
+use super::image_file::read_image;
 use super::measures::{direction, point};
 use super::object;
 use super::radiometry;
@@ -229,17 +228,11 @@ fn rotation(steps: &[At<Step>]) -> Option<Transform> {
 }
 
 fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
-    let bytes = file.place.file(file.it, &BRIGHT_IMAGE)?;
-    let ImageFile { image, warnings } = match read_image(Path::new(file.it), &bytes) {
-        Ok(file) => file,
-        Err(fault) => return file.place.tell(fault.message, fault.help),
-    };
-    context.has_read(file.place.folder().join(file.it), &bytes);
-    warnings.into_iter().for_each(|warning| context.warn_at(file.place, warning));
+    let image = read_file(context, file, &BRIGHT_IMAGE, read_image)?;
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {
         let message = "an image of all directions is twice as wide as high";
         context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.it));
     }
-    Some(Panorama::new(Arc::new(image), context.few_bounces))
+    Some(Panorama::new(image, context.few_bounces))
 }

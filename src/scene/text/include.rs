@@ -80,8 +80,8 @@ impl Included {
         let path = folder.join(name);
         let file = real(&path);
         if self.within.contains(&file) {
-            let help = Some("what both need stands in a file of its own".into());
-            return Err(Fault { message: format!("{name} includes itself by way of this file"), help });
+            let message = format!("{name} includes itself by way of this file");
+            return Err(Fault::new(message, "what both need stands in a file of its own"));
         }
         if self.files.contains(&file) {
             return Ok(());

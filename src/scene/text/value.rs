@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeValue};
 
 use super::document::Document;
-use super::named_file::{FileKind, missing, read_named};
+use super::named_file::{Fault, FileKind, missing, read_named};
 use super::rows::Rows;
 use super::suggest::{remedy, suggestion};
 
@@ -87,16 +87,17 @@ impl<'d> Value<'d> {
 
     /// The bytes of the file of this name.
     pub(in crate::scene) fn file(self, name: &str, kind: &FileKind) -> Option<Vec<u8>> {
-        match read_named(self.folder(), name, kind) {
-            Ok(bytes) => Some(bytes),
-            Err(fault) => self.tell(fault.message, fault.help),
-        }
+        self.told(read_named(self.folder(), name, kind))
+    }
+
+    /// What was read of a file, if it is right; tells what is wrong with that if it is not.
+    pub(in crate::scene) fn told<T>(self, read: Result<T, Fault>) -> Option<T> {
+        read.map_or_else(|fault| self.tell(fault.message, fault.help), Some)
     }
 
     /// Tells that there is no file of this name, which ends in one of some ways.
     pub(in crate::scene) fn missing<T>(self, name: &str, endings: &[&str]) -> Option<T> {
-        let fault = missing(self.folder(), name, endings);
-        self.tell(fault.message, fault.help)
+        self.told(Err(missing(self.folder(), name, endings)))
     }
 
     /// Tells that its key is wrong.
