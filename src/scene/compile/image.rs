@@ -138,7 +138,7 @@ pub(super) fn read_file(
     let At { place, it: file } = *file;
     let bytes = place.file(file, kind)?;
     let ImageFile { image, warnings } = place.told(read(Path::new(file), &bytes))?;
-    context.has_read(place.folder().join(file), &bytes);
+    context.has_read(place.path(file), &bytes);
     warnings.into_iter().for_each(|warning| context.warn_at(place, warning));
     Some(Arc::new(image))
 }
@@ -150,7 +150,7 @@ pub(super) fn image(
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Option<Arc<Image>> {
-    let key = (file.place.folder().join(file.it), meaning, channel);
+    let key = (file.place.path(file.it), meaning, channel);
     if let Some(image) = context.images.get(&key) {
         return Some(image.clone());
     }

@@ -47,7 +47,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
         let parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
-                if let Some(mesh) = context.meshes.get(&(file.place.folder().join(file.it), smooth)) {
+                if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
                     return Some(WrittenMesh { mesh: mesh.clone(), file: Some(file.it) });
                 }
                 read_file(context, name, file, smooth)?
@@ -58,7 +58,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         };
         let mesh = built(context, name, value, parts, smooth)?;
         if let Some(At { place, it: file }) = file {
-            context.meshes.insert((place.folder().join(file), smooth), mesh.clone());
+            context.meshes.insert((place.path(file), smooth), mesh.clone());
         }
         Some(WrittenMesh { mesh, file: file.map(|file| file.it) })
     })
@@ -168,7 +168,7 @@ impl Inline<'_> {
 
 fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -> Option<Parts> {
     let At { place, it: file } = *file;
-    let path = place.folder().join(file);
+    let path = place.path(file);
     let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
     let mesh = match mesh {
         Ok(mesh) => mesh,

@@ -1,7 +1,7 @@
 //! A value of a scene's text, read as what is wanted of it; what it is instead is told.
 
 use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toml::Spanned;
 use toml::de::{DeInteger, DeString, DeValue};
@@ -81,8 +81,13 @@ impl<'d> Value<'d> {
     }
 
     /// Where the names of its files begin.
-    pub(in crate::scene) fn folder(self) -> &'d Path {
+    fn folder(self) -> &'d Path {
         self.document.texts.folder(self.span().start)
+    }
+
+    /// Where the file of this name lies.
+    pub(in crate::scene) fn path(self, name: &str) -> PathBuf {
+        self.folder().join(name)
     }
 
     /// The bytes of the file of this name.
