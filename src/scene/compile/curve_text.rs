@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use crate::scene::text::{At, Fields, Value, at};
+use crate::scene::text::{At, Fields, Value, at, exactly};
 use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
 
 /// Most and, as one over it, least repetitions in a unit.
@@ -76,11 +76,8 @@ const KINDS: [(&str, Reader); 11] = [
     ("image", |value| value.text().map(KindText::Image)),
     ("checker", |value| {
         let cells = value.list(|entry| curve_text(entry, COLOR))?;
-        let cells = <[CurveText; 2]>::try_from(cells).or_else(|cells| {
-            let message = format!("a `checker` is a list of 2 spectra, not of {}", cells.len());
-            value.refuse_key(message, None).ok_or(())
-        });
-        Some(KindText::Checker(Box::new(cells.ok()?)))
+        let other = |count| value.refuse_key(format!("a `checker` is a list of 2 spectra, not of {count}"), None);
+        Some(KindText::Checker(Box::new(exactly(cells, other)?)))
     }),
 ];
 

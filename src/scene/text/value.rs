@@ -294,6 +294,15 @@ pub(in crate::scene) fn at<'d, T>(
     move |place| read(place).map(|it| At { place, it })
 }
 
+/// All of a list that has as many as it should; `other` tells of one that has another number of them.
+pub(in crate::scene) fn exactly<T, const N: usize>(
+    all: Vec<T>,
+    other: impl FnOnce(usize) -> Option<[T; N]>,
+) -> Option<[T; N]> {
+    let count = all.len();
+    all.try_into().map_or_else(|_| other(count), Some)
+}
+
 /// The numbers above 0 to a greatest one.
 pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
     (Bound::Excluded(0.0), Bound::Included(most))
