@@ -40,40 +40,40 @@ impl Lights {
             let own = light.maybe("group", object::group);
             let seen = light.maybe("visible_to_camera", at(Value::yes_or_no));
             let kinds = ["environment", "point", "spot", "sun"].map(|kind| light.get(kind));
-            let given: Vec<Value> = kinds.iter().flatten().copied().collect();
-            match given.as_slice() {
+            let given: Vec<Value> = kinds.into_iter().flatten().collect();
+            let place = match given.as_slice() {
                 [] if light.has_unknown() => return None,
                 [] => {
                     let message = "a light needs a kind: `environment`, `point`, `spot` or `sun`";
                     return value.advise(message, "such as environment = { radiance = 1 }");
                 }
-                [_] => {}
+                [place] => *place,
                 [first, others @ ..] => {
                     let last = others.iter().fold(*first, |last, other| last.later(*other));
                     return last.advise("a light has exactly one kind", "start another [[light]] for the second");
                 }
-            }
+            };
             group = own?.or(name?);
-            let [environment, point, spot, sun] = kinds;
             if let Some(seen) = seen? {
                 visible = seen.it;
-                if point.or(spot).is_some() {
+                if matches!(place.key(), "point" | "spot") {
                     let message = "a point and a spot are too small to be seen";
                     return seen.place.advise(message, "leave `visible_to_camera` out");
                 }
             }
-            if let Some(place) = environment {
-                let help = "environment = { radiance = .., transform = [..] }".into();
-                light.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
-                if std::mem::replace(&mut self.has_environment, true) {
-                    return place.refuse("a scene has at most one environment");
+            match place.key() {
+                "point" => point_light(context, place),
+                "spot" => spot_light(context, place),
+                "sun" => sun_light(context, place),
+                _ => {
+                    let help = "environment = { radiance = .., transform = [..] }".into();
+                    light.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
+                    if std::mem::replace(&mut self.has_environment, true) {
+                        return place.refuse("a scene has at most one environment");
+                    }
+                    even_or_image(context, place).map(Light::Environment)
                 }
-                return even_or_image(context, place).map(Light::Environment);
             }
-            let point = point.map(|place| point_light(context, place));
-            let spot = spot.map(|place| spot_light(context, place));
-            let sun = sun.map(|place| sun_light(context, place));
-            point.or(spot).or(sun).flatten()
         })?;
         self.infinite_lights.extend(light.is_infinite().then_some(self.all.len()));
         self.hidden.extend((!visible).then_some(self.all.len()));
