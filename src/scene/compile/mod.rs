@@ -118,8 +118,6 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
-    let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
-    let (light_groups, hidden_lights) = (Vec::new(), Vec::new());
     let (camera, film, format, render) = (camera?, film?, format?, render?);
     can_have_stokes(sections, &format, &render).and(can_fluoresce(sections, &materials, &render))?;
     let mut scene = Scene {
@@ -129,12 +127,12 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         render,
         objects: objects.into(),
         materials,
-        lights,
-        infinite_lights,
-        light_groups,
-        hidden_lights,
-        warnings,
-        hash,
+        lights: Vec::new(),
+        infinite_lights: Vec::new(),
+        light_groups: Vec::new(),
+        hidden_lights: Vec::new(),
+        warnings: Vec::new(),
+        hash: String::new(),
         files: Vec::new(),
         settings: Vec::new(),
         index: index.into(),
