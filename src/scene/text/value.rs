@@ -3,32 +3,28 @@
 use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
 use std::path::{Path, PathBuf};
 
-use toml::Spanned;
-use toml::de::{DeInteger, DeString, DeValue};
+use toml::de::{DeInteger, DeValue};
 
 use super::document::Document;
 use super::named_file::{Fault, FileKind, missing, read_named};
 use super::rows::Rows;
 use super::suggest::{remedy, suggestion};
+use super::tree::{Key, Node};
 
 /// A value, where it stands.
 #[derive(Clone, Copy)]
 pub(in crate::scene) struct Value<'d> {
     pub(super) document: &'d Document<'d>,
     /// The key whose value it is, or in whose list it is an entry.
-    key: &'d Spanned<DeString<'d>>,
+    key: &'d Key<'d>,
     is_entry: bool,
-    node: &'d Spanned<DeValue<'d>>,
+    node: &'d Node<'d>,
     /// What it is called as a list of numbers, and how to write it.
     list: Option<(&'static str, &'static str)>,
 }
 
 impl<'d> Value<'d> {
-    pub(super) fn new(
-        document: &'d Document<'d>,
-        key: &'d Spanned<DeString<'d>>,
-        node: &'d Spanned<DeValue<'d>>,
-    ) -> Self {
+    pub(super) fn new(document: &'d Document<'d>, key: &'d Key<'d>, node: &'d Node<'d>) -> Self {
         Self { document, key, is_entry: false, node, list: None }
     }
 
