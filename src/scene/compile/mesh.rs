@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, far, is_near, near, point};
+use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, point};
 use crate::math::DVec3;
 use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
 use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
@@ -91,7 +91,7 @@ fn normals(value: Value) -> Option<Vec<DVec3>> {
 fn coordinates(value: Value) -> Option<Vec<[f64; 2]>> {
     match value.rows() {
         Some(rows) => real(value, rows),
-        None => value.list(|entry| near(entry, entry.numbers()?)),
+        None => value.list(|entry| near(entry, COORDINATE, entry.numbers()?)),
     }
 }
 
@@ -102,7 +102,7 @@ fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
         _ => return value.refuse(format!("`{}` has rows of {N} numbers, not {}", value.key(), rows.width)),
     };
     match numbers.iter().position(|number| !is_near(*number)) {
-        Some(first) => value.refuse(format!("row {}: {}", first / N, far(numbers[first]))),
+        Some(first) => value.refuse(format!("row {}: {}", first / N, far(COORDINATE, numbers[first]))),
         None => Some(in_rows(numbers)),
     }
 }
