@@ -241,8 +241,10 @@ fn namesakes(context: &mut Context, objects: &[Draft]) {
 
 /// Warns of materials that no object has.
 fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
-    for name in drafts.by_name.keys() {
-        if !placed.materials.iter().any(|used| used.name == *name || used.material.is_made_of(name)) {
+    // Scenes may have many materials: most are looked up by name, and not compared with each.
+    let used: BTreeSet<&str> = placed.materials.iter().map(|used| used.name.as_str()).collect();
+    for name in drafts.by_name.keys().filter(|name| !used.contains(*name)) {
+        if !placed.materials.iter().any(|used| used.material.is_made_of(name)) {
             context.warn(format!("material {name} is not used by any object"));
         }
     }
