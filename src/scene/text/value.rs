@@ -202,6 +202,12 @@ impl<'d> Value<'d> {
         })
     }
 
+    /// Whether so much is wrong already that it is no longer said what may have been meant by a name: that takes a look
+    /// at all names that there are.
+    pub(in crate::scene) fn is_one_of_many(self) -> bool {
+        self.document.told() >= MANY
+    }
+
     /// Tells that it is no such word.
     pub(in crate::scene) fn unknown<T>(self, word: &str, known: &[&str]) -> Option<T> {
         self.advise(format!("`{}` cannot be \"{word}\"", self.key()), suggestion(self.key(), word, known))
@@ -303,6 +309,9 @@ pub(in crate::scene) fn exactly<T, const N: usize>(
 pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
     (Bound::Excluded(0.0), Bound::Included(most))
 }
+
+/// Mistakes in a scene that a person reads one by one.
+const MANY: usize = 100;
 
 /// Most words that are all told of a value that is none.
 const MOST_WORDS: usize = 10;
