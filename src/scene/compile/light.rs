@@ -13,18 +13,19 @@ use super::radiometry;
 use super::transform::{Step, map_of, steps};
 use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
+use crate::scene::Scene;
 use crate::scene::text::{At, Fields, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
 
 /// The lights of a scene that are right, and which of them rays see that meet nothing.
 #[derive(Default)]
 pub(super) struct Lights {
-    pub(super) all: Vec<Light<Curve>>,
-    pub(super) infinite_lights: Vec<LightId>,
+    all: Vec<Light<Curve>>,
+    infinite_lights: Vec<LightId>,
     /// Those of them that the camera does not see.
-    pub(super) hidden: Vec<LightId>,
+    hidden: Vec<LightId>,
     /// The group of each light.
-    pub(super) groups: Vec<String>,
+    groups: Vec<String>,
     has_environment: bool,
 }
 
@@ -80,6 +81,15 @@ impl Lights {
         self.groups.push(group.unwrap_or(light.kind_name()).to_owned());
         self.all.push(light);
         Some(())
+    }
+
+    /// Adds them to a scene, behind the lights that it has.
+    pub(super) fn add_to(self, scene: &mut Scene<Curve>) {
+        let behind = |light: LightId| light + scene.lights.len();
+        scene.infinite_lights.extend(self.infinite_lights.into_iter().map(behind));
+        scene.hidden_lights.extend(self.hidden.into_iter().map(behind));
+        scene.light_groups.extend(self.groups);
+        scene.lights.extend(self.all);
     }
 }
 

@@ -81,13 +81,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let [camera, film, render, materials, objects, lights] = SECTIONS.map(|key| sections.get(key));
     // What these say was put in its places before.
     let _ = [SET, INCLUDE].map(|key| sections.get(key));
-    let missing = [("camera", camera), ("film", film)].into_iter().filter(|(_, section)| section.is_none());
-    let missing: Vec<String> =
-        missing.filter(|(key, _)| !sections.is_misspelt(key)).map(|(key, _)| format!("no [{key}]")).collect();
-    if !missing.is_empty() {
-        let message = format!("the scene has {}", missing.join(" and "));
-        sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
-    }
+    needs_camera_and_film(sections);
     let (film, format) = film.and_then(section).and_then(film::film).unzip();
     context.white_luminance = format.as_ref().and_then(|format| format.white_luminance);
     let camera = camera.and_then(section).and_then(|camera| camera::camera(context, camera, film.as_ref()));
@@ -138,12 +132,19 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);
-    let [infinite, hidden] = [others.infinite_lights, others.hidden]
-        .map(|lights| lights.into_iter().map(|light| light + scene.lights.len()).collect());
-    (scene.infinite_lights, scene.hidden_lights) = (infinite, hidden);
-    scene.light_groups.extend(others.groups);
-    scene.lights.extend(others.all);
+    others.add_to(&mut scene);
     Some(scene)
+}
+
+/// Tells of sections that every scene has, and this one not even misspelt.
+fn needs_camera_and_film(sections: &mut Fields) {
+    let needed = ["camera", "film"].into_iter();
+    let missing = needed.filter(|key| sections.get(key).is_none() && !sections.is_misspelt(key));
+    let missing: Vec<String> = missing.map(|key| format!("no [{key}]")).collect();
+    if !missing.is_empty() {
+        let message = format!("the scene has {}", missing.join(" and "));
+        sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
+    }
 }
 
 /// Without polarization there are no Stokes vectors.
