@@ -7,7 +7,7 @@ use super::words::in_number;
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
-use crate::scene::{CausticsText, Scene};
+use crate::scene::{AidText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
 
@@ -149,7 +149,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     if matches!(world.method().transport, Transport::Deterministic { .. }) {
         return Err(None);
     }
-    if scene.render.caustics == CausticsText::Off {
+    if scene.render.caustics == AidText::Off {
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     if targets(scene).is_empty() {

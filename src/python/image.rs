@@ -1,5 +1,7 @@
 //! Rendered images.
 
+use std::mem::offset_of;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -53,11 +55,8 @@ impl Image {
     /// A layer, or a channel by its name in the file.
     fn plane(&self, name: &str) -> PyResult<Plane> {
         let film = self.image.film();
-        match of_pixels(film, name).or_else(|| of_layers(film, name)) {
-            Some(Found::Pixels(place)) => Ok(Plane::of::<Pixel, f32>(self.image.clone(), place)),
-            Some(Found::Numbers(place)) => Ok(Plane::of::<f32, f32>(self.image.clone(), place)),
-            None => Err(self.missing(name)),
-        }
+        let place = of_pixels(film, name).or_else(|| of_layers(film, name)).ok_or_else(|| self.missing(name))?;
+        Ok(Plane::of(self.image.clone(), place))
     }
 
     /// The centers of the spectral bands in nm, and the radiance of all pixels in them.
@@ -71,7 +70,7 @@ impl Image {
             place.shape.push(1);
             place.strides.push(size_of::<f32>());
         }
-        Some((spectral.bands.centers_nm().collect(), Plane::of::<f32, f32>(self.image.clone(), place)))
+        Some((spectral.bands.centers_nm().collect(), Plane::of(self.image.clone(), place)))
     }
 
     /// Writes the linear image; answers how many values were too large for 16 bits.
@@ -119,36 +118,23 @@ impl Image {
     }
 }
 
-/// Where a layer lies: among the pixels, or by itself.
-enum Found<'a> {
-    Pixels(Place<'a, Pixel>),
-    Numbers(Place<'a, f32>),
-}
-
 /// What each pixel has.
-fn of_pixels<'f>(film: &'f Film, name: &str) -> Option<Found<'f>> {
-    let first = film.pixels.first()?;
-    let (number, deep) = match name {
-        BEAUTY => (&first.rgb[0], true),
-        "R" => (&first.rgb[0], false),
-        "G" => (&first.rgb[1], false),
-        "B" => (&first.rgb[2], false),
-        "A" => (&first.alpha, false),
-        "Z" => (&first.depth, false),
+fn of_pixels(film: &Film, name: &str) -> Option<Place> {
+    let rgb = offset_of!(Pixel, rgb);
+    let (start, channels) = match name {
+        BEAUTY => (rgb, 3),
+        "R" => (rgb, 1),
+        "G" => (rgb + size_of::<f32>(), 1),
+        "B" => (rgb + 2 * size_of::<f32>(), 1),
+        "A" => (offset_of!(Pixel, alpha), 1),
+        "Z" => (offset_of!(Pixel, depth), 1),
         _ => return None,
     };
-    let start = std::ptr::from_ref(number).addr() - film.pixels.as_ptr().addr();
-    let (mut shape, step) = (vec![film.height as usize, film.width as usize], size_of::<Pixel>());
-    let mut strides = vec![film.width as usize * step, step];
-    if deep {
-        shape.push(first.rgb.len());
-        strides.push(size_of::<f32>());
-    }
-    Some(Found::Pixels(Place { whole: &film.pixels, start, shape, strides }))
+    Some(of_each(film, &film.pixels, size_of::<Pixel>(), start, channels))
 }
 
 /// What was asked for beside that.
-fn of_layers<'f>(film: &'f Film, name: &str) -> Option<Found<'f>> {
+fn of_layers(film: &Film, name: &str) -> Option<Place> {
     let layer = |name: &str| film.layers.iter().find(|layer| layer.name == name);
     let (found, channels) = match layer(name) {
         Some(found) => (found, 0..found.layer.channels().len()),
@@ -159,17 +145,22 @@ fn of_layers<'f>(film: &'f Film, name: &str) -> Option<Found<'f>> {
             (found, number..number + 1)
         }
     };
-    Some(Found::Numbers(packed(film, &found.values, found.layer.channels().len(), channels)))
+    Some(packed(film, &found.values, found.layer.channels().len(), channels))
 }
 
 /// Some of the numbers of each pixel, of which each has so many.
-fn packed<'f>(film: &Film, values: &'f [f32], each: usize, some: std::ops::Range<usize>) -> Place<'f, f32> {
+fn packed(film: &Film, values: &[f32], each: usize, some: Range<usize>) -> Place {
     let size = size_of::<f32>();
+    of_each(film, values, each * size, some.start * size, some.len())
+}
+
+/// So many numbers of each pixel, one behind the other, which begin at `start` of the `step` bytes that it has.
+fn of_each<T>(film: &Film, whole: &[T], step: usize, start: usize, channels: usize) -> Place {
     let (mut shape, mut strides) =
-        (vec![film.height as usize, film.width as usize], vec![film.width as usize * each * size, each * size]);
-    if some.len() > 1 {
-        shape.push(some.len());
-        strides.push(size);
+        (vec![film.height as usize, film.width as usize], vec![film.width as usize * step, step]);
+    if channels > 1 {
+        shape.push(channels);
+        strides.push(size_of::<f32>());
     }
-    Place { whole: values, start: some.start * size, shape, strides }
+    Place { address: whole.as_ptr().expose_provenance() + start, shape, strides }
 }

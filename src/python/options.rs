@@ -15,7 +15,7 @@ use super::text::shown;
 /// More threads than any one machine has processors for; many more would exhaust it.
 const MOST_THREADS: usize = 1024;
 
-/// The arguments of a render as the library takes them; None leaves one to the scene.
+/// The arguments of a render as the library takes them, of all that are given; None leaves one to the scene.
 ///
 /// # Errors
 /// If one of them is none of those that it may be.
@@ -24,17 +24,16 @@ pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     if threads.is_some_and(|threads| !(1..=MOST_THREADS).contains(&threads)) {
         return refuse(format!("a render has 1 to {MOST_THREADS} threads"), "leave threads out to take them all");
     }
-    let value = |name: &str| get::<Bound<'_, PyAny>>(given, name, "a value");
     Ok(Options {
         samples: number(given, "samples", "a whole number from 1 to 2**32 - 1")?,
         error: number(given, "error", "a number")?,
-        time: value("time")?.as_ref().map(|value| time("time", value)).transpose()?,
+        time: maybe(given, "time", |value| time("time", value))?,
         seed: number(given, "seed", "a whole number from 0 to 2**64 - 1")?,
-        overscan: value("overscan")?.as_ref().map(overscan).transpose()?,
+        overscan: maybe(given, "overscan", overscan)?,
         crop: get(given, "crop", "four whole numbers: first column, first row, width and height")?
             .map(crop)
             .transpose()?,
-        layers: value("layers")?.as_ref().map(layers).transpose()?,
+        layers: maybe(given, "layers", layers)?,
         spectral: get(given, "spectral", "True or False")?.unwrap_or_default(),
         threads,
         stamp: get(given, "stamp", "True or False")?.unwrap_or_default(),
@@ -42,13 +41,18 @@ pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     })
 }
 
-/// What an argument says, which is `wanted`; none if it is None, or not there.
+/// What `read` makes of an argument; none if it is None, or not there.
+fn maybe<'py, T>(
+    given: &Bound<'py, PyDict>,
+    name: &str,
+    read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+) -> PyResult<Option<T>> {
+    given.get_item(name)?.filter(|value| !value.is_none()).as_ref().map(read).transpose()
+}
+
+/// What an argument says, which is `wanted`.
 fn get<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, wanted: &str) -> PyResult<Option<T>> {
-    let Some(value) = given.get_item(name)?.filter(|value| !value.is_none()) else { return Ok(None) };
-    match value.extract() {
-        Ok(found) => Ok(Some(found)),
-        Err(_) => refuse_value(name, wanted, &value),
-    }
+    maybe(given, name, |value| value.extract().or_else(|_| refuse_value(name, wanted, value)))
 }
 
 /// A number that an argument says; True and False are none, though Python counts with them.

@@ -36,22 +36,20 @@ impl Number for u32 {
     const KIND: &'static str = if cfg!(target_endian = "big") { ">u4" } else { "<u4" };
 }
 
-/// Where numbers lie within what somebody owns.
-pub(super) struct Place<'a, T> {
-    /// All the memory in which they are.
-    pub(super) whole: &'a [T],
-    /// Where the first is, in bytes.
-    pub(super) start: usize,
+/// Where numbers of 32 bits lie within what somebody owns.
+pub(super) struct Place {
+    /// Of the first.
+    pub(super) address: usize,
     pub(super) shape: Vec<usize>,
     /// In bytes.
     pub(super) strides: Vec<usize>,
 }
 
 impl Plane {
-    /// Numbers of one kind that lie in memory which `owner` keeps as it is.
-    pub(super) fn of<T, N: Number>(owner: Arc<dyn Any + Send + Sync>, place: Place<'_, T>) -> Self {
-        let Place { whole, start, shape, strides } = place;
-        Self { _owner: owner, address: whole.as_ptr().expose_provenance() + start, shape, strides, kind: N::KIND }
+    /// Numbers that lie in memory which `owner` keeps as it is.
+    pub(super) fn of(owner: Arc<dyn Any + Send + Sync>, place: Place) -> Self {
+        let Place { address, shape, strides } = place;
+        Self { _owner: owner, address, shape, strides, kind: f32::KIND }
     }
 
     /// Numbers one behind the other.

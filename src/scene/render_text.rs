@@ -30,10 +30,11 @@ pub struct RenderText {
     pub diffuse_bounces: Option<u32>,
     /// How often light may leave any surface, glass and mirrors included; no limit if absent.
     pub max_bounces: Option<u32>,
-    /// Whether caustics may have a light pass of their own.
-    pub caustics: CausticsText,
-    /// Whether pixels may take more samples where the noise is, and fewer elsewhere.
-    pub adaptive: AdaptiveText,
+    /// Whether caustics may have a light pass of their own: photons, where the scene needs them.
+    pub caustics: AidText,
+    /// Whether pixels may take more samples where the noise is, and fewer elsewhere: if an equal error comes clearly
+    /// sooner.
+    pub adaptive: AidText,
     /// Whether polarization is traced.
     pub polarization: PolarizationText,
     /// Whether a part of the image is made, which does not know the error of the whole: then all samples are taken.
@@ -61,31 +62,18 @@ pub enum PolarizationText {
     Off,
 }
 
-/// Whether pixels may take more samples where the noise is, and fewer elsewhere.
+/// Whether a render may help itself where plain paths are slow.
 ///
 /// ```toml
 /// render.adaptive = "auto"     # "off"
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AdaptiveText {
-    /// Where an equal error comes clearly sooner.
-    #[default]
-    Auto,
-    /// All pixels take as many.
-    Off,
-}
-
-/// Whether caustics may have a light pass of their own.
-///
-/// ```toml
 /// render.caustics = "auto"     # "off"
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CausticsText {
-    /// Photons, where the scene needs them.
+pub enum AidText {
+    /// Where the plan finds that it pays.
     #[default]
     Auto,
-    /// Left to chance.
+    /// No: all pixels take as many samples, and caustics are left to chance.
     Off,
 }
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Union
 
 from ._errors import OptionsError
+
+Path = Union[str, bytes, "os.PathLike[str]"]
 
 
 def path(name: str, value: Any) -> str:

@@ -9,20 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abbe, _arguments
-from ._image import Image, Path
+from ._arguments import Path
+from ._image import Image
 from ._layers import Layers
 
 
 class ExrImage(Layers):
     """An OpenEXR file of any program, read whole."""
 
+    _core: _abbe.Exr
+
     def __init__(self, core: _abbe.Exr) -> None:
         self._core = core
-
-    @property
-    def layers(self) -> tuple[str, ...]:
-        """The names of all layers; `"beauty"` are red, green and blue without a name."""
-        return tuple(self._core.layers)
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         """A layer, or one channel by its full name: float32, or uint32 if the file has that; height x width, and x
@@ -34,21 +32,6 @@ class ExrImage(Layers):
         return np.asarray(self._core.plane(name))
 
     @property
-    def width(self) -> int:
-        """Pixels per row of what is there."""
-        return self._core.size[0]
-
-    @property
-    def height(self) -> int:
-        """Rows of what is there."""
-        return self._core.size[1]
-
-    @property
-    def corner(self) -> tuple[int, int]:
-        """Column and row of the first pixel that is there, in the full image."""
-        return self._core.corner
-
-    @property
     def format(self) -> tuple[int, int]:
         """Columns and rows of the full image, of which the file may hold less or more."""
         return self._core.format
@@ -57,13 +40,6 @@ class ExrImage(Layers):
     def attributes(self) -> dict[str, str]:
         """What the file says of itself, as words. What parts say otherwise is as the first of them has it."""
         return dict(reversed(self._core.attributes))
-
-    def to_png(self, path: Path, exposure: float = 0.0) -> None:
-        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the file has."""
-        self._core.write_png(_arguments.path("path", path), exposure)
-
-    def _repr_png_(self) -> bytes:
-        return self._core.png(0.0)
 
 
 @dataclass(frozen=True)

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import json
-import os
 import warnings
 from functools import cached_property
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abbe, _arguments
+from ._arguments import Path
 from ._layers import Layers
-
-Path = Union[str, bytes, "os.PathLike[str]"]
 
 
 class Spectrum(NamedTuple):
@@ -32,28 +30,10 @@ class Image(Layers):
     Its arrays are those of the renderer, which are not copied: they are read-only. `image.rgb.copy()` can be written.
     """
 
+    _core: _abbe.Image
+
     def __init__(self, core: _abbe.Image) -> None:
         self._core = core
-
-    @property
-    def width(self) -> int:
-        """Pixels per row of what was made: the format, with its overscan or a part of it."""
-        return self._core.size[0]
-
-    @property
-    def height(self) -> int:
-        """Rows of what was made."""
-        return self._core.size[1]
-
-    @property
-    def corner(self) -> tuple[int, int]:
-        """Column and row of the first pixel, counted from the top left of the format: negative in its overscan."""
-        return self._core.corner
-
-    @property
-    def layers(self) -> tuple[str, ...]:
-        """The names of all layers: `"beauty"`, `"A"`, `"Z"`, and those that were asked for."""
-        return tuple(self._core.layers)
 
     def __getitem__(self, name: str) -> npt.NDArray[np.float32]:
         """A layer by its name, or one channel by its name in the file.
@@ -119,10 +99,3 @@ class Image(Layers):
         if self._spectra is None:
             raise ValueError("the image has no spectra: ask for them with spectral=True")
         self._core.write_spectral_exr(_arguments.path("path", path))
-
-    def to_png(self, path: Path, exposure: float = 0.0) -> None:
-        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`."""
-        self._core.write_png(_arguments.path("path", path), exposure)
-
-    def _repr_png_(self) -> bytes:
-        return self._core.png(0.0)

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _arguments
+from ._arguments import Path
+
 BEAUTY = "beauty"
 
 
@@ -17,24 +20,38 @@ class Layers:
     numpy takes the whole for its `rgb`.
     """
 
+    _core: Any
+
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         """A layer such as `"albedo"` or `"Z"`, or one channel by its name in the file, such as `"albedo.R"`."""
         raise NotImplementedError
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """The names of all layers; `"beauty"` is the image itself."""
-        raise NotImplementedError
+        """The names of all layers; `"beauty"` is the image itself, in a file red, green and blue without a name."""
+        return tuple(self._core.layers)
 
     @property
     def width(self) -> int:
         """Pixels per row of what is there: the format, with its overscan, or a part of it."""
-        raise NotImplementedError
+        return self._core.size[0]
 
     @property
     def height(self) -> int:
         """Rows of what is there."""
-        raise NotImplementedError
+        return self._core.size[1]
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """Column and row of the first pixel, counted from the top left of the format: negative in its overscan."""
+        return self._core.corner
+
+    def to_png(self, path: Path, exposure: float = 0.0) -> None:
+        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the image has."""
+        self._core.write_png(_arguments.path("path", path), exposure)
+
+    def _repr_png_(self) -> bytes:
+        return self._core.png(0.0)
 
     def __repr__(self) -> str:
         return f"<abbe.{type(self).__name__} of {self.width} x {self.height} pixels: {', '.join(self.layers)}>"

@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abbe, _arguments
-from ._image import Image, Path
+from ._arguments import Path
+from ._image import Image
 
 Whole = Union[int, "np.integer[Any]"]
 Real = Union[float, "np.floating[Any]", Whole]
@@ -107,21 +108,6 @@ def _scene(scene: Path | Mapping[str, Any] | Scene, set: Mapping[str, Any] | Non
     return Scene(scene, set=set, folder=folder)._core
 
 
-def _options(
-    samples: Whole | None,
-    error: Real | None,
-    time: Time | None,
-    seed: Whole | None,
-    overscan: Whole | Pixels | None,
-    crop: Pixels | None,
-    layers: Sequence[str] | str | None,
-    spectral: bool,
-    threads: Whole | None,
-    stamp: bool = False,
-) -> dict[str, object]:
-    return locals()
-
-
 def plan(
     scene: Path | Mapping[str, Any] | Scene,
     *,
@@ -141,8 +127,7 @@ def plan(
 
     The arguments are those of `render` that say what the image is, and so is what is raised.
     """
-    options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads)
-    account, on = _abbe.plan(_scene(scene, set, folder), options)
+    account, on = _abbe.plan(_scene(scene, set, folder), locals())
     found = json.loads(account)
     seconds = found["processor_seconds"] and found["processor_seconds"] / on
     return Plan(words=found.pop("because"), seconds=seconds, **found)
@@ -196,11 +181,11 @@ def render(
     Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
     `RenderError` if a file fails.
     """
-    options = _options(samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp)
+    asked = locals()
     tell = None
     if progress is not None:
         told = _arguments.function("progress", progress)
         tell = lambda *state: told(Progress(*state))  # noqa: E731
     kept = None if checkpoint is None else _arguments.path("checkpoint", checkpoint)
     resumes = _arguments.truth("resume", resume)
-    return Image(_abbe.render(_scene(scene, set, folder), options, tell, kept, every, resumes))
+    return Image(_abbe.render(_scene(scene, set, folder), asked, tell, kept, every, resumes))

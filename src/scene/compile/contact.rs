@@ -75,19 +75,26 @@ fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
     (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
 }
 
+/// A ray from outside of a box to the place at these shares of its sides, by way of a ball around it.
+pub(super) fn ray_into(bounds: &Bounds, place: DVec3, on_ball: [f64; 2]) -> Option<Ray> {
+    let size = (bounds.max - bounds.min).length();
+    let target = bounds.min + (bounds.max - bounds.min) * place;
+    let direction = (target - (bounds.center() + ball_surface(on_ball) * size)).try_normalize()?;
+    Some(Ray { origin: target - direction * (2.0 * size), direction })
+}
+
 fn share_a_surface(body: &Object, other: &Object) -> bool {
     if let (Shape::Plane(one), Shape::Plane(another)) = (&*body.shape, &*other.shape) {
         return one.coincides(another, NEAR);
     }
     let Some(bounds) = body.shape.bounds() else { return false };
-    let (center, size) = (bounds.center(), (bounds.max - bounds.min).length());
+    let size = (bounds.max - bounds.min).length();
     let step = 1e-3 * size;
     (0..RAYS).any(|number| {
         let [u, v, x, y] = Sampler::new(0, [0, 0], number).four(BranchKey::CAMERA, 0);
         let [z, ..] = Sampler::new(0, [1, 0], number).four(BranchKey::CAMERA, 0);
-        let target = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
-        let Some(direction) = (target - (center + ball_surface([u, v]) * size)).try_normalize() else { return false };
-        let mut ray = Ray { origin: target - direction * (2.0 * size), direction };
+        let Some(mut ray) = ray_into(&bounds, DVec3::new(x, y, z), [u, v]) else { return false };
+        let direction = ray.direction;
         for _ in 0..DEEP {
             let Some(crossing) = body.shape.intersect(&ray, f64::INFINITY) else { return false };
             let point = body.shape.point(&ray, &crossing);

@@ -13,6 +13,7 @@ use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};
 
 /// What was read so far, besides the scene itself.
+#[derive(Default)]
 pub(super) struct Context {
     warnings: Vec<Warning>,
     /// Of the texts of the scene and the files that they name.
@@ -40,11 +41,7 @@ struct Warning {
 
 impl Context {
     pub(super) fn new(text: &str) -> Self {
-        let hash = Sha256::new_with_prefix(text.as_bytes());
-        let (images, meshes) = (BTreeMap::new(), HashMap::new());
-        let (meters_per_unit, white_luminance) = (None, None);
-        let (warnings, files) = (Vec::new(), Vec::new());
-        Self { warnings, hash, files, meters_per_unit, few_bounces: false, white_luminance, images, meshes }
+        Self { hash: Sha256::new_with_prefix(text.as_bytes()), ..Self::default() }
     }
 
     /// Notes a file that was read.

@@ -222,10 +222,7 @@ fn file_of_samples<'d>(
     if let Some(help) = image_called(file) {
         return place.advise(format!("{file} is an image, not a table of samples"), help);
     }
-    let table = match utf8(place.file(file, &TABLE)?, file, "save the table as CSV in UTF-8") {
-        Ok(table) => table,
-        Err(fault) => return place.tell(fault.message, fault.help),
-    };
+    let table = place.told(utf8(place.file(file, &TABLE)?, file, "save the table as CSV in UTF-8"))?;
     let rows = match read_columns(&table, column.it) {
         Ok(rows) => rows,
         Err(fault) => {
@@ -233,7 +230,7 @@ fn file_of_samples<'d>(
             return place.tell(format!("{file}{}", fault.message), fault.help);
         }
     };
-    context.has_read(place.folder().join(file), table.as_bytes());
+    context.has_read(place.path(file), table.as_bytes());
     let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
     let all_finite = samples.iter().position(|pair| pair.iter().any(|x| !x.is_finite())).map_or(Ok(()), |entry| {
         let wrong = samples[entry].into_iter().find(|x| !x.is_finite()).unwrap_or_default();

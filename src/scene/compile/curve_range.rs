@@ -8,7 +8,7 @@ const MAX_EMISSION: f64 = 1e30;
 /// Largest n and k: several times those of any metal in visible light.
 const MAX_METAL: f64 = 100.0;
 /// Largest thickness of a layer in which light interferes, in nm: 100 um.
-pub(super) const MAX_THICKNESS_NM: f64 = 1e5;
+const MAX_THICKNESS_NM: f64 = 1e5;
 /// A thickness below this many nm, far less than an atom, is meant in another unit.
 const LEAST_THICKNESS_NM: f64 = 1e-3;
 

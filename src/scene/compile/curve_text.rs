@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use crate::scene::text::{At, Fields, Value, at};
+use crate::scene::text::{At, Fields, Value, at, exactly};
 use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
 
 /// Most and, as one over it, least repetitions in a unit.
@@ -76,11 +76,8 @@ const KINDS: [(&str, Reader); 11] = [
     ("image", |value| value.text().map(KindText::Image)),
     ("checker", |value| {
         let cells = value.list(|entry| curve_text(entry, COLOR))?;
-        let cells = <[CurveText; 2]>::try_from(cells).or_else(|cells| {
-            let message = format!("a `checker` is a list of 2 spectra, not of {}", cells.len());
-            value.refuse_key(message, None).ok_or(())
-        });
-        Some(KindText::Checker(Box::new(cells.ok()?)))
+        let other = |count| value.refuse_key(format!("a `checker` is a list of 2 spectra, not of {count}"), None);
+        Some(KindText::Checker(Box::new(exactly(cells, other)?)))
     }),
 ];
 
@@ -153,11 +150,11 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> O
     let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
     let column = table.maybe("column", at(|value: Value| value.whole(0..=u64::MAX)));
     let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
-    let channel = table.maybe("channel", at(|value: Value| value.word(&CHANNELS)));
-    let wrap = table.maybe("wrap", at(|value: Value| value.word(&WRAPS)));
-    let filter = table.maybe("filter", at(|value: Value| value.word(&FILTERS)));
-    let repeat = table.maybe("repeat", at(one_or_two));
-    let scale = table.maybe("scale", at(Value::number));
+    let channel = table.maybe("channel", |value| value.word(&CHANNELS));
+    let wrap = table.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
+    let filter = table.or("filter", TexelFilter::default(), |value| value.word(&FILTERS));
+    let repeat = table.or("repeat", At { place: value, it: [1.0; 2] }, at(one_or_two));
+    let scale = table.or("scale", At { place: value, it: 1.0 }, at(Value::number));
     let luminance = table.maybe("luminance", at(Value::number));
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
@@ -172,27 +169,23 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> O
     }
     let (kind, column, encoding, channel) = (kind?, column?, encoding?, channel?);
     let (wrap, filter, repeat, scale, luminance) = (wrap?, filter?, repeat?, scale?, luminance?);
-    let (is_image, is_checker) = (matches!(kind, KindText::Image(_)), matches!(kind, KindText::Checker(_)));
-    let stray = [
-        ("`file`", column.filter(|_| !matches!(kind, KindText::File(_))).map(|column| column.place)),
-        ("`image`", encoding.filter(|_| !is_image).map(|encoding| encoding.place)),
-        ("`image`", channel.filter(|_| !is_image).map(|channel| channel.place)),
-        ("`image`", wrap.filter(|_| !is_image).map(|wrap| wrap.place)),
-        ("`image`", filter.filter(|_| !is_image).map(|filter| filter.place)),
-        ("`image` or `checker`", repeat.filter(|_| !is_image && !is_checker).map(|repeat| repeat.place)),
+    let is_image = matches!(kind, KindText::Image(_));
+    let owners = [
+        ("column", "`file`", matches!(kind, KindText::File(_))),
+        ("encoding", "`image`", is_image),
+        ("channel", "`image`", is_image),
+        ("wrap", "`image`", is_image),
+        ("filter", "`image`", is_image),
+        ("repeat", "`image` or `checker`", is_image || matches!(kind, KindText::Checker(_))),
     ];
-    if let Some((owner, place)) = stray.into_iter().find_map(|(owner, place)| Some((owner, place?))) {
-        return place.refuse_key(format!("`{}` goes with {owner}", place.key()), None);
+    for (key, owner, has_it) in owners {
+        if let Some(stray) = table.get(key).filter(|_| !has_it) {
+            return stray.refuse_key(format!("`{key}` goes with {owner}"), None);
+        }
     }
-    if let (Some(scale), Some(luminance)) = (scale, luminance) {
-        let message = "a spectrum has a `scale` or a `luminance`, not both";
-        return scale.place.later(luminance.place).refuse_key(message, None);
+    if let (Some(scale), Some(luminance)) = (table.get("scale"), table.get("luminance")) {
+        return scale.later(luminance).refuse_key("a spectrum has a `scale` or a `luminance`, not both", None);
     }
-    let (wrap, filter) =
-        (wrap.map(|wrap| wrap.it).unwrap_or_default(), filter.map(|filter| filter.it).unwrap_or_default());
-    let repeat = repeat.unwrap_or(At { place: value, it: [1.0; 2] });
-    let scale = scale.unwrap_or(At { place: value, it: 1.0 });
-    let channel = channel.map(|channel| channel.it);
     Some(CurveText { value, place, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance })
 }
 

@@ -27,7 +27,7 @@ use crate::spectrum::ColorSpace;
 /// ```
 pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
     Fields::read(value, |film| {
-        let width = film.need("width", at(side));
+        let width = film.need("width", side);
         let height = film.need("height", at(side));
         let filter = film.or("filter", Filter::default(), filter);
         let spaces = ColorSpace::ALL.map(|space| (space.interop_id(), space));
@@ -35,7 +35,7 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
         let overscan = film.maybe("overscan", at(overscan));
         let crop = film.maybe("crop", at(crop));
         let format = format(film);
-        let (width, height) = (width?.it, height?);
+        let (width, height) = (width?, height?);
         let (pixels, most) = (u64::from(width) * u64::from(height.it), FilmSettings::MAX_PIXELS);
         if pixels > most {
             let message = format!("{width} x {} pixels are {pixels}; at most {most} fit", height.it);
@@ -49,7 +49,7 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
             height,
             filter,
             color_space,
-            overscan: overscan.map_or(Overscan::default(), |overscan| overscan.it),
+            overscan: overscan.map(|overscan| overscan.it).unwrap_or_default(),
             crop: crop.map(|crop| crop.it),
         };
         if let Some((overscan, message)) = overscan.zip(film.objection_to_overscan()) {

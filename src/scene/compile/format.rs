@@ -1,7 +1,5 @@
 //! What an image's file holds, and how its numbers are written.
 
-use std::ops::Bound;
-
 use toml::de::DeValue;
 
 use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
@@ -83,10 +81,8 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
     }
     let [from, to, step] = Fields::read(value, |bands| {
         let nm = |value: Value| value.within(FIRST_NM..=LAST_NM, "a band lies between 360 and 830 nm", None);
-        let width = |value: Value| {
-            let between = (Bound::Excluded(0.0), Bound::Included(LAST_NM - FIRST_NM));
-            value.within(between, "a step is a width above 0 and at most 470 nm", None)
-        };
+        let most = above_0_to(LAST_NM - FIRST_NM);
+        let width = |value: Value| value.within(most, "a step is a width above 0 and at most 470 nm", None);
         let [from, to, step] = [bands.or("from", 380.0, nm), bands.or("to", 780.0, nm), bands.or("step", 5.0, width)];
         Some([from?, to?, step?])
     })?;

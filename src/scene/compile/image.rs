@@ -10,7 +10,7 @@ use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{IMAGES, ImageFile, read_texture};
 use super::image_numbers::Meaning;
 use super::radiometry::on_film;
-use crate::scene::text::{At, FileKind};
+use crate::scene::text::{At, Fault, FileKind};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
 const IMAGE: FileKind =
@@ -128,26 +128,33 @@ fn square<'d>(context: &mut Context, cell: &CurveText<'d>, quantity: Quantity) -
     surface_curve(context, cell, quantity)
 }
 
-/// An image, read once for each meaning of its numbers.
-pub(super) fn image<'d>(
+/// An image as `read` takes it from its file.
+pub(super) fn read_file(
     context: &mut Context,
-    file: &At<'d, &'d str>,
+    file: &At<&str>,
+    kind: &FileKind,
+    read: impl FnOnce(&Path, &[u8]) -> Result<ImageFile, Fault>,
+) -> Option<Arc<Image>> {
+    let At { place, it: file } = *file;
+    let bytes = place.file(file, kind)?;
+    let ImageFile { image, warnings } = place.told(read(Path::new(file), &bytes))?;
+    context.has_read(place.path(file), &bytes);
+    warnings.into_iter().for_each(|warning| context.warn_at(place, warning));
+    Some(Arc::new(image))
+}
+
+/// An image, read once for each meaning of its numbers.
+pub(super) fn image(
+    context: &mut Context,
+    file: &At<&str>,
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Option<Arc<Image>> {
-    let At { place, it: file } = *file;
-    let key = (place.folder().join(file), meaning, channel);
+    let key = (file.place.path(file.it), meaning, channel);
     if let Some(image) = context.images.get(&key) {
         return Some(image.clone());
     }
-    let bytes = place.file(file, &IMAGE)?;
-    let ImageFile { image, warnings } = match read_texture(Path::new(file), &bytes, meaning, channel) {
-        Ok(file) => file,
-        Err(fault) => return place.tell(fault.message, fault.help),
-    };
-    context.has_read(place.folder().join(file), &bytes);
-    warnings.into_iter().for_each(|warning| context.warn_at(place, warning));
-    let image = Arc::new(image);
+    let image = read_file(context, file, &IMAGE, |path, bytes| read_texture(path, bytes, meaning, channel))?;
     context.images.insert(key, image.clone());
     Some(image)
 }

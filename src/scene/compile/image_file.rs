@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use super::image_numbers::{Fault, Meaning, Texels};
+use super::image_numbers::{Meaning, Texels};
 use crate::film::guarded;
 use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_jpeg, decode_png, decode_radiance};
+use crate::scene::text::Fault;
 use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 
 /// How the names of images end.
@@ -16,8 +17,7 @@ pub(super) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> {
     let image = match ending(path).as_str() {
-        "exr" => decoded(path, "OpenEXR", bytes, |bytes| decode_exr(bytes, false))?,
-        "hdr" => decoded(path, "Radiance", bytes, decode_radiance)?,
+        "exr" | "hdr" => floats(path, bytes, false)?,
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             return Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help));
@@ -47,28 +47,31 @@ pub(super) fn read_texture(
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Result<ImageFile, Fault> {
-    let (kind, whole): (_, Option<Decoder>) = match ending(path).as_str() {
-        "exr" => ("OpenEXR", None),
-        "hdr" => ("Radiance", None),
-        "png" => ("PNG", Some(decode_png)),
-        "jpg" | "jpeg" => ("JPEG", Some(decode_jpeg)),
+    let whole = match ending(path).as_str() {
+        "exr" | "hdr" => None,
+        "png" => Some(decoded(path, "PNG", bytes, decode_png)?),
+        "jpg" | "jpeg" => Some(decoded(path, "JPEG", bytes, decode_jpeg)?),
         _ => return Err(unknown(path, "images end in .png, .jpg, .exr (OpenEXR) or .hdr (Radiance)")),
     };
     let srgb = channel != Some(Channel::Alpha) && meaning.is_srgb(whole.is_some());
-    let texture = TextureOf { path, kind, meaning, channel, srgb };
+    let texture = TextureOf { path, meaning, channel, srgb };
     match whole {
-        Some(decode) => texture.of_whole_numbers(bytes, decode),
-        None => texture.of_floats(bytes),
+        Some(whole) => texture.of_whole_numbers(whole),
+        None => texture.of_floats(floats(path, bytes, true)?),
     }
 }
 
-/// Reads a file of whole numbers.
-type Decoder = fn(&[u8]) -> Result<Whole, Unreadable>;
+/// What an OpenEXR or Radiance file holds; of the former, alpha as well if asked.
+fn floats(path: &Path, bytes: &[u8], alpha: bool) -> Result<Floats, Fault> {
+    match ending(path).as_str() {
+        "exr" => decoded(path, "OpenEXR", bytes, |bytes| decode_exr(bytes, alpha)),
+        _ => decoded(path, "Radiance", bytes, decode_radiance),
+    }
+}
 
 /// An image that is read, and as what.
 struct TextureOf<'p> {
     path: &'p Path,
-    kind: &'static str,
     meaning: Meaning,
     channel: Option<Channel>,
     srgb: bool,
@@ -96,9 +99,8 @@ impl TextureOf<'_> {
         ImageFile { image, warnings: alpha.into_iter().chain(colors).collect() }
     }
 
-    fn of_whole_numbers(self, bytes: &[u8], decode: Decoder) -> Result<ImageFile, Fault> {
+    fn of_whole_numbers(self, whole: Whole) -> Result<ImageFile, Fault> {
         let (srgb, directions) = (self.srgb, self.meaning == Meaning::Directions);
-        let whole = decoded(self.path, self.kind, bytes, decode)?;
         let (width, not_srgb) = (whole.width, whole.not_srgb.as_deref());
         let picked = self.picked(whole.channels, whole.has_alpha())?;
         match whole.steps {
@@ -126,10 +128,8 @@ impl TextureOf<'_> {
         }
     }
 
-    fn of_floats(self, bytes: &[u8]) -> Result<ImageFile, Fault> {
-        let (radiance, directions) = (self.kind == "Radiance", self.meaning == Meaning::Directions);
-        let read = |bytes: &[u8]| if radiance { decode_radiance(bytes) } else { decode_exr(bytes, true) };
-        let image = decoded(self.path, self.kind, bytes, read)?;
+    fn of_floats(self, image: Floats) -> Result<ImageFile, Fault> {
+        let directions = self.meaning == Meaning::Directions;
         let picked = self.picked(image.channels, image.has_alpha)?;
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
         let (width, channels) = (image.width, picked.channels());

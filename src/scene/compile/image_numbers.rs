@@ -2,23 +2,11 @@
 
 use std::path::Path;
 
+use crate::scene::text::Fault;
 use crate::spectrum::{Encoding, Matrix, apply, decode_srgb};
 
 /// Largest rounding of a number of 16 bits, relative to it.
 const HALF: f64 = 1.0 / 2048.0;
-
-/// What is wrong with a file.
-pub(super) struct Fault {
-    pub(super) message: String,
-    /// What to do.
-    pub(super) help: Option<String>,
-}
-
-impl Fault {
-    pub(super) fn new(message: String, help: impl Into<String>) -> Self {
-        Self { message, help: Some(help.into()) }
-    }
-}
 
 /// What the numbers of an image stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

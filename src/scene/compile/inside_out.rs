@@ -1,6 +1,7 @@
 //! Closed meshes of clear bodies whose faces look inward, so that their inside is taken for the outside.
 
-use crate::math::{BranchKey, DVec3, Ray, Sampler, ball_surface};
+use super::contact::ray_into;
+use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
 use crate::shape::Shape;
 
@@ -40,15 +41,12 @@ fn looks_inward(objects: &[Object], number: usize) -> bool {
 /// A ray that starts just behind the first surface of a shape that is met from outside.
 fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
     let bounds = shape.bounds()?;
-    let (center, size) = (bounds.center(), (bounds.max - bounds.min).length());
     (0..TRIES).find_map(|attempt| {
         let [u, v, x, y] = Sampler::new(0, [number, attempt], 0).four_plain(BranchKey::CAMERA, 0);
         let [z, ..] = Sampler::new(0, [number, attempt], 1).four_plain(BranchKey::CAMERA, 0);
-        let target = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
-        let direction = (target - (center + ball_surface([u, v]) * size)).try_normalize()?;
-        let ray = Ray { origin: target - direction * (2.0 * size), direction };
+        let ray = ray_into(&bounds, DVec3::new(x, y, z), [u, v])?;
         let crossing = shape.intersect(&ray, f64::INFINITY)?;
-        Some(shape.point(&ray, &crossing).leave(direction))
+        Some(shape.point(&ray, &crossing).leave(ray.direction))
     })
 }
 

@@ -1,31 +1,30 @@
 //! The lights that no surface gives.
 
-use std::path::Path;
-use std::sync::Arc;
 
 use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
-use super::image::{BRIGHT_IMAGE, factor_on_image};
-use super::image_file::{ImageFile, read_image};
+use super::image::{BRIGHT_IMAGE, factor_on_image, read_file};
+use super::image_file::read_image;
 use super::measures::{direction, point};
 use super::object;
 use super::radiometry;
 use super::transform::{Step, map_of, steps};
 use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
+use crate::scene::Scene;
 use crate::scene::text::{At, Fields, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
 
 /// The lights of a scene that are right, and which of them rays see that meet nothing.
 #[derive(Default)]
 pub(super) struct Lights {
-    pub(super) all: Vec<Light<Curve>>,
-    pub(super) infinite_lights: Vec<LightId>,
+    all: Vec<Light<Curve>>,
+    infinite_lights: Vec<LightId>,
     /// Those of them that the camera does not see.
-    pub(super) hidden: Vec<LightId>,
+    hidden: Vec<LightId>,
     /// The group of each light.
-    pub(super) groups: Vec<String>,
+    groups: Vec<String>,
     has_environment: bool,
 }
 
@@ -41,46 +40,55 @@ impl Lights {
             let own = light.maybe("group", object::group);
             let seen = light.maybe("visible_to_camera", at(Value::yes_or_no));
             let kinds = ["environment", "point", "spot", "sun"].map(|kind| light.get(kind));
-            let given: Vec<Value> = kinds.iter().flatten().copied().collect();
-            match given.as_slice() {
+            let given: Vec<Value> = kinds.into_iter().flatten().collect();
+            let place = match given.as_slice() {
                 [] if light.has_unknown() => return None,
                 [] => {
                     let message = "a light needs a kind: `environment`, `point`, `spot` or `sun`";
                     return value.advise(message, "such as environment = { radiance = 1 }");
                 }
-                [_] => {}
+                [place] => *place,
                 [first, others @ ..] => {
                     let last = others.iter().fold(*first, |last, other| last.later(*other));
                     return last.advise("a light has exactly one kind", "start another [[light]] for the second");
                 }
-            }
+            };
             group = own?.or(name?);
-            let [environment, point, spot, sun] = kinds;
             if let Some(seen) = seen? {
                 visible = seen.it;
-                if point.or(spot).is_some() {
+                if matches!(place.key(), "point" | "spot") {
                     let message = "a point and a spot are too small to be seen";
                     return seen.place.advise(message, "leave `visible_to_camera` out");
                 }
             }
-            if let Some(place) = environment {
-                let help = "environment = { radiance = .., transform = [..] }".into();
-                light.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
-                if std::mem::replace(&mut self.has_environment, true) {
-                    return place.refuse("a scene has at most one environment");
+            match place.key() {
+                "point" => point_light(context, place),
+                "spot" => spot_light(context, place),
+                "sun" => sun_light(context, place),
+                _ => {
+                    let help = "environment = { radiance = .., transform = [..] }".into();
+                    light.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
+                    if std::mem::replace(&mut self.has_environment, true) {
+                        return place.refuse("a scene has at most one environment");
+                    }
+                    even_or_image(context, place).map(Light::Environment)
                 }
-                return even_or_image(context, place).map(Light::Environment);
             }
-            let point = point.map(|place| point_light(context, place));
-            let spot = spot.map(|place| spot_light(context, place));
-            let sun = sun.map(|place| sun_light(context, place));
-            point.or(spot).or(sun).flatten()
         })?;
         self.infinite_lights.extend(light.is_infinite().then_some(self.all.len()));
         self.hidden.extend((!visible).then_some(self.all.len()));
         self.groups.push(group.unwrap_or(light.kind_name()).to_owned());
         self.all.push(light);
         Some(())
+    }
+
+    /// Adds them to a scene, behind the lights that it has.
+    pub(super) fn add_to(self, scene: &mut Scene<Curve>) {
+        let behind = |light: LightId| light + scene.lights.len();
+        scene.infinite_lights.extend(self.infinite_lights.into_iter().map(behind));
+        scene.hidden_lights.extend(self.hidden.into_iter().map(behind));
+        scene.light_groups.extend(self.groups);
+        scene.lights.extend(self.all);
     }
 }
 
@@ -227,17 +235,11 @@ fn rotation(steps: &[At<Step>]) -> Option<Transform> {
 }
 
 fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
-    let bytes = file.place.file(file.it, &BRIGHT_IMAGE)?;
-    let ImageFile { image, warnings } = match read_image(Path::new(file.it), &bytes) {
-        Ok(file) => file,
-        Err(fault) => return file.place.tell(fault.message, fault.help),
-    };
-    context.has_read(file.place.folder().join(file.it), &bytes);
-    warnings.into_iter().for_each(|warning| context.warn_at(file.place, warning));
+    let image = read_file(context, file, &BRIGHT_IMAGE, read_image)?;
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {
         let message = "an image of all directions is twice as wide as high";
         context.warn_at(file.place, format!("{} is {width} x {height}; {message}", file.it));
     }
-    Some(Panorama::new(Arc::new(image), context.few_bounces))
+    Some(Panorama::new(image, context.few_bounces))
 }

@@ -15,7 +15,7 @@ use crate::material::{
     Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
     Roughness, Thin,
 };
-use crate::scene::text::{Choice, Fields, Value};
+use crate::scene::text::{Choice, Fields, Value, exactly};
 use crate::shape::Sides;
 use crate::spectrum::{Curve, Quantity};
 
@@ -151,9 +151,7 @@ fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
 }
 
 fn two_names(value: Value) -> Option<[Value; 2]> {
-    let names = <[Value; 2]>::try_from(value.list(name)?);
-    let wrong = |names: Vec<Value>| value.refuse(format!("a mix is made of 2 materials, not {}", names.len()));
-    names.map_or_else(wrong, Some)
+    exactly(value.list(name)?, |count| value.refuse(format!("a mix is made of 2 materials, not {count}")))
 }
 
 /// A text in quotes, where it stands.

@@ -7,16 +7,18 @@ use crate::scene::text::Value;
 pub(super) const MAX_LENGTH: f64 = 1e30;
 /// Smallest size, for the same reason.
 pub(super) const MIN_LENGTH: f64 = 1e-30;
+/// What the numbers of points are called.
+pub(super) const COORDINATE: &str = "a coordinate";
 
 /// A point that is not too far away.
 pub(super) fn point(value: Value) -> Option<DVec3> {
-    near(value, value.numbers()?).map(DVec3::from)
+    near(value, COORDINATE, value.numbers()?).map(DVec3::from)
 }
 
-/// Numbers that are coordinates, each finite and not too large.
-pub(super) fn near<const N: usize>(value: Value, numbers: [f64; N]) -> Option<[f64; N]> {
+/// Numbers that are coordinates or the like, each finite and not too large; `what` each is.
+pub(super) fn near<const N: usize>(value: Value, what: &str, numbers: [f64; N]) -> Option<[f64; N]> {
     match numbers.iter().position(|x| !is_near(*x)) {
-        Some(axis) => value.entry(axis).refuse(far(numbers[axis])),
+        Some(axis) => value.entry(axis).refuse(far(what, numbers[axis])),
         None => Some(numbers),
     }
 }
@@ -26,11 +28,11 @@ pub(super) fn is_near(number: f64) -> bool {
     number.is_finite() && number.abs() <= MAX_LENGTH
 }
 
-/// What is wrong with a number that is none.
-pub(super) fn far(number: f64) -> String {
+/// What is wrong with a number that is none; `what` it should be.
+pub(super) fn far(what: &str, number: f64) -> String {
     match number.is_finite() {
-        true => format!("a coordinate is at most {MAX_LENGTH:e}"),
-        false => format!("a coordinate is a finite number, not {number}"),
+        true => format!("{what} is at most {MAX_LENGTH:e}"),
+        false => format!("{what} is a finite number, not {number}"),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, far, is_near, near, point};
+use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, point};
 use crate::math::DVec3;
 use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
 use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
@@ -47,7 +47,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
         let parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
-                if let Some(mesh) = context.meshes.get(&(file.place.folder().join(file.it), smooth)) {
+                if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
                     return Some(WrittenMesh { mesh: mesh.clone(), file: Some(file.it) });
                 }
                 read_file(context, name, file, smooth)?
@@ -58,7 +58,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         };
         let mesh = built(context, name, value, parts, smooth)?;
         if let Some(At { place, it: file }) = file {
-            context.meshes.insert((place.folder().join(file), smooth), mesh.clone());
+            context.meshes.insert((place.path(file), smooth), mesh.clone());
         }
         Some(WrittenMesh { mesh, file: file.map(|file| file.it) })
     })
@@ -91,7 +91,7 @@ fn normals(value: Value) -> Option<Vec<DVec3>> {
 fn coordinates(value: Value) -> Option<Vec<[f64; 2]>> {
     match value.rows() {
         Some(rows) => real(value, rows),
-        None => value.list(|entry| near(entry, entry.numbers()?)),
+        None => value.list(|entry| near(entry, COORDINATE, entry.numbers()?)),
     }
 }
 
@@ -102,7 +102,7 @@ fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
         _ => return value.refuse(format!("`{}` has rows of {N} numbers, not {}", value.key(), rows.width)),
     };
     match numbers.iter().position(|number| !is_near(*number)) {
-        Some(first) => value.refuse(format!("row {}: {}", first / N, far(numbers[first]))),
+        Some(first) => value.refuse(format!("row {}: {}", first / N, far(COORDINATE, numbers[first]))),
         None => Some(in_rows(numbers)),
     }
 }
@@ -168,7 +168,7 @@ impl Inline<'_> {
 
 fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -> Option<Parts> {
     let At { place, it: file } = *file;
-    let path = place.folder().join(file);
+    let path = place.path(file);
     let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
     let mesh = match mesh {
         Ok(mesh) => mesh,

@@ -81,13 +81,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     let [camera, film, render, materials, objects, lights] = SECTIONS.map(|key| sections.get(key));
     // What these say was put in its places before.
     let _ = [SET, INCLUDE].map(|key| sections.get(key));
-    let missing = [("camera", camera), ("film", film)].into_iter().filter(|(_, section)| section.is_none());
-    let missing: Vec<String> =
-        missing.filter(|(key, _)| !sections.is_misspelt(key)).map(|(key, _)| format!("no [{key}]")).collect();
-    if !missing.is_empty() {
-        let message = format!("the scene has {}", missing.join(" and "));
-        sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
-    }
+    needs_camera_and_film(sections);
     let (film, format) = film.and_then(section).and_then(film::film).unzip();
     context.white_luminance = format.as_ref().and_then(|format| format.white_luminance);
     let camera = camera.and_then(section).and_then(|camera| camera::camera(context, camera, film.as_ref()));
@@ -118,8 +112,6 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
-    let (lights, infinite_lights, warnings, hash) = (Vec::new(), Vec::new(), Vec::new(), String::new());
-    let (light_groups, hidden_lights) = (Vec::new(), Vec::new());
     let (camera, film, format, render) = (camera?, film?, format?, render?);
     can_have_stokes(sections, &format, &render).and(can_fluoresce(sections, &materials, &render))?;
     let mut scene = Scene {
@@ -129,23 +121,30 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         render,
         objects: objects.into(),
         materials,
-        lights,
-        infinite_lights,
-        light_groups,
-        hidden_lights,
-        warnings,
-        hash,
+        lights: Vec::new(),
+        infinite_lights: Vec::new(),
+        light_groups: Vec::new(),
+        hidden_lights: Vec::new(),
+        warnings: Vec::new(),
+        hash: String::new(),
         files: Vec::new(),
         settings: Vec::new(),
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);
-    let [infinite, hidden] = [others.infinite_lights, others.hidden]
-        .map(|lights| lights.into_iter().map(|light| light + scene.lights.len()).collect());
-    (scene.infinite_lights, scene.hidden_lights) = (infinite, hidden);
-    scene.light_groups.extend(others.groups);
-    scene.lights.extend(others.all);
+    others.add_to(&mut scene);
     Some(scene)
+}
+
+/// Tells of sections that every scene has, and this one not even misspelt.
+fn needs_camera_and_film(sections: &mut Fields) {
+    let needed = ["camera", "film"].into_iter();
+    let missing = needed.filter(|key| sections.get(key).is_none() && !sections.is_misspelt(key));
+    let missing: Vec<String> = missing.map(|key| format!("no [{key}]")).collect();
+    if !missing.is_empty() {
+        let message = format!("the scene has {}", missing.join(" and "));
+        sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
+    }
 }
 
 /// Without polarization there are no Stokes vectors.
@@ -243,8 +242,10 @@ fn namesakes(context: &mut Context, objects: &[Draft]) {
 
 /// Warns of materials that no object has.
 fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
-    for name in drafts.by_name.keys() {
-        if !placed.materials.iter().any(|used| used.name == *name || used.material.is_made_of(name)) {
+    // Scenes may have many materials: most are looked up by name, and not compared with each.
+    let used: BTreeSet<&str> = placed.materials.iter().map(|used| used.name.as_str()).collect();
+    for name in drafts.by_name.keys().filter(|name| !used.contains(*name)) {
+        if !placed.materials.iter().any(|used| used.material.is_made_of(name)) {
             context.warn(format!("material {name} is not used by any object"));
         }
     }

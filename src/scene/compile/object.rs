@@ -62,6 +62,7 @@ pub(super) fn object<'d>(
         let named = match object.get("material") {
             Some(value) => at(|value: Value<'d>| names.find(value))(value),
             None if is_within => None,
+            None if entry.is_one_of_many() => object.lack("material", None),
             None => object.lack("material", names.help(name.flatten()).as_deref()),
         };
         let map = object.or(

@@ -119,10 +119,14 @@ pub(super) fn unknown_material<'n, T>(
     name: &str,
     known: impl ExactSizeIterator<Item = &'n str> + Clone,
 ) -> Option<T> {
+    let message = format!("there is no material named {name:?}");
+    if place.is_one_of_many() {
+        return place.refuse(message);
+    }
     let help = match nearest(name, known.clone()) {
         Some(near) => format!("did you mean {near:?}?"),
         None if known.len() == 0 => format!("define it: [material.{name}]"),
         None => format!("the scene defines {}", known.collect::<Vec<_>>().join(", ")),
     };
-    place.advise(format!("there is no material named {name:?}"), help)
+    place.advise(message, help)
 }

@@ -4,7 +4,7 @@ use super::context::Context;
 use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
 use super::mesh::mesh;
 use crate::math::{DVec3, Transform};
-use crate::scene::text::{Choice, Fields, Value, at};
+use crate::scene::text::{Choice, Fields, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Smallest size relative to the coordinates: some thousand roundings.
@@ -74,13 +74,9 @@ fn plane(value: Value) -> Option<Shape> {
 
 fn triangle(value: Value) -> Option<Shape> {
     Fields::read(value, |triangle| {
-        let points =
-            triangle.need("points", at(|value: Value| value.list(|entry| point(entry.as_list("a point", "")))))?;
-        let place = points.place;
-        let points = <[DVec3; 3]>::try_from(points.it);
-        let points =
-            points.or_else(|given| place.refuse(format!("a triangle has 3 points, not {}", given.len())).ok_or(()));
-        match points.ok()? {
+        let place = triangle.need("points", Some)?;
+        let points = place.list(|entry| point(entry.as_list("a point", "")))?;
+        match exactly(points, |count| place.refuse(format!("a triangle has 3 points, not {count}")))? {
             points if Triangle::is_degenerate(points) => {
                 place.refuse("the points of a triangle must not lie on a line")
             }

@@ -95,7 +95,7 @@ impl<'a> Sight<'a> {
     }
 
     /// Whether light never crosses an object.
-    pub(super) fn is_opaque(&self, object: u32) -> bool {
+    fn is_opaque(&self, object: u32) -> bool {
         let material = self.scene.material_of(object);
         !material.lets_through() && !material.is_see_through()
     }

@@ -22,7 +22,10 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
     apart: "write one step after the other: [{ scale = 2 }, { translate = [0, 1, 0] }]",
     beside: &[],
     kinds: &[
-        ("scale", |value| near(value, value.one_or("[x, y, z]")?).map(|factors| Step::Scale(factors.into()))),
+        ("scale", |value| {
+            let factors = near(value, "a scale", value.one_or("[x, y, z]")?)?;
+            Some(Step::Scale(factors.into()))
+        }),
         ("rotate", |value| {
             Fields::read(value, |turn| {
                 let axis = turn.need("axis", direction);

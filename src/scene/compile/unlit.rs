@@ -168,15 +168,12 @@ fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
 
 /// What messages call a light: the object that shines, or the number of the `[[light]]`, counted from 1, and its kind.
 pub(super) fn name(scene: &Scene<Curve>, id: LightId) -> String {
-    let kind = match &scene.lights[id] {
-        Light::Area(area) => return scene.objects[area.object as usize].name.clone(),
-        Light::Point(_) => "point",
-        Light::Spot(_) => "spot",
-        Light::Sun(_) => "sun",
-        Light::Environment(_) => "environment",
-    };
+    let light = &scene.lights[id];
+    if let Light::Area(area) = light {
+        return scene.objects[area.object as usize].name.clone();
+    }
     let before = scene.lights[..id].iter().filter(|light| !matches!(light, Light::Area(_))).count();
-    format!("light {} ({kind})", before + 1)
+    format!("light {} ({})", before + 1, light.kind_name())
 }
 
 /// Whether it may be inside out, as a sphere may not.

@@ -4,11 +4,11 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::mistake::Mistake;
 use super::texts::Texts;
+use super::tree::Node;
 
 /// The texts of a scene, what they say as TOML, and what is wrong with that so far.
 pub(in crate::scene) struct Document<'d> {
@@ -68,7 +68,7 @@ fn look_into(table: &DeTable, path: &str, paths: &mut HashMap<Range<usize>, Stri
     }
 }
 
-fn look_at(value: &Spanned<DeValue>, path: &str, paths: &mut HashMap<Range<usize>, String>) {
+fn look_at(value: &Node, path: &str, paths: &mut HashMap<Range<usize>, String>) {
     note(value.span(), path, paths);
     match value.get_ref() {
         DeValue::Table(table) => look_into(table, path, paths),

@@ -19,6 +19,7 @@ const SCENE: FileKind =
 const DEEPEST: usize = 64;
 
 /// The texts of a scene, and what is wrong with them so far.
+#[derive(Default)]
 pub(in crate::scene) struct Included {
     pub(in crate::scene) texts: Texts,
     /// Where each file stands among them.
@@ -34,11 +35,8 @@ impl Included {
     /// A text with those of all files that it includes, each once, in the order in which they are named first. A text
     /// that is no file has a path all the same, where the names of files begin.
     pub(in crate::scene) fn of(path: &Path, text: &str, is_file: bool) -> Self {
-        let (texts, parts, mistakes) = (Texts::default(), Vec::new(), Vec::new());
-        let mut found = Self { texts, parts, mistakes, files: Vec::new(), within: Vec::new() };
-        let file = is_file.then(|| real(path));
-        found.files.extend(file.clone());
-        found.within.extend(file);
+        let file: Vec<PathBuf> = is_file.then(|| real(path)).into_iter().collect();
+        let mut found = Self { files: file.clone(), within: file, ..Self::default() };
         found.add(path, text);
         found
     }
@@ -80,8 +78,8 @@ impl Included {
         let path = folder.join(name);
         let file = real(&path);
         if self.within.contains(&file) {
-            let help = Some("what both need stands in a file of its own".into());
-            return Err(Fault { message: format!("{name} includes itself by way of this file"), help });
+            let message = format!("{name} includes itself by way of this file");
+            return Err(Fault::new(message, "what both need stands in a file of its own"));
         }
         if self.files.contains(&file) {
             return Ok(());

@@ -21,6 +21,12 @@ pub(in crate::scene) struct Fault {
     pub(in crate::scene) help: Option<String>,
 }
 
+impl Fault {
+    pub(in crate::scene) fn new(message: String, help: impl Into<String>) -> Self {
+        Self { message, help: Some(help.into()) }
+    }
+}
+
 /// The bytes of a file whose name begins at a folder.
 pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<Vec<u8>, Fault> {
     let refuse = |message: String| Err(Fault { message, help: None });
@@ -56,5 +62,5 @@ pub(super) fn missing(folder: &Path, file: &str, endings: &[&str]) -> Fault {
         None if folder.as_os_str().is_empty() => "the path starts at the current folder".into(),
         None => format!("the path starts at {}", folder.display()),
     };
-    Fault { message: format!("there is no file {file}"), help: Some(help) }
+    Fault::new(format!("there is no file {file}"), help)
 }

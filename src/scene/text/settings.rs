@@ -224,9 +224,9 @@ fn put_into<'d>(node: &mut Node<'d>, key: &Key, path: &[Key<'d>], value: Node<'d
 /// Which entry of a list has this name or number; numbers count from 1.
 fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
     let word: &str = word(key);
-    let name = |entry: &Node| Some(entry.get_ref().as_table()?.get("name")?.get_ref().as_str()?.to_owned());
-    let names: Vec<Option<String>> = entries.iter().map(name).collect();
-    let named: Vec<usize> = (0..names.len()).filter(|&number| names[number].as_deref() == Some(word)).collect();
+    let names = entries.iter().map(|entry| entry.get_ref().as_table()?.get("name")?.get_ref().as_str());
+    let names: Vec<Option<&str>> = names.collect();
+    let named: Vec<usize> = (0..names.len()).filter(|&number| names[number] == Some(word)).collect();
     let refuse = |span: Range<usize>, message: String, help: String| Err(Mistake { span, message, help: Some(help) });
     match named.as_slice() {
         [number] => return Ok(*number),
@@ -242,7 +242,7 @@ fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
     {
         return Ok(number);
     }
-    let known: Vec<&str> = names.iter().flatten().map(String::as_str).collect();
+    let known: Vec<&str> = names.into_iter().flatten().collect();
     let counted = format!("entries are counted from 1 to {}", entries.len());
     let help = match known.as_slice() {
         _ if entries.is_empty() => "the list is empty".into(),

@@ -20,5 +20,5 @@ pub(in crate::scene) fn utf8(bytes: Vec<u8>, shown: &str, help: &str) -> Result<
         _ if bytes.contains(&0) => help.to_owned(),
         _ => "save it as UTF-8".into(),
     };
-    Err(Fault { message: format!("{shown} is not text in UTF-8: {byte}"), help: Some(help) })
+    Err(Fault::new(format!("{shown} is not text in UTF-8: {byte}"), help))
 }

@@ -1,34 +1,30 @@
 //! A value of a scene's text, read as what is wanted of it; what it is instead is told.
 
 use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use toml::Spanned;
-use toml::de::{DeInteger, DeString, DeValue};
+use toml::de::{DeInteger, DeValue};
 
 use super::document::Document;
-use super::named_file::{FileKind, missing, read_named};
+use super::named_file::{Fault, FileKind, missing, read_named};
 use super::rows::Rows;
 use super::suggest::{remedy, suggestion};
+use super::tree::{Key, Node};
 
 /// A value, where it stands.
 #[derive(Clone, Copy)]
 pub(in crate::scene) struct Value<'d> {
     pub(super) document: &'d Document<'d>,
     /// The key whose value it is, or in whose list it is an entry.
-    key: &'d Spanned<DeString<'d>>,
+    key: &'d Key<'d>,
     is_entry: bool,
-    node: &'d Spanned<DeValue<'d>>,
+    node: &'d Node<'d>,
     /// What it is called as a list of numbers, and how to write it.
     list: Option<(&'static str, &'static str)>,
 }
 
 impl<'d> Value<'d> {
-    pub(super) fn new(
-        document: &'d Document<'d>,
-        key: &'d Spanned<DeString<'d>>,
-        node: &'d Spanned<DeValue<'d>>,
-    ) -> Self {
+    pub(super) fn new(document: &'d Document<'d>, key: &'d Key<'d>, node: &'d Node<'d>) -> Self {
         Self { document, key, is_entry: false, node, list: None }
     }
 
@@ -81,22 +77,28 @@ impl<'d> Value<'d> {
     }
 
     /// Where the names of its files begin.
-    pub(in crate::scene) fn folder(self) -> &'d Path {
+    fn folder(self) -> &'d Path {
         self.document.texts.folder(self.span().start)
+    }
+
+    /// Where the file of this name lies.
+    pub(in crate::scene) fn path(self, name: &str) -> PathBuf {
+        self.folder().join(name)
     }
 
     /// The bytes of the file of this name.
     pub(in crate::scene) fn file(self, name: &str, kind: &FileKind) -> Option<Vec<u8>> {
-        match read_named(self.folder(), name, kind) {
-            Ok(bytes) => Some(bytes),
-            Err(fault) => self.tell(fault.message, fault.help),
-        }
+        self.told(read_named(self.folder(), name, kind))
+    }
+
+    /// What was read of a file, if it is right; tells what is wrong with that if it is not.
+    pub(in crate::scene) fn told<T>(self, read: Result<T, Fault>) -> Option<T> {
+        read.map_or_else(|fault| self.tell(fault.message, fault.help), Some)
     }
 
     /// Tells that there is no file of this name, which ends in one of some ways.
     pub(in crate::scene) fn missing<T>(self, name: &str, endings: &[&str]) -> Option<T> {
-        let fault = missing(self.folder(), name, endings);
-        self.tell(fault.message, fault.help)
+        self.told(Err(missing(self.folder(), name, endings)))
     }
 
     /// Tells that its key is wrong.
@@ -200,6 +202,12 @@ impl<'d> Value<'d> {
         })
     }
 
+    /// Whether so much is wrong already that it is no longer said what may have been meant by a name: that takes a look
+    /// at all names that there are.
+    pub(in crate::scene) fn is_one_of_many(self) -> bool {
+        self.document.told() >= MANY
+    }
+
     /// Tells that it is no such word.
     pub(in crate::scene) fn unknown<T>(self, word: &str, known: &[&str]) -> Option<T> {
         self.advise(format!("`{}` cannot be \"{word}\"", self.key()), suggestion(self.key(), word, known))
@@ -288,10 +296,22 @@ pub(in crate::scene) fn at<'d, T>(
     move |place| read(place).map(|it| At { place, it })
 }
 
+/// All of a list that has as many as it should; `other` tells of one that has another number of them.
+pub(in crate::scene) fn exactly<T, const N: usize>(
+    all: Vec<T>,
+    other: impl FnOnce(usize) -> Option<[T; N]>,
+) -> Option<[T; N]> {
+    let count = all.len();
+    all.try_into().map_or_else(|_| other(count), Some)
+}
+
 /// The numbers above 0 to a greatest one.
 pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
     (Bound::Excluded(0.0), Bound::Included(most))
 }
+
+/// Mistakes in a scene that a person reads one by one.
+const MANY: usize = 100;
 
 /// Most words that are all told of a value that is none.
 const MOST_WORDS: usize = 10;
