@@ -8,8 +8,7 @@ use super::identity::Identity;
 use super::image::Image;
 use crate::error::{Error, Result};
 use crate::film::{
-    BlockReader, Fact, Film, Format, Kind, LayerImage, Pixel, Provenance, Shard, SpectralImage, TilePlace, View,
-    Window, write_blocks,
+    BlockReader, Fact, Film, Format, Kind, Pixel, Provenance, Shard, SpectralImage, TilePlace, View, write_blocks,
 };
 use crate::scene::FilmSettings;
 use crate::trace::{self, Values};
@@ -129,21 +128,11 @@ impl Tile {
     pub(super) fn fits(&self, place: TilePlace, film: &Film) -> bool {
         let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
         self.pixels.len() == place.pixels()
-            && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * numbers(layer)))
+            && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * layer.numbers()))
             && self.spectral.len() == place.pixels() * spectra
     }
 }
 
 pub(super) fn set_non_finite(provenance: &mut Provenance, count: u64) {
     provenance.facts.iter_mut().filter(|(key, _)| key == NON_FINITE).for_each(|(_, fact)| *fact = Fact::Count(count));
-}
-
-/// The window of pixels that a film is.
-pub(super) fn window(film: &Film) -> Window {
-    Window { left: film.corner[0], top: film.corner[1], width: film.width, height: film.height }
-}
-
-/// Numbers of a pixel in a layer.
-pub(super) fn numbers(layer: &LayerImage) -> usize {
-    layer.layer.channels().len()
 }
