@@ -64,6 +64,21 @@ pub struct Provenance {
     pub time: Option<SystemTime>,
 }
 
+impl Provenance {
+    /// The count of a key; none if it has none.
+    pub fn count(&self, key: &str) -> Option<u64> {
+        self.facts.iter().find_map(|(known, fact)| match fact {
+            Fact::Count(count) if known == key => Some(*count),
+            _ => None,
+        })
+    }
+
+    /// Sets the count of a key, if it has one.
+    pub fn set_count(&mut self, key: &str, count: u64) {
+        self.facts.iter_mut().filter(|(known, _)| known == key).for_each(|(_, fact)| *fact = Fact::Count(count));
+    }
+}
+
 /// One value of the provenance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fact {

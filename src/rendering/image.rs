@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::image_error::ImageError;
+use super::origin::SAMPLES;
 use super::warnings::{few_samples, warnings};
 use crate::error::Result;
 use crate::film::{
-    Fact, Film, Format, Heading, Pixel, Provenance, View, encode_exr, film_png, write_exr, write_png,
+    Film, Format, Heading, Pixel, Provenance, View, encode_exr, film_png, write_exr, write_png,
     write_spectral_exr,
 };
 use crate::trace::Report;
@@ -93,10 +94,7 @@ impl Image {
 
     /// What whoever sees it should know: light that is too rare, an error that is not reached, samples left out.
     pub fn warnings(&self) -> Vec<String> {
-        let samples = self.provenance.facts.iter().find_map(|(key, fact)| match fact {
-            Fact::Count(samples) if key == "samples" => Some(*samples),
-            _ => None,
-        });
+        let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
         few.into_iter().chain(warnings(&self.report, self.error.as_ref())).collect()
     }

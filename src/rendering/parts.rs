@@ -5,7 +5,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::image::Image;
-use super::part::{Head, Tile, open, set_non_finite};
+use super::origin::NON_FINITE;
+use super::part::{Head, Tile, open};
 use crate::error::{Error, Result};
 use crate::film::{
     BlockReader, DEPTH_OF_NOTHING, Film, Format, Heading, Pixel, Provenance, Rows, Shard, TILE, TilePlace, View,
@@ -100,7 +101,7 @@ impl Parts {
         }
         non_finite += whole.shared_non_finite();
         let Head { film, format, view, mut provenance, .. } = whole;
-        set_non_finite(&mut provenance, non_finite);
+        provenance.set_count(NON_FINITE, non_finite);
         Ok(Self { film, format, view, provenance, non_finite, files: found.into_values().collect() })
     }
 
