@@ -308,60 +308,57 @@ fn asks_for_farm(words: &[OsString]) -> bool {
 /// Reads the command line; prints clap's own errors by itself and exits.
 pub fn parse() -> Result<Request> {
     let words: Vec<OsString> = std::env::args_os().collect();
-    let rest = words.iter().skip(1);
-    match words.get(1).and_then(|first| first.to_str()) {
-        Some("catalog") => read(rest, Request::Catalog),
-        Some("info") => read(rest, Request::Info),
-        Some("view") => read(rest, Request::View),
-        Some("diff") => read(rest, Request::Diff),
-        Some("merge") => {
-            if asks_for_farm(&words) {
-                speak_to(Listener::Farm);
-            }
-            read(rest, Request::Merge)
-        }
-        Some("completions") => read(rest, |query| Request::Answer(manual::completions(&query, whole()))),
-        Some("man") => read(rest, |manual::Manual {}| Request::Answer(manual::page(whole()))),
-        _ => {
-            let parsed = Arguments::try_parse_from(&words);
-            speak_to(match &parsed {
-                Ok(arguments) if arguments.quiet => Listener::Busy,
-                Ok(arguments) if arguments.json => Listener::Program,
-                Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
-                Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
-                Err(_) if asks_for_farm(&words) => Listener::Farm,
-                _ => Listener::Person,
-            });
-            if let Err(said) = &parsed
-                && let Some((message, help)) = meant(said, &words)
-            {
-                return refuse(&message, Some(&help));
-            }
-            parsed.map_or_else(told, |arguments| {
-                let jobs = Jobs(Box::new(arguments));
-                jobs.check().map(|()| Request::Render(jobs))
-            })
-        }
+    let below = BELOW.iter().find(|(name, ..)| words.get(1).is_some_and(|first| first == name));
+    if let Some((_, _, request)) = below {
+        return request(&words[1..]);
     }
+    let parsed = Arguments::try_parse_from(&words);
+    speak_to(match &parsed {
+        Ok(arguments) if arguments.quiet => Listener::Busy,
+        Ok(arguments) if arguments.json => Listener::Program,
+        Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
+        Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
+        Err(_) if asks_for_farm(&words) => Listener::Farm,
+        _ => Listener::Person,
+    });
+    if let Err(said) = &parsed
+        && let Some((message, help)) = meant(said, &words, &BELOW.map(|(name, ..)| name))
+    {
+        return refuse(&message, Some(&help));
+    }
+    parsed.map_or_else(told, |arguments| {
+        let jobs = Jobs(Box::new(arguments));
+        jobs.check().map(|()| Request::Render(jobs))
+    })
 }
+
+/// A command below this one: its name, its arguments, and what is asked for by words of which the first is the name.
+type Below = (&'static str, fn() -> Command, fn(&[OsString]) -> Result<Request>);
+
+const BELOW: [Below; 7] = [
+    ("catalog", catalog::Query::command, |words| read(words, Request::Catalog)),
+    ("info", info::Query::command, |words| read(words, Request::Info)),
+    ("view", view::Query::command, |words| read(words, Request::View)),
+    ("diff", diff::Query::command, |words| read(words, Request::Diff)),
+    ("merge", merge::Query::command, |words| {
+        if asks_for_farm(words) {
+            speak_to(Listener::Farm);
+        }
+        read(words, Request::Merge)
+    }),
+    ("completions", manual::Completions::command, |words| {
+        read(words, |query| Request::Answer(manual::completions(&query, whole())))
+    }),
+    ("man", manual::Manual::command, |words| read(words, |manual::Manual {}| Request::Answer(manual::page(whole())))),
+];
 
 /// The command with all commands below it.
 fn whole() -> Command {
-    let below = [
-        ("catalog", catalog::Query::command()),
-        ("info", info::Query::command()),
-        ("view", view::Query::command()),
-        ("diff", diff::Query::command()),
-        ("merge", merge::Query::command()),
-        ("completions", manual::Completions::command()),
-        ("man", manual::Manual::command()),
-    ];
-    let below = below.map(|(name, command)| command.name(name).bin_name(format!("render {name}")));
+    let below = BELOW.map(|(name, arguments, _)| arguments().name(name).bin_name(format!("render {name}")));
     Arguments::command().subcommands(below).disable_help_subcommand(true)
 }
 
-/// The arguments of a command, the first of which is its name.
-fn read<'w, A: Parser>(words: impl Iterator<Item = &'w OsString>, request: fn(A) -> Request) -> Result<Request> {
+fn read<A: Parser>(words: &[OsString], request: fn(A) -> Request) -> Result<Request> {
     A::try_parse_from(words).map_or_else(told, |arguments| Ok(request(arguments)))
 }
 
@@ -402,16 +399,17 @@ fn within(said: &str) -> Option<String> {
 }
 
 fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
-    let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
+    let idle = [("--plan", arguments.plan), ("--check", arguments.check)];
+    let idle = idle.into_iter().find_map(|(flag, asked)| asked.then_some(flag));
     let with_exr = idle.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
-    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
+    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle)?;
     check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
         let help = "add --png look.png, or leave --exposure out";
         return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
     }
     check_png(arguments.png.as_deref())?;
-    arguments.keep.check(idle.map(|(flag, _)| flag), with_exr, arguments.png.is_some(), arguments.stamp)?;
+    arguments.keep.check(idle, with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
         return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
