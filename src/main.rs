@@ -15,7 +15,7 @@ use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
 
 use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
-use command::keep::{self, Keep};
+use command::keep::Keep;
 use command::outputs::{check_outputs, check_standard, check_words, is_standard, spare};
 use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
@@ -51,9 +51,9 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
     }
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {
-        if keep::begin_image() {
+        if signals::begin_image() {
             messages::say("stopped between two frames");
-            return Ok(ExitCode::from(keep::STOPPED_CODE));
+            return Ok(ExitCode::from(signals::STOPPED_CODE));
         }
         let job = job?;
         let source = match &mut read {
@@ -151,7 +151,7 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     if !is_finished {
         drop(progress);
         keep.say_how_to_resume();
-        return Ok(ExitCode::from(keep::STOPPED_CODE));
+        return Ok(ExitCode::from(signals::STOPPED_CODE));
     }
     let expected = rendering.expected();
     let took = progress.finish(expected);
@@ -188,7 +188,7 @@ impl<'f> Written<'f> {
         match write(file) {
             Ok(()) if is_standard(file) => {}
             Ok(()) => {
-                keep::note_written();
+                signals::note_written();
                 self.files.push(file);
             }
             Err(error) => self.failed.push(error),

@@ -8,9 +8,9 @@ use abbe::film::{ExrFile, TELL_VARIANCE, check_writable};
 use abbe::look::{Difference, Noise, WorstPixel, compare, number};
 use clap::Parser;
 
-use super::keep::catch_plainly;
 use super::messages::{aligned, answer_lines, print_error, say};
 use super::outputs::{check_png, refuse, spare};
+use super::signals::catch_plainly;
 
 const HELP: &str = "\
 Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \

@@ -6,10 +6,10 @@ use abbe::film::check_writable;
 use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
-use super::keep::catch_plainly;
 use super::messages::{Listener, Protocol, say, speak_to, warn, warn_of_clamped};
 use super::outputs::{ends_in, refuse, spare};
 use super::problem::problem;
+use super::signals::catch_plainly;
 
 const EXAMPLES: &str = "\
 Examples:

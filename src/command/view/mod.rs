@@ -10,9 +10,9 @@ use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
-use super::keep::catch_plainly;
 use super::messages::{answer, say};
 use super::outputs::{check_exposure, check_png, refuse, spare};
+use super::signals::catch_plainly;
 
 const HELP: &str = "\
 kitty, WezTerm and Ghostty show the pixels themselves, every other terminal two of them in a character. \
