@@ -46,8 +46,7 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
     jobs.keep().catch_signals()?;
     if let Some(threads) = jobs.threads() {
         // Plans without a render, and files, are made by those threads that belong to no render.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {

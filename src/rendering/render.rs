@@ -83,9 +83,7 @@ impl Rendering {
         } else {
             options.apply(scene.to_mut())?;
         }
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
-        let threads = threads
-            .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
         let plan = match &options.plan {
             Some(path) => read_plan(path, &scene)?,
             None => threads.install(|| plan(&scene)),
