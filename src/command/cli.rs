@@ -154,7 +154,7 @@ struct Arguments {
 
     /// Processor threads; all if absent. The image is the same for any number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
+          value_parser = clap::value_parser!(u16).range(1..=i64::from(Options::MOST_THREADS)))]
     threads: Option<u16>,
 
     /// Write all that is known of the render as JSON: its plan, what it took, how far the image is off and why it
@@ -170,9 +170,6 @@ struct Arguments {
     #[arg(long, conflicts_with_all = ["plan", "check"])]
     stamp: bool,
 }
-
-/// More threads than any one machine has processors for; many more would exhaust it.
-const MAX_THREADS: i64 = 1024;
 
 fn seed(text: &str) -> std::result::Result<u64, String> {
     text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
