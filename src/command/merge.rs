@@ -6,7 +6,7 @@ use abbe::film::check_writable;
 use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
-use super::messages::{Listener, Protocol, say, speak_to, warn, warn_of_clamped};
+use super::messages::{Listener, Protocol, print_written, speak_to, warn, warn_of_clamped};
 use super::outputs::{ends_in, refuse, spare};
 use super::problem::problem;
 use super::signals::catch_plainly;
@@ -61,10 +61,10 @@ pub fn run(query: &Query) -> Result<()> {
     let image = Parts::open(parts)?;
     check_writable(path)?;
     warn_of_clamped(image.format(), image.write_exr(path)?);
-    say(&format!("wrote {}", path.display()));
+    print_written(path);
     let path = path.with_extension("spectral.exr");
     if image.write_spectral_exr(&path)? {
-        say(&format!("wrote {}", path.display()));
+        print_written(&path);
     }
     if *delete {
         // The image is written all the same.

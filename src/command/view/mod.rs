@@ -10,7 +10,7 @@ use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
-use super::messages::{answer, say};
+use super::messages::{answer, print_written, say};
 use super::outputs::{check_exposure, check_png, refuse, spare};
 use super::signals::catch_plainly;
 
@@ -78,7 +78,7 @@ pub fn run(query: &Query) -> Result<()> {
             check_writable(png)?;
             catch_plainly()?;
             picture.write_png(png)?;
-            say(&format!("wrote {}", png.display()));
+            print_written(png);
             Ok(())
         }
         None => answer(&terminal::drawn(&picture, query.sixel)?),
