@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
 use abbe::scene::share;
-use abbe::{Options, Result};
+use abbe::{Error, Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use super::frames::{Frames, check_numbered, numbered};
 use super::meant::meant;
 use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
-use super::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
+use super::outputs::{check_exposure, check_png, ends_in, is_standard};
 use super::{catalog, diff, info, keep, manual, merge, view};
 
 const HELP: &str = "\
@@ -247,10 +247,10 @@ impl Jobs {
             return Ok(());
         }
         if progress.is_some() {
-            return refuse("--progress is of one frame", Some("give the farm a task for each: --frame 1"));
+            return Error::refuse("--progress is of one frame", "give the farm a task for each: --frame 1");
         }
         if !plan && plan_file.is_some() {
-            return refuse("--plan-file is of one frame, and each has a plan of its own", Some("leave it out"));
+            return Error::refuse("--plan-file is of one frame, and each has a plan of its own", "leave it out");
         }
         // Without a scene of its own, --exr has the scene.
         let exr = exr.iter().flatten().filter(|_| scene.is_some());
@@ -321,7 +321,7 @@ pub fn parse() -> Result<Request> {
     if let Err(said) = &parsed
         && let Some((message, help)) = meant(said, &words, &BELOW.map(|(name, ..)| name))
     {
-        return refuse(&message, Some(&help));
+        return Error::refuse(message, help);
     }
     parsed.map_or_else(told, |arguments| {
         let jobs = Jobs(Box::new(arguments));
@@ -366,19 +366,20 @@ fn told(said: clap::Error) -> Result<Request> {
         let flag = said.get(ContextKind::InvalidArg).map(ToString::to_string).unwrap_or_default();
         let flag = flag.split(' ').next().unwrap_or_default();
         let given = said.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
-        return match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
-            (true, _) => refuse(&format!("{flag} takes a whole number, not {given}"), None),
-            (_, true) => refuse(&format!("{flag} takes a number, not {given}"), None),
+        let message = match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
+            (true, _) => format!("{flag} takes a whole number, not {given}"),
+            (_, true) => format!("{flag} takes a number, not {given}"),
             _ => match within(&why.to_string()) {
-                Some(range) => refuse(&format!("{flag} takes a whole number {range}, not {given}"), None),
-                None => refuse(&format!("{flag}: {why}"), None),
+                Some(range) => format!("{flag} takes a whole number {range}, not {given}"),
+                None => format!("{flag}: {why}"),
             },
         };
+        return Err(Error::Arguments { message, help: None });
     }
     if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
         let text = said.render().to_string();
         let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
-        return refuse(message.strip_prefix("error: ").unwrap_or(message), Some("render --help tells all arguments"));
+        return Error::refuse(message.strip_prefix("error: ").unwrap_or(message), "render --help tells all arguments");
     }
     if said.use_stderr() {
         said.exit();
@@ -403,13 +404,13 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
         let help = "add --png look.png, or leave --exposure out";
-        return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
+        return Error::refuse("--exposure brightens the picture of --png alone, and none is asked for", help);
     }
     check_png(arguments.png.as_deref())?;
     arguments.keep.check(idle, with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
-        return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
+        return Error::refuse("--spectral writes spectra beside an EXR, and --png alone writes none", help);
     }
     let mut plan_file = arguments.plan_file.map(|path| numbered(&path, frame)).transpose()?;
     let output = if arguments.plan {
@@ -426,7 +427,7 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         && is_standard(exr)
     {
         let message = format!("{flag} and --exr - would both write to standard output");
-        return refuse(&message, Some("name the image, as in --exr out/frame.exr"));
+        return Error::refuse(message, "name the image, as in --exr out/frame.exr");
     }
     let Arguments { samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } =
         arguments;
@@ -464,17 +465,17 @@ fn scene_and_image(
         (Some(scene), Some(image)) if is_exr(&image) || is_standard(&image) => match idle {
             Some(flag) => {
                 let message = format!("{flag} renders nothing, so {} would not be written", image.display());
-                refuse(&message, Some("leave one of them out"))
+                Error::refuse(message, "leave one of them out")
             }
             None => Ok((scene, Some(image))),
         },
         (Some(_), Some(image)) => {
             let message = format!("--exr writes a file that ends in .exr, not {}", image.display());
-            refuse(&message, Some("name the scene once, and the image as in --exr out/frame.exr"))
+            Error::refuse(message, "name the scene once, and the image as in --exr out/frame.exr")
         }
         (Some(scene), None) => Ok((scene, None)),
         (None, Some(scene)) if !is_exr(&scene) => Ok((scene, None)),
-        (None, _) => refuse("no scene is given", Some("name a scene, a TOML file: render --exr scene.toml")),
+        (None, _) => Error::refuse("no scene is given", "name a scene, a TOML file: render --exr scene.toml"),
     }
 }
 
@@ -482,7 +483,7 @@ fn scene_and_image(
 fn beside(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
     if is_standard(scene) {
         let message = "a scene from standard input has no name for its image";
-        return refuse(message, Some("name the image, as in render - --exr out/frame.exr"));
+        return Error::refuse(message, "name the image, as in render - --exr out/frame.exr");
     }
     let mut name = scene.file_stem().unwrap_or(OsStr::new("image")).to_owned();
     if let Some(frame) = frame {

@@ -7,11 +7,10 @@ use std::time::Duration;
 
 use abbe::film::Shard;
 use abbe::scene::duration;
-use abbe::{Advance, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
+use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
 
 use super::messages::{say, so_far, warn};
-use super::outputs::refuse;
 use super::problem::problem;
 use super::progress::Progress;
 use super::signals::{self, is_stopped};
@@ -69,17 +68,17 @@ impl Flags {
         let is_planned = idle == Some("--plan");
         let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
         if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
-            return refuse(&format!("{flag} is of a render, and nothing is rendered"), Some("leave it out"));
+            return Error::refuse(format!("{flag} is of a render, and nothing is rendered"), "leave it out");
         }
         if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
-            return refuse("--shard makes a part of an EXR, and no picture", Some(help));
+            return Error::refuse("--shard makes a part of an EXR, and no picture", help);
         }
         if self.shard.is_some() && stamp {
-            return refuse("parts of an image say no time, so --stamp has no place in them", Some("leave it out"));
+            return Error::refuse("parts of an image say no time, so --stamp has no place in them", "leave it out");
         }
         if self.snapshot.is_some() && (!exr || self.shard.is_some()) {
-            return refuse("--snapshot keeps an EXR fresh, and none is rendered", Some("leave it out"));
+            return Error::refuse("--snapshot keeps an EXR fresh, and none is rendered", "leave it out");
         }
         Ok(())
     }
@@ -92,7 +91,7 @@ impl Flags {
         let keeps = self.checkpoint.or(self.snapshot).is_some() || self.resume || self.shard.is_some();
         if keeps {
             let message = "--checkpoint, --resume, --snapshot and --shard write files beside the image, and standard output has none";
-            return refuse(message, Some("name the image, as in --exr out/frame.exr"));
+            return Error::refuse(message, "name the image, as in --exr out/frame.exr");
         }
         Ok(())
     }
@@ -143,10 +142,10 @@ impl Keep {
             let name = there.display();
             if !is_checkpoint(there)? {
                 let help = "name another image, or move that file away";
-                return refuse(&format!("{name} would be overwritten, and is no checkpoint"), Some(help));
+                return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), help);
             }
             let help = "add --resume to go on from it, or delete it to begin anew";
-            return refuse(&format!("{name} is there from an earlier run"), Some(help));
+            return Error::refuse(format!("{name} is there from an earlier run"), help);
         }
         Ok(Self {
             checkpoint,
@@ -192,9 +191,9 @@ impl Keep {
                     say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to be done"));
                     Ok(false)
                 }
-                Some(missing) => refuse(
-                    &format!("{name} has {samples} samples per pixel, and has not written {}", missing.display()),
-                    Some(&format!("add --samples {samples} to write it")),
+                Some(missing) => Error::refuse(
+                    format!("{name} has {samples} samples per pixel, and has not written {}", missing.display()),
+                    format!("add --samples {samples} to write it"),
                 ),
             },
         }

@@ -7,7 +7,7 @@ use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
 use super::messages::{Listener, Protocol, print_written, speak_to, warn, warn_of_clamped};
-use super::outputs::{ends_in, refuse, spare};
+use super::outputs::{ends_in, spare};
 use super::problem::problem;
 use super::signals::catch_plainly;
 
@@ -54,7 +54,7 @@ pub fn run(query: &Query) -> Result<()> {
     });
     if !ends_in(path, "exr") {
         let message = format!("merge writes a file that ends in .exr, not {}", path.display());
-        return refuse(&message, Some("for instance: render merge out.exr *.part"));
+        return Error::refuse(message, "for instance: render merge out.exr *.part");
     }
     parts.iter().try_for_each(|part| spare(part, "part", path))?;
     catch_plainly()?;
