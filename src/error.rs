@@ -66,6 +66,12 @@ impl Error {
     }
 }
 
+impl From<rayon::ThreadPoolBuildError> for Error {
+    fn from(error: rayon::ThreadPoolBuildError) -> Self {
+        Self::Arguments { message: format!("cannot start threads: {error}"), help: None }
+    }
+}
+
 /// A mistake in a scene file, with the place where it stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {

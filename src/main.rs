@@ -15,7 +15,7 @@ use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
 
 use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
-use command::keep::{self, Keep};
+use command::keep::Keep;
 use command::outputs::{check_outputs, check_standard, check_words, is_standard, spare};
 use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
@@ -46,14 +46,13 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
     jobs.keep().catch_signals()?;
     if let Some(threads) = jobs.threads() {
         // Plans without a render, and files, are made by those threads that belong to no render.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
     for (number, job) in (1..=count).zip(jobs.each()) {
-        if keep::begin_image() {
+        if signals::begin_image() {
             messages::say("stopped between two frames");
-            return Ok(ExitCode::from(keep::STOPPED_CODE));
+            return Ok(ExitCode::from(signals::STOPPED_CODE));
         }
         let job = job?;
         let source = match &mut read {
@@ -151,7 +150,7 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     if !is_finished {
         drop(progress);
         keep.say_how_to_resume();
-        return Ok(ExitCode::from(keep::STOPPED_CODE));
+        return Ok(ExitCode::from(signals::STOPPED_CODE));
     }
     let expected = rendering.expected();
     let took = progress.finish(expected);
@@ -188,7 +187,7 @@ impl<'f> Written<'f> {
         match write(file) {
             Ok(()) if is_standard(file) => {}
             Ok(()) => {
-                keep::note_written();
+                signals::note_written();
                 self.files.push(file);
             }
             Err(error) => self.failed.push(error),

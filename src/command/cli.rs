@@ -8,14 +8,14 @@ use std::time::Duration;
 
 use abbe::film::{Layer, Overscan, Window};
 use abbe::scene::share;
-use abbe::{Options, Result};
+use abbe::{Error, Options, Result};
 use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use super::frames::{Frames, check_numbered, numbered};
 use super::meant::meant;
 use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
-use super::outputs::{check_exposure, check_png, ends_in, is_standard, refuse};
+use super::outputs::{check_exposure, check_png, ends_in, is_standard};
 use super::{catalog, diff, info, keep, manual, merge, view};
 
 const HELP: &str = "\
@@ -154,7 +154,7 @@ struct Arguments {
 
     /// Processor threads; all if absent. The image is the same for any number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS))]
+          value_parser = clap::value_parser!(u16).range(1..=i64::from(Options::MOST_THREADS)))]
     threads: Option<u16>,
 
     /// Write all that is known of the render as JSON: its plan, what it took, how far the image is off and why it
@@ -170,9 +170,6 @@ struct Arguments {
     #[arg(long, conflicts_with_all = ["plan", "check"])]
     stamp: bool,
 }
-
-/// More threads than any one machine has processors for; many more would exhaust it.
-const MAX_THREADS: i64 = 1024;
 
 fn seed(text: &str) -> std::result::Result<u64, String> {
     text.parse().map_err(|_| format!("a seed is a whole number from 0 to {}", u64::MAX))
@@ -250,10 +247,10 @@ impl Jobs {
             return Ok(());
         }
         if progress.is_some() {
-            return refuse("--progress is of one frame", Some("give the farm a task for each: --frame 1"));
+            return Error::refuse("--progress is of one frame", "give the farm a task for each: --frame 1");
         }
         if !plan && plan_file.is_some() {
-            return refuse("--plan-file is of one frame, and each has a plan of its own", Some("leave it out"));
+            return Error::refuse("--plan-file is of one frame, and each has a plan of its own", "leave it out");
         }
         // Without a scene of its own, --exr has the scene.
         let exr = exr.iter().flatten().filter(|_| scene.is_some());
@@ -308,60 +305,57 @@ fn asks_for_farm(words: &[OsString]) -> bool {
 /// Reads the command line; prints clap's own errors by itself and exits.
 pub fn parse() -> Result<Request> {
     let words: Vec<OsString> = std::env::args_os().collect();
-    let rest = words.iter().skip(1);
-    match words.get(1).and_then(|first| first.to_str()) {
-        Some("catalog") => read(rest, Request::Catalog),
-        Some("info") => read(rest, Request::Info),
-        Some("view") => read(rest, Request::View),
-        Some("diff") => read(rest, Request::Diff),
-        Some("merge") => {
-            if asks_for_farm(&words) {
-                speak_to(Listener::Farm);
-            }
-            read(rest, Request::Merge)
-        }
-        Some("completions") => read(rest, |query| Request::Answer(manual::completions(&query, whole()))),
-        Some("man") => read(rest, |manual::Manual {}| Request::Answer(manual::page(whole()))),
-        _ => {
-            let parsed = Arguments::try_parse_from(&words);
-            speak_to(match &parsed {
-                Ok(arguments) if arguments.quiet => Listener::Busy,
-                Ok(arguments) if arguments.json => Listener::Program,
-                Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
-                Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
-                Err(_) if asks_for_farm(&words) => Listener::Farm,
-                _ => Listener::Person,
-            });
-            if let Err(said) = &parsed
-                && let Some((message, help)) = meant(said, &words)
-            {
-                return refuse(&message, Some(&help));
-            }
-            parsed.map_or_else(told, |arguments| {
-                let jobs = Jobs(Box::new(arguments));
-                jobs.check().map(|()| Request::Render(jobs))
-            })
-        }
+    let below = BELOW.iter().find(|(name, ..)| words.get(1).is_some_and(|first| first == name));
+    if let Some((_, _, request)) = below {
+        return request(&words[1..]);
     }
+    let parsed = Arguments::try_parse_from(&words);
+    speak_to(match &parsed {
+        Ok(arguments) if arguments.quiet => Listener::Busy,
+        Ok(arguments) if arguments.json => Listener::Program,
+        Ok(Arguments { progress: Some(Protocol::Openjd), .. }) => Listener::Farm,
+        Err(_) if words.iter().any(|word| word == "--json") => Listener::Program,
+        Err(_) if asks_for_farm(&words) => Listener::Farm,
+        _ => Listener::Person,
+    });
+    if let Err(said) = &parsed
+        && let Some((message, help)) = meant(said, &words, &BELOW.map(|(name, ..)| name))
+    {
+        return Error::refuse(message, help);
+    }
+    parsed.map_or_else(told, |arguments| {
+        let jobs = Jobs(Box::new(arguments));
+        jobs.check().map(|()| Request::Render(jobs))
+    })
 }
+
+/// A command below this one: its name, its arguments, and what is asked for by words of which the first is the name.
+type Below = (&'static str, fn() -> Command, fn(&[OsString]) -> Result<Request>);
+
+const BELOW: [Below; 7] = [
+    ("catalog", catalog::Query::command, |words| read(words, Request::Catalog)),
+    ("info", info::Query::command, |words| read(words, Request::Info)),
+    ("view", view::Query::command, |words| read(words, Request::View)),
+    ("diff", diff::Query::command, |words| read(words, Request::Diff)),
+    ("merge", merge::Query::command, |words| {
+        if asks_for_farm(words) {
+            speak_to(Listener::Farm);
+        }
+        read(words, Request::Merge)
+    }),
+    ("completions", manual::Completions::command, |words| {
+        read(words, |query| Request::Answer(manual::completions(&query, whole())))
+    }),
+    ("man", manual::Manual::command, |words| read(words, |manual::Manual {}| Request::Answer(manual::page(whole())))),
+];
 
 /// The command with all commands below it.
 fn whole() -> Command {
-    let below = [
-        ("catalog", catalog::Query::command()),
-        ("info", info::Query::command()),
-        ("view", view::Query::command()),
-        ("diff", diff::Query::command()),
-        ("merge", merge::Query::command()),
-        ("completions", manual::Completions::command()),
-        ("man", manual::Manual::command()),
-    ];
-    let below = below.map(|(name, command)| command.name(name).bin_name(format!("render {name}")));
+    let below = BELOW.map(|(name, arguments, _)| arguments().name(name).bin_name(format!("render {name}")));
     Arguments::command().subcommands(below).disable_help_subcommand(true)
 }
 
-/// The arguments of a command, the first of which is its name.
-fn read<'w, A: Parser>(words: impl Iterator<Item = &'w OsString>, request: fn(A) -> Request) -> Result<Request> {
+fn read<A: Parser>(words: &[OsString], request: fn(A) -> Request) -> Result<Request> {
     A::try_parse_from(words).map_or_else(told, |arguments| Ok(request(arguments)))
 }
 
@@ -372,19 +366,20 @@ fn told(said: clap::Error) -> Result<Request> {
         let flag = said.get(ContextKind::InvalidArg).map(ToString::to_string).unwrap_or_default();
         let flag = flag.split(' ').next().unwrap_or_default();
         let given = said.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
-        return match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
-            (true, _) => refuse(&format!("{flag} takes a whole number, not {given}"), None),
-            (_, true) => refuse(&format!("{flag} takes a number, not {given}"), None),
+        let message = match (why.is::<ParseIntError>(), why.is::<ParseFloatError>()) {
+            (true, _) => format!("{flag} takes a whole number, not {given}"),
+            (_, true) => format!("{flag} takes a number, not {given}"),
             _ => match within(&why.to_string()) {
-                Some(range) => refuse(&format!("{flag} takes a whole number {range}, not {given}"), None),
-                None => refuse(&format!("{flag}: {why}"), None),
+                Some(range) => format!("{flag} takes a whole number {range}, not {given}"),
+                None => format!("{flag}: {why}"),
             },
         };
+        return Err(Error::Arguments { message, help: None });
     }
     if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
         let text = said.render().to_string();
         let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
-        return refuse(message.strip_prefix("error: ").unwrap_or(message), Some("render --help tells all arguments"));
+        return Error::refuse(message.strip_prefix("error: ").unwrap_or(message), "render --help tells all arguments");
     }
     if said.use_stderr() {
         said.exit();
@@ -402,19 +397,20 @@ fn within(said: &str) -> Option<String> {
 }
 
 fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
-    let idle = [("--plan", arguments.plan), ("--check", arguments.check)].into_iter().find(|(_, asked)| *asked);
+    let idle = [("--plan", arguments.plan), ("--check", arguments.check)];
+    let idle = idle.into_iter().find_map(|(flag, asked)| asked.then_some(flag));
     let with_exr = idle.is_none() && (arguments.exr.is_some() || arguments.png.is_none());
-    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle.map(|(flag, _)| flag))?;
+    let (scene, exr) = scene_and_image(arguments.scene, arguments.exr, idle)?;
     check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
         let help = "add --png look.png, or leave --exposure out";
-        return refuse("--exposure brightens the picture of --png alone, and none is asked for", Some(help));
+        return Error::refuse("--exposure brightens the picture of --png alone, and none is asked for", help);
     }
     check_png(arguments.png.as_deref())?;
-    arguments.keep.check(idle.map(|(flag, _)| flag), with_exr, arguments.png.is_some(), arguments.stamp)?;
+    arguments.keep.check(idle, with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
-        return refuse("--spectral writes spectra beside an EXR, and --png alone writes none", Some(help));
+        return Error::refuse("--spectral writes spectra beside an EXR, and --png alone writes none", help);
     }
     let mut plan_file = arguments.plan_file.map(|path| numbered(&path, frame)).transpose()?;
     let output = if arguments.plan {
@@ -431,7 +427,7 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
         && is_standard(exr)
     {
         let message = format!("{flag} and --exr - would both write to standard output");
-        return refuse(&message, Some("name the image, as in --exr out/frame.exr"));
+        return Error::refuse(message, "name the image, as in --exr out/frame.exr");
     }
     let Arguments { samples, error, time, seed, overscan, crop, layers, spectral, threads, stamp, keep, .. } =
         arguments;
@@ -469,17 +465,17 @@ fn scene_and_image(
         (Some(scene), Some(image)) if is_exr(&image) || is_standard(&image) => match idle {
             Some(flag) => {
                 let message = format!("{flag} renders nothing, so {} would not be written", image.display());
-                refuse(&message, Some("leave one of them out"))
+                Error::refuse(message, "leave one of them out")
             }
             None => Ok((scene, Some(image))),
         },
         (Some(_), Some(image)) => {
             let message = format!("--exr writes a file that ends in .exr, not {}", image.display());
-            refuse(&message, Some("name the scene once, and the image as in --exr out/frame.exr"))
+            Error::refuse(message, "name the scene once, and the image as in --exr out/frame.exr")
         }
         (Some(scene), None) => Ok((scene, None)),
         (None, Some(scene)) if !is_exr(&scene) => Ok((scene, None)),
-        (None, _) => refuse("no scene is given", Some("name a scene, a TOML file: render --exr scene.toml")),
+        (None, _) => Error::refuse("no scene is given", "name a scene, a TOML file: render --exr scene.toml"),
     }
 }
 
@@ -487,7 +483,7 @@ fn scene_and_image(
 fn beside(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
     if is_standard(scene) {
         let message = "a scene from standard input has no name for its image";
-        return refuse(message, Some("name the image, as in render - --exr out/frame.exr"));
+        return Error::refuse(message, "name the image, as in render - --exr out/frame.exr");
     }
     let mut name = scene.file_stem().unwrap_or(OsStr::new("image")).to_owned();
     if let Some(frame) = frame {

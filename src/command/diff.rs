@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use abbe::Result;
 use abbe::film::{ExrFile, TELL_VARIANCE, check_writable};
 use abbe::look::{Difference, Noise, WorstPixel, compare, number};
+use abbe::{Error, Result};
 use clap::Parser;
 
-use super::keep::catch_plainly;
 use super::messages::{aligned, answer_lines, print_error, say};
-use super::outputs::{check_png, refuse, spare};
+use super::outputs::{check_png, spare};
+use super::signals::catch_plainly;
 
 const HELP: &str = "\
 Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \
@@ -68,7 +68,7 @@ pub fn run(query: &Query) -> ExitCode {
 fn compared(query: &Query) -> Result<bool> {
     check_png(query.png.as_deref())?;
     if query.tolerance.is_some_and(|most| !(most >= 0.0 && most.is_finite())) {
-        return refuse("a tolerance is a finite number, 0 or more", Some("for instance: --tolerance 1e-4"));
+        return Error::refuse("a tolerance is a finite number, 0 or more", "for instance: --tolerance 1e-4");
     }
     for input in [&query.a, &query.b] {
         query.png.as_deref().map_or(Ok(()), |png| spare(input, "image", png))?;

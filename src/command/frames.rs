@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use abbe::Result;
-
-use super::outputs::refuse;
+use abbe::{Error, Result};
 
 /// Frames that are rendered one after another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +61,7 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
         } else if let Some((digits, after)) = digits(after) {
             let Some(frame) = frame else {
                 let message = format!("{text} is named after a frame, and no frame is given");
-                return refuse(&message, Some("give its number: --frame 1"));
+                return Error::refuse(message, "give its number: --frame 1");
             };
             name.push_str(&format!("{frame:0digits$}"));
             is_numbered = true;
@@ -75,7 +73,7 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     }
     name.push_str(rest);
     match foreign(text).filter(|_| frame.is_some() && !is_numbered) {
-        Some(mark) => refuse(&one_name(text), Some(&format!("write %04d in place of {mark}"))),
+        Some(mark) => Error::refuse(one_name(text), format!("write %04d in place of {mark}")),
         None => Ok(name.into()),
     }
 }
@@ -93,7 +91,7 @@ pub fn check_numbered(path: &Path) -> Result<()> {
         (Some(stem), Some(end)) => path.with_file_name(format!("{stem}.%04d.{end}")),
         _ => "turn.%04d.exr".into(),
     };
-    refuse(&one_name(&path.display().to_string()), Some(&format!("put its number into it: {}", example.display())))
+    Error::refuse(one_name(&path.display().to_string()), format!("put its number into it: {}", example.display()))
 }
 
 fn one_name(path: &str) -> String {

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use abbe::film::{CameraMatrix, Channel, ExrFile, Part, PixelBounds, Statistics};
+use abbe::Result;
+use abbe::film::{CameraMatrix, Channel, ExrFile, ExrLayer, Part, PixelBounds, Statistics};
 use abbe::look::number;
 use abbe::spectrum::Primaries;
-use abbe::{Result, film::ExrLayer};
 use clap::Parser;
 
 use super::messages::aligned;

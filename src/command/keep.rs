@@ -1,21 +1,19 @@
-//! Renders that lose nothing: checkpoints, snapshots, and what happens on Ctrl-C.
+//! Renders that lose nothing: checkpoints and snapshots.
 
 use std::cell::Cell;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use abbe::film::{Shard, remove_unfinished};
+use abbe::film::Shard;
 use abbe::scene::duration;
 use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
 use clap::Args;
 
-use super::messages::{say, say_last, so_far, warn};
-use super::outputs::refuse;
+use super::messages::{say, so_far, warn};
 use super::problem::problem;
-use super::progress::{self, Progress};
-use super::signals::kept_ignored;
+use super::progress::Progress;
+use super::signals::{self, is_stopped};
 
 /// What the command line says of it.
 #[derive(Args, Clone)]
@@ -70,17 +68,17 @@ impl Flags {
         let is_planned = idle == Some("--plan");
         let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
         if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
-            return refuse(&format!("{flag} is of a render, and nothing is rendered"), Some("leave it out"));
+            return Error::refuse(format!("{flag} is of a render, and nothing is rendered"), "leave it out");
         }
         if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
-            return refuse("--shard makes a part of an EXR, and no picture", Some(help));
+            return Error::refuse("--shard makes a part of an EXR, and no picture", help);
         }
         if self.shard.is_some() && stamp {
-            return refuse("parts of an image say no time, so --stamp has no place in them", Some("leave it out"));
+            return Error::refuse("parts of an image say no time, so --stamp has no place in them", "leave it out");
         }
         if self.snapshot.is_some() && (!exr || self.shard.is_some()) {
-            return refuse("--snapshot keeps an EXR fresh, and none is rendered", Some("leave it out"));
+            return Error::refuse("--snapshot keeps an EXR fresh, and none is rendered", "leave it out");
         }
         Ok(())
     }
@@ -93,7 +91,7 @@ impl Flags {
         let keeps = self.checkpoint.or(self.snapshot).is_some() || self.resume || self.shard.is_some();
         if keeps {
             let message = "--checkpoint, --resume, --snapshot and --shard write files beside the image, and standard output has none";
-            return refuse(message, Some("name the image, as in --exr out/frame.exr"));
+            return Error::refuse(message, "name the image, as in --exr out/frame.exr");
         }
         Ok(())
     }
@@ -103,8 +101,7 @@ impl Flags {
     /// # Errors
     /// If it cannot be caught.
     pub fn catch_signals(&self) -> Result<()> {
-        let caught = catch(self.checkpoint.or(self.snapshot).is_none() && !self.resume);
-        caught.map_err(cannot_catch)
+        signals::catch(self.checkpoint.or(self.snapshot).is_none() && !self.resume)
     }
 
     /// Where the checkpoint of a render to a file is, if one is kept.
@@ -123,7 +120,7 @@ impl Flags {
 /// What is kept of a render, and when.
 pub struct Keep {
     /// Where the checkpoint is, if one is kept.
-    pub checkpoint: Option<PathBuf>,
+    checkpoint: Option<PathBuf>,
     checkpoints: Timer,
     /// The image that is kept fresh, if one is.
     snapshot: Option<PathBuf>,
@@ -133,33 +130,6 @@ pub struct Keep {
     resume: bool,
     /// What the files of a finished render depend on beside its samples.
     way: String,
-}
-
-/// Whether the command was told to stop.
-static STOPPED: AtomicBool = AtomicBool::new(false);
-/// Whether anything is done that could be lost.
-static HAS_BEGUN: AtomicBool = AtomicBool::new(false);
-/// Whether any file of the image is written.
-static HAS_WRITTEN: AtomicBool = AtomicBool::new(false);
-/// What it says then, if nothing of the render is kept.
-const NOTHING_KEPT: &str = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
-/// The same before there was anything.
-const NOTHING_DONE: &str = "stopped before anything of this image was rendered";
-/// The same when some of its files are there.
-const NOT_ALL_WRITTEN: &str = "stopped before all files of this image were written";
-/// The exit code of a command that was.
-pub const STOPPED_CODE: u8 = 130;
-
-/// Notes that a file of the image is written.
-pub fn note_written() {
-    HAS_WRITTEN.store(true, Ordering::Relaxed);
-}
-
-/// Begins another image; answers whether the command was told to stop during the last one.
-pub fn begin_image() -> bool {
-    HAS_BEGUN.store(false, Ordering::Relaxed);
-    HAS_WRITTEN.store(false, Ordering::Relaxed);
-    STOPPED.load(Ordering::Relaxed)
 }
 
 impl Keep {
@@ -172,10 +142,10 @@ impl Keep {
             let name = there.display();
             if !is_checkpoint(there)? {
                 let help = "name another image, or move that file away";
-                return refuse(&format!("{name} would be overwritten, and is no checkpoint"), Some(help));
+                return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), help);
             }
             let help = "add --resume to go on from it, or delete it to begin anew";
-            return refuse(&format!("{name} is there from an earlier run"), Some(help));
+            return Error::refuse(format!("{name} is there from an earlier run"), help);
         }
         Ok(Self {
             checkpoint,
@@ -221,9 +191,9 @@ impl Keep {
                     say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to be done"));
                     Ok(false)
                 }
-                Some(missing) => refuse(
-                    &format!("{name} has {samples} samples per pixel, and has not written {}", missing.display()),
-                    Some(&format!("add --samples {samples} to write it")),
+                Some(missing) => Error::refuse(
+                    format!("{name} has {samples} samples per pixel, and has not written {}", missing.display()),
+                    format!("add --samples {samples} to write it"),
                 ),
             },
         }
@@ -234,11 +204,10 @@ impl Keep {
     /// # Errors
     /// If it was stopped, and what is done cannot be kept.
     pub fn run(&mut self, rendering: &mut Rendering, progress: &Progress) -> Result<bool> {
-        HAS_BEGUN.store(true, Ordering::Relaxed);
+        signals::begin_work();
         let mut looked = rendering.error();
         loop {
-            let stops = || STOPPED.load(Ordering::Relaxed);
-            let is_due = || stops() || self.checkpoints.is_due() || self.snapshots.is_due();
+            let is_due = || is_stopped() || self.checkpoints.is_due() || self.snapshots.is_due();
             let advance = rendering.advance_until(&|done| progress.advance(done), &is_due);
             progress.expect(rendering);
             if advance == Advance::Finished {
@@ -250,7 +219,7 @@ impl Keep {
                 error.iter().for_each(|error| progress.say(&so_far(error, more.as_ref())));
                 looked = error;
             }
-            if stops() {
+            if is_stopped() {
                 return self.keep_at_last(rendering, progress).map(|()| false);
             }
             if advance == Advance::Stopped {
@@ -327,7 +296,7 @@ impl Keep {
     pub fn say_how_to_resume(&self) {
         let Some(path) = &self.checkpoint else {
             if !self.has_snapshot.get() {
-                return say(NOTHING_KEPT);
+                return say(signals::NOTHING_KEPT);
             }
             return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");
         };
@@ -337,57 +306,6 @@ impl Keep {
         }
         say(&format!("stopped; {} keeps what is done. Go on with\n  {}", path.display(), words.join(" ")));
     }
-}
-
-/// Signals that come so soon after the first one are the same one: `timeout` sends it to a command, and again to all
-/// that the command belongs to.
-const ECHO: Duration = Duration::from_millis(500);
-
-/// Lets Ctrl-C stop the command, at once or after what is done is kept; a second one stops it at once.
-fn catch(stops_at_once: bool) -> std::result::Result<(), ctrlc::Error> {
-    let mut first = None;
-    let stop = move || {
-        let has_begun = HAS_BEGUN.load(Ordering::Relaxed);
-        let leave_nothing = || {
-            progress::clear();
-            remove_unfinished();
-        };
-        if stops_at_once || !has_begun {
-            leave_nothing();
-            say_last(
-                match (has_begun, HAS_WRITTEN.load(Ordering::Relaxed)) {
-                    (false, _) => NOTHING_DONE,
-                    (true, false) => NOTHING_KEPT,
-                    (true, true) => NOT_ALL_WRITTEN,
-                },
-                STOPPED_CODE,
-            );
-        }
-        let is_echo = first.get_or_insert_with(Instant::now).elapsed() < ECHO;
-        if STOPPED.swap(true, Ordering::Relaxed) && !is_echo {
-            leave_nothing();
-            std::process::exit(STOPPED_CODE.into());
-        }
-    };
-    kept_ignored(|| ctrlc::set_handler(stop))
-}
-
-/// Lets Ctrl-C end a command that keeps nothing, without what it has begun to write.
-///
-/// # Errors
-/// If it cannot be caught.
-pub fn catch_plainly() -> Result<()> {
-    let caught = kept_ignored(|| {
-        ctrlc::set_handler(|| {
-            remove_unfinished();
-            say_last("stopped", STOPPED_CODE);
-        })
-    });
-    caught.map_err(cannot_catch)
-}
-
-fn cannot_catch(error: ctrlc::Error) -> Error {
-    Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None }
 }
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.

@@ -4,20 +4,8 @@ use std::ffi::OsString;
 
 use clap::error::{ContextKind, ErrorKind};
 
-/// Commands, and what may be taken for one.
-const COMMANDS: [(&str, &str); 11] = [
-    ("catalog", "render catalog"),
-    ("info", "render info"),
-    ("view", "render view"),
-    ("diff", "render diff"),
-    ("merge", "render merge"),
-    ("completions", "render completions"),
-    ("man", "render man"),
-    ("plan", "render --plan"),
-    ("check", "render --check"),
-    ("help", "render --help"),
-    ("render", "render --exr"),
-];
+/// What may be taken for a command, and the flag that is meant.
+const FLAGS: [(&str, &str); 4] = [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("render", "--exr")];
 
 /// Arguments of other renderers, and what does the same here.
 const ELSEWHERE: [(&str, &str); 12] = [
@@ -35,14 +23,12 @@ const ELSEWHERE: [(&str, &str); 12] = [
     ("--frames", "--frame 1-24"),
 ];
 
-/// How many of the commands are words of their own, not flags.
-const WORDS: usize = 7;
-
 /// Most letters that are wrong in a command.
 const WRONG: usize = 2;
 
-/// A message on an argument that there is not, and what to write in place of it; none where that is not known.
-pub fn meant(said: &clap::Error, words: &[OsString]) -> Option<(String, String)> {
+/// A message on an argument that there is not, and what to write in place of it; none where that is not known. The
+/// `commands` are those that there are.
+pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
     let given = match said.kind() {
         ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),
         _ => return None,
@@ -52,9 +38,9 @@ pub fn meant(said: &clap::Error, words: &[OsString]) -> Option<(String, String)>
     }
     let first = words.get(1)?.to_str()?;
     if first.starts_with('-') || first.contains('.') {
-        let command = COMMANDS[..WORDS].iter().find(|(command, _)| words.iter().any(|word| word == command));
-        return match command {
-            Some((command, whole)) => {
+        return match commands.iter().find(|command| words.iter().any(|word| word == *command)) {
+            Some(command) => {
+                let whole = format!("render {command}");
                 let help = format!("write {whole}, and what belongs to it after that; {whole} --help tells it");
                 Some((format!("the command {command} stands before all other arguments"), help))
             }
@@ -62,9 +48,9 @@ pub fn meant(said: &clap::Error, words: &[OsString]) -> Option<(String, String)>
         };
     }
     let wrong = |command: &str| strsim::damerau_levenshtein(first, command);
-    let (_, here) =
-        COMMANDS.iter().min_by_key(|(command, _)| wrong(command)).filter(|(near, _)| wrong(near) <= WRONG)?;
-    Some((format!("there is no command `{first}`"), format!("did you mean {here}?")))
+    let known = commands.iter().map(|&command| (command, command)).chain(FLAGS);
+    let (_, here) = known.min_by_key(|(word, _)| wrong(word)).filter(|(near, _)| wrong(near) <= WRONG)?;
+    Some((format!("there is no command `{first}`"), format!("did you mean render {here}?")))
 }
 
 /// What was meant by a file that no argument names.

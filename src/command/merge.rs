@@ -6,10 +6,10 @@ use abbe::film::check_writable;
 use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
-use super::keep::catch_plainly;
-use super::messages::{Listener, Protocol, say, speak_to, warn, warn_of_clamped};
-use super::outputs::{ends_in, refuse, spare};
+use super::messages::{Listener, Protocol, print_written, speak_to, warn, warn_of_clamped};
+use super::outputs::{ends_in, spare};
 use super::problem::problem;
+use super::signals::catch_plainly;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -54,17 +54,17 @@ pub fn run(query: &Query) -> Result<()> {
     });
     if !ends_in(path, "exr") {
         let message = format!("merge writes a file that ends in .exr, not {}", path.display());
-        return refuse(&message, Some("for instance: render merge out.exr *.part"));
+        return Error::refuse(message, "for instance: render merge out.exr *.part");
     }
     parts.iter().try_for_each(|part| spare(part, "part", path))?;
     catch_plainly()?;
     let image = Parts::open(parts)?;
     check_writable(path)?;
     warn_of_clamped(image.format(), image.write_exr(path)?);
-    say(&format!("wrote {}", path.display()));
+    print_written(path);
     let path = path.with_extension("spectral.exr");
     if image.write_spectral_exr(&path)? {
-        say(&format!("wrote {}", path.display()));
+        print_written(&path);
     }
     if *delete {
         // The image is written all the same.

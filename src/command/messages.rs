@@ -238,10 +238,9 @@ pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
 /// As of a text.
 pub fn answer_plan(plan: &Plan) -> Result<()> {
     match listener() {
-        Listener::Program => answer_event(&Event::plan(plan))?,
-        _ => answer_lines(&plan.because)?,
+        Listener::Program => answer_event(&Event::plan(plan)),
+        _ => answer_lines(&plan.because),
     }
-    Ok(())
 }
 
 /// How a scene is rendered. On a terminal, only how long it takes, how accurate it is and what is left out.

@@ -16,5 +16,5 @@ pub mod outputs;
 mod problem;
 pub mod progress;
 pub mod signals;
-pub mod stdout;
+mod stdout;
 pub mod view;

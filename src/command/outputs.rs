@@ -1,14 +1,9 @@
-//! What the command may write, and how it refuses.
+//! What the command may write.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use abbe::{Error, Result, Scene};
-
-/// A refusal of what is asked for.
-pub fn refuse<T>(message: &str, help: Option<&str>) -> Result<T> {
-    Err(Error::Arguments { message: message.to_owned(), help: help.map(str::to_owned) })
-}
 
 pub fn ends_in(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
@@ -23,10 +18,10 @@ pub fn is_standard(path: &Path) -> bool {
 pub fn check_standard(spectral: bool) -> Result<()> {
     if spectral {
         let message = "spectra are written beside the image, and standard output has no place beside it";
-        return refuse(message, Some("name the image, as in --exr out/frame.exr"));
+        return Error::refuse(message, "name the image, as in --exr out/frame.exr");
     }
     if std::io::stdout().is_terminal() {
-        return refuse("an EXR on standard output is no text for a terminal", Some("send it on: --exr - > frame.exr"));
+        return Error::refuse("an EXR on standard output is no text for a terminal", "send it on: --exr - > frame.exr");
     }
     Ok(())
 }
@@ -36,7 +31,7 @@ pub fn check_png(png: Option<&Path>) -> Result<()> {
     match png.filter(|png| !ends_in(png, "png")) {
         Some(png) => {
             let message = format!("--png writes a file that ends in .png, not {}", png.display());
-            refuse(&message, Some("for instance: --png look.png"))
+            Error::refuse(message, "for instance: --png look.png")
         }
         None => Ok(()),
     }
@@ -45,7 +40,7 @@ pub fn check_png(png: Option<&Path>) -> Result<()> {
 /// Refuses a file of words, such as `--report frame.json`, that is called an image, which it might replace, or is to go
 /// to standard output.
 pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()> {
-    let refused = |message: String| refuse(&message, Some(&format!("for instance: {flag} {example}")));
+    let refused = |message: String| Error::refuse(message, format!("for instance: {flag} {example}"));
     match file {
         Some(file) if is_standard(file) => refused(format!("{flag} writes a file, and - is standard output")),
         Some(file) if ["exr", "png"].iter().any(|ending| ends_in(file, ending)) => {
@@ -59,7 +54,7 @@ pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()>
 pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     match real(output).filter(|output| real(input).as_ref() == Some(output)) {
-        Some(_) => refuse(&format!("{} is the {what} itself", output.display()), Some("name another file")),
+        Some(_) => Error::refuse(format!("{} is the {what} itself", output.display()), "name another file"),
         None => Ok(()),
     }
 }
@@ -67,7 +62,7 @@ pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
 /// Refuses an output that the scene is read from, or that is another output by the same or another name.
 pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
     let [own, others @ ..] = &scene.files[..] else { return Ok(()) };
-    let another = |message: String| refuse(&message, Some("name another file"));
+    let another = |message: String| Error::refuse(message, "name another file");
     let read: Vec<PathBuf> = others.iter().map(|other| full(other)).collect();
     let written: Vec<PathBuf> = outputs.iter().map(|output| full(output)).collect();
     for (number, (output, file)) in outputs.iter().zip(&written).enumerate() {
@@ -98,7 +93,7 @@ fn full(path: &Path) -> PathBuf {
 /// Refuses what is no number of stops.
 pub fn check_exposure(stops: Option<f64>) -> Result<()> {
     match stops.filter(|stops| !stops.is_finite()) {
-        Some(_) => refuse("an exposure is a finite number of stops", Some("for instance: --exposure 1")),
+        Some(_) => Error::refuse("an exposure is a finite number of stops", "for instance: --exposure 1"),
         None => Ok(()),
     }
 }

@@ -166,7 +166,7 @@ impl Progress {
     }
 
     /// Removes the bar.
-    pub fn stop(&mut self) {
+    fn stop(&mut self) {
         drop(self.lines.take());
         if self.bar.take().is_some() {
             clear();

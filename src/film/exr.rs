@@ -64,6 +64,21 @@ pub struct Provenance {
     pub time: Option<SystemTime>,
 }
 
+impl Provenance {
+    /// The count of a key; none if it has none.
+    pub fn count(&self, key: &str) -> Option<u64> {
+        self.facts.iter().find_map(|(known, fact)| match fact {
+            Fact::Count(count) if known == key => Some(*count),
+            _ => None,
+        })
+    }
+
+    /// Sets the count of a key, if it has one.
+    pub fn set_count(&mut self, key: &str, count: u64) {
+        self.facts.iter_mut().filter(|(known, _)| known == key).for_each(|(_, fact)| *fact = Fact::Count(count));
+    }
+}
+
 /// One value of the provenance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fact {
@@ -128,9 +143,9 @@ pub fn encode_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<
 
 /// The parts of the file: one, or one for the image and each layer if the format sets them apart.
 fn parts(heading: Heading) -> Vec<Part> {
-    let Heading { film, format, view, provenance } = heading;
+    let Heading { film, format, .. } = heading;
     let half = format.precision == Precision::Half;
-    let mut attributes = attributes(film, format, view, provenance);
+    let mut attributes = attributes(heading);
     for manifest in &film.manifests {
         for (key, value) in [
             ("name", &*manifest.name),
@@ -229,7 +244,8 @@ fn of_other_part(film: &Film, attributes: &LayerAttributes, has_colors: bool) ->
 }
 
 /// The attributes of the first part.
-pub(super) fn attributes(film: &Film, format: &Format, view: &View, provenance: &Provenance) -> LayerAttributes {
+pub(super) fn attributes(heading: Heading) -> LayerAttributes {
+    let Heading { film, format, view, provenance } = heading;
     let mut attributes = LayerAttributes {
         software_name: Some(Text::from(concat!("Abbe ", env!("CARGO_PKG_VERSION")))),
         owner: format.owner.as_deref().map(utf8),

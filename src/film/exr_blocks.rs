@@ -156,11 +156,11 @@ fn strips(parts: &[Part], at_once: Option<u32>) -> impl Iterator<Item = Range<u3
 
 /// The blocks of some rows, from the top; those that begin together in the order of their parts.
 fn blocks(parts: &[Part], strip: &Range<u32>) -> Vec<Block> {
-    let of_part = |(part, Part { header, .. }): (usize, &Part)| {
-        let each = header.compression.scan_lines_per_block() as u32;
+    let end = strip.end;
+    let of_part = |(number, part): (usize, &Part)| {
+        let each = part.block_rows();
         let rows = strip.clone().step_by(each as usize);
-        let end = strip.end;
-        rows.map(move |first| Block { part, rows: first..end.min(first.saturating_add(each)) })
+        rows.map(move |first| Block { part: number, rows: first..end.min(first.saturating_add(each)) })
     };
     let mut blocks: Vec<Block> = parts.iter().enumerate().flat_map(of_part).collect();
     blocks.sort_by_key(|block| (block.rows.start, block.part));

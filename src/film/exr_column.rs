@@ -46,7 +46,7 @@ impl Column {
             Of::Depth => self.put_all(all.iter().map(|pixel| pixel.depth), bytes),
             Of::Layer { layer, channel } => {
                 let image = &film.layers[layer];
-                let each = image.layer.channels().len();
+                let each = image.numbers();
                 let values = &image.values[first * each..(first + pixels) * each];
                 self.put_all(values.iter().skip(channel).step_by(each).copied(), bytes)
             }

@@ -24,7 +24,7 @@ use crate::error::Result;
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<()> {
-    let Heading { film, format, view, provenance } = heading;
+    let film = heading.film;
     let Some(spectral) = &film.spectral else { return Ok(()) };
     let bands = (0..spectral.components()).flat_map(|component| {
         let bands = spectral.bands.centers_nm().enumerate();
@@ -33,7 +33,7 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
         })
     });
     let columns = colors(false).chain(bands).collect();
-    let mut attributes = attributes(film, format, view, provenance);
+    let mut attributes = attributes(heading);
     let step = AttributeValue::F32(spectral.bands.step_nm() as f32);
     for (key, value) in [
         ("spectralLayoutVersion", text("1.0")),

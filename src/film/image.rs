@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::cryptomatte::Manifest;
 use super::layers::LayerImage;
 use super::spectral::SpectralImage;
+use super::window::Window;
 use crate::spectrum::ColorSpace;
 
 /// Depth of a pixel whose rays meet nothing, the value compositing packages expect.
@@ -58,6 +59,12 @@ pub struct Film {
 }
 
 impl Film {
+    /// Which pixels of the format it has.
+    pub fn window(&self) -> Window {
+        let [left, top] = self.corner;
+        Window { left, top, width: self.width, height: self.height }
+    }
+
     /// The pixel in column x, row y of the part that is there.
     pub fn at(&self, x: u32, y: u32) -> &Pixel {
         &self.pixels[(y as usize) * self.width as usize + x as usize]

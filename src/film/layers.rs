@@ -295,9 +295,14 @@ pub struct LayerImage {
 }
 
 impl LayerImage {
+    /// Numbers of a pixel.
+    pub fn numbers(&self) -> usize {
+        self.layer.channels().len()
+    }
+
     /// One of its channels, row by row from the top left.
     pub fn channel(&self, number: usize) -> impl ExactSizeIterator<Item = f32> + '_ {
-        self.values.iter().skip(number).step_by(self.layer.channels().len()).copied()
+        self.values.iter().skip(number).step_by(self.numbers()).copied()
     }
 }
 

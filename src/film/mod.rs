@@ -40,7 +40,7 @@ pub use format::{Compression, Format, Precision};
 pub use image::{DEPTH_OF_NOTHING, Film, Pixel, Sample};
 pub use layers::{FirstSurface, LONGEST_NAME, Layer, LayerImage, layer_elsewhere, light_layer_name, polarization};
 pub use mitchell::Mitchell;
-pub use picture::{film_png, png, write_png, write_rgb8};
+pub use picture::{film_png, png, write_png};
 pub use rows::Rows;
 pub use sample_weights::{SampleWeights, TELL_VARIANCE};
 pub use shard::{Shard, TILE, TilePlace};

@@ -25,15 +25,8 @@ pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
     png(&bytes, [film.width, film.height], path)
 }
 
-/// Writes red, green and blue of 8 bits, row by row, as a PNG of this width and height.
-///
-/// # Errors
-/// If the file cannot be written; nothing is left behind then.
-pub fn write_rgb8(bytes: &[u8], size: [u32; 2], path: &Path) -> Result<()> {
-    replace_file(path, &png(bytes, size, path)?)
-}
-
-/// The bytes of such a PNG; `path` is what it is called if it cannot be made.
+/// The bytes of a PNG of this width and height, of red, green and blue of 8 bits, row by row; `path` is what it is
+/// called if it cannot be made.
 ///
 /// # Errors
 /// If the encoder refuses the size.

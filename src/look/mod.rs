@@ -12,6 +12,5 @@ pub use difference::{AlphaDifference, ColorDifference, Difference, WorstPixel, c
 pub use mattes::Mattes;
 pub use noise::Noise;
 pub use picture::{Exposure, Picture};
-pub use significance::{normal_equivalent, sidak_threshold};
 pub use tone::Tone;
 pub use words::{number, percent};

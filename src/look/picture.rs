@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::tone::{Tone, shown};
 use crate::error::Result;
-use crate::film::{Channel, ExrFile, ExrLayer, png, write_rgb8};
+use crate::film::{Channel, ExrFile, ExrLayer, png, replace_file};
 use crate::spectrum::{IDENTITY, Matrix, apply, encode_srgb, matrix_of_file};
 
 /// Depths and the like from here on stand for nothing at all.
@@ -112,7 +112,7 @@ impl Picture {
     /// # Errors
     /// If the file cannot be written; nothing is left behind then.
     pub fn write_png(&self, path: &Path) -> Result<()> {
-        write_rgb8(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], path)
+        replace_file(path, &self.encoded(path)?)
     }
 
     /// The bytes of such a PNG.
@@ -120,7 +120,12 @@ impl Picture {
     /// # Errors
     /// If the encoder refuses the size.
     pub fn png(&self) -> Result<Vec<u8>> {
-        png(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], Path::new("the picture"))
+        self.encoded(Path::new("the picture"))
+    }
+
+    /// The same; `path` is what it is called if it cannot be made.
+    fn encoded(&self, path: &Path) -> Result<Vec<u8>> {
+        png(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], path)
     }
 }
 

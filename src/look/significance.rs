@@ -7,7 +7,7 @@ use std::f64::consts::SQRT_2;
 /// Normal Distributions*: each may exceed it with 1 - (1 - family)^(1 / tests).
 ///
 /// The normal distribution is inverted by halving an interval over its complementary error function.
-pub fn sidak_threshold(tests: usize, family: f64) -> f64 {
+pub(super) fn sidak_threshold(tests: usize, family: f64) -> f64 {
     let each = -libm::expm1(libm::log1p(-family) / tests.max(1) as f64);
     // Beyond 38 standard deviations the error function is 0 in 64 bits.
     let (mut low, mut high) = (0.0, 38.0);
@@ -26,7 +26,7 @@ pub fn sidak_threshold(tests: usize, family: f64) -> f64 {
 /// Approximations to Student's and the Chi-Square Distributions*: z = (8 v + 1) / (8 v + 3) sqrt(v ln(1 + t^2 / v)).
 ///
 /// A standard deviation that is estimated from few samples is often too small; this is what it makes of deviations.
-pub fn normal_equivalent(t: f64, freedom: f64) -> f64 {
+pub(super) fn normal_equivalent(t: f64, freedom: f64) -> f64 {
     if freedom.is_infinite() {
         return t;
     }

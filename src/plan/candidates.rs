@@ -2,7 +2,7 @@
 
 use super::dyes;
 use super::seen::Seen;
-use super::survey::{Survey, Tint};
+use super::survey::{Survey, Tint, strongest};
 use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity};
 
 /// One model with the largest error of a color that it is predicted to make.
@@ -47,10 +47,9 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
         for (true_color, lanes) in exact.iter().zip(&in_lanes) {
             let filter = Lanes::from_fn(|i| lanes.get(i).copied().unwrap_or(0.0) as f32);
             let color = response.sensor(&draw, emission * filter, false);
-            let strongest = true_color.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-            let missed = (0..3).fold(0.0, |most: f64, c| most.max((color[c] - true_color[c]).abs()));
-            if strongest > 0.0 {
-                worst = worst.max(missed / strongest);
+            let scale = strongest(*true_color);
+            if scale > 0.0 {
+                worst = worst.max(strongest(std::array::from_fn(|c| color[c] - true_color[c])) / scale);
             }
         }
     }

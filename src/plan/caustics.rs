@@ -159,7 +159,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
         };
         return Err(Some(format!("no photon tracing: {why}{}", missing(scene))));
     }
-    let places = thinned(lit_places(scene, |material| may_receive(scene, material)), scene.lights.len());
+    let places = thinned(lit_places(scene), scene.lights.len());
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
         return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
@@ -213,7 +213,7 @@ pub(super) fn targets(scene: &Scene<Curve>) -> Vec<usize> {
 
 /// Whether the camera sees any surface straight on which a caustic may lie.
 pub(super) fn sees_receivers(scene: &Scene<Curve>) -> bool {
-    !lit_places(scene, |material| may_receive(scene, material)).is_empty()
+    !lit_places(scene).is_empty()
 }
 
 /// Whether caustics can be seen on a material.
@@ -261,21 +261,20 @@ fn named(scene: &Scene<Curve>, lights: &[(LightId, f64)]) -> String {
     }
 }
 
-/// Points that the camera sees on surfaces that scatter widely; the same whatever part of the image is made.
-fn lit_places(scene: &Scene<Curve>, spread: impl Fn(&Material<Curve>) -> bool) -> Vec<DVec3> {
+/// Points that the camera sees on surfaces that may show caustics; the same whatever part of the image is made.
+fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
     let film = scene.film;
     let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
     let rays =
         (0..SIDE * SIDE).map(|i| scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height))));
     let place = |ray| {
         // What is seen through a pane is lit as well.
-        let counts = |material: &Material<Curve>| spread(material) || !material.is_see_through();
-        let counts = |object| counts(scene.material_of(object)) && scene.is_seen(object);
+        let counts = |object| {
+            let material = scene.material_of(object);
+            scene.is_seen(object) && (may_receive(scene, material) || !material.is_see_through())
+        };
         let hit = scene.nearest(&ray, f64::INFINITY, &counts)?;
-        if !spread(scene.material_of(hit.object)) {
-            return None;
-        }
-        Some(ray.at(hit.crossing.t))
+        may_receive(scene, scene.material_of(hit.object)).then(|| ray.at(hit.crossing.t))
     };
     rays.filter_map(place).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::survey::{Survey, Tint};
+use super::survey::{Survey, Tint, strongest};
 use crate::spectrum::{Basis, Curve, Draw, Dye, Emission, Lanes, MAX_LANES, Quantity, visible};
 
 /// Most tints of each way that are combined, those farthest from gray.
@@ -93,10 +93,9 @@ impl Lit<'_> {
                 let found_elastic = response_to_light.sensor(&draw, of_paper * *seen_lanes * *lit_lanes, false);
                 let color: [f64; 3] = std::array::from_fn(|c| elastic[c] + brightness * seen_glow[c]);
                 let found: [f64; 3] = std::array::from_fn(|c| found_elastic[c] + found * found_glow[c]);
-                let largest = |color: [f64; 3]| color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-                let strongest = largest(color);
-                if strongest > 0.0 {
-                    worst = worst.max(largest(std::array::from_fn(|c| found[c] - color[c])) / strongest);
+                let scale = strongest(color);
+                if scale > 0.0 {
+                    worst = worst.max(strongest(std::array::from_fn(|c| found[c] - color[c])) / scale);
                 }
             }
         }

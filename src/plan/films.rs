@@ -75,8 +75,7 @@ const MIDDLE_NM: f64 = 550.0;
 
 /// The layers at each wavelength or in each lane.
 fn stacks(coating: &Coating<Curve>, thickest: bool, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
-    let [nm, band] = [(Quantity::Wavelength, &coating.wavelength), (Quantity::BandWidth, &coating.band)]
-        .map(|(what, one)| read(what, one));
+    let (nm, band) = (read(Quantity::Wavelength, &coating.wavelength), read(Quantity::BandWidth, &coating.band));
     let of_layer = |layer: &CoatingLayer<Curve>| {
         let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
         let (n, k) = (read(of_index, &layer.index), read(Quantity::MetalExtinction, &layer.k));
@@ -124,8 +123,7 @@ pub(super) fn between_polarizers(
     plate: &PathDifference<Curve>,
     read: impl Fn(Quantity, &Curve) -> Vec<f64>,
 ) -> Vec<f64> {
-    let [nm, band] = [(Quantity::Wavelength, &plate.wavelength), (Quantity::BandWidth, &plate.band)]
-        .map(|(what, one)| read(what, one));
+    let (nm, band) = (read(Quantity::Wavelength, &plate.wavelength), read(Quantity::BandWidth, &plate.band));
     nm.iter().zip(band).map(|(nm, band)| 0.5 * (1.0 - plate.block(*nm, band).c)).collect()
 }
 
@@ -164,8 +162,7 @@ fn of_three_bands(basis: &Basis) -> String {
 }
 
 fn spoken_plate(plate: &PathDifference<Curve>, basis: &Basis, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> String {
-    let [nm, band] = [(Quantity::Wavelength, &plate.wavelength), (Quantity::BandWidth, &plate.band)]
-        .map(|(what, one)| read(what, one));
+    let (nm, band) = (read(Quantity::Wavelength, &plate.wavelength), read(Quantity::BandWidth, &plate.band));
     let widest = nm.iter().zip(band).map(|(nm, band)| plate.phase_step(*nm, band)).fold(0.0, f64::max);
     let how = if basis.fixed_lanes() <= 3 {
         format!("its phase is that {}", of_three_bands(basis))

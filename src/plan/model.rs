@@ -6,12 +6,12 @@ use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error
 use super::dyes::spoken as spoken_dyes;
 use super::films::spoken as spoken_film;
 use super::seen::Seen;
-use super::survey::{SEED, Survey, disperses, tolerance};
+use super::survey::{Survey, disperses, method_of_a_look, tolerance};
 use super::words::percent;
 use crate::material::{Dielectric, Material};
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
-use crate::trace::{COLORS_NM, Dispersion, Method, Transport, World, dispersion as measured_dispersion};
+use crate::trace::{COLORS_NM, Dispersion, World, dispersion as measured_dispersion};
 
 /// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
 const FILLED: f64 = 0.5;
@@ -155,10 +155,7 @@ fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     let parts = |glass: &Dielectric<Curve>| disperses(glass) || of_three(glass) && !*is_plain;
     scene.materials.iter().find(|m| m.material.medium().is_some_and(parts))?;
     let basis = Basis::wavelengths(scene.film.color_space, COLORS_NM.into(), &[]);
-    let transport = Transport::Random { split: 1.0, roulette: 0.0 };
-    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    let method = Method { diffuse_bounces, ..Method::of_paths(basis, transport, SEED) };
-    Some(measured_dispersion(&World::new(scene, method)))
+    Some(measured_dispersion(&World::new(scene, method_of_a_look(scene, basis))))
 }
 
 fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {

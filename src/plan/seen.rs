@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::survey::{SEED, Survey, Tint, tolerance};
+use super::survey::{Survey, Tint, method_of_a_look, strongest, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity};
-use crate::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
+use crate::trace::{ROUTES_NM, Route, Step, Way, World, routes};
 
 /// Products of tints by number, with the weight of each.
 type Weighted = Vec<(usize, f64)>;
@@ -45,12 +45,8 @@ impl<'a> Seen<'a> {
             return Self::default();
         }
         let basis = Basis::wavelengths(survey.color_space, ROUTES_NM.into(), &[]);
-        let method = Method {
-            diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
-            ..Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, SEED)
-        };
         let mut keeping = Keeping::new(scene, survey);
-        for of_pixel in routes(&World::new(scene, method)) {
+        for of_pixel in routes(&World::new(scene, method_of_a_look(scene, basis))) {
             keeping.keep(&of_pixel);
         }
         keeping.finish(survey, tolerance(scene))
@@ -74,8 +70,7 @@ impl<'a> Seen<'a> {
             }
             let (emission, response) = &lights[&color.light];
             let found = response.sensor(&draw, *emission * Lanes(lanes.map(|x| x as f32)), false);
-            let off = (0..3).fold(0.0_f64, |most, c| most.max((found[c] - color.exact[c]).abs()));
-            off / color.scale
+            strongest(std::array::from_fn(|c| found[c] - color.exact[c])) / color.scale
         };
         self.colors.iter().map(missed).fold(0.0, f64::max)
     }
@@ -183,13 +178,12 @@ impl<'a> Keeping<'a> {
                 seen.tints.iter().map(|tint| tint.read(wavelengths, &survey.upsampler)).collect();
             let products = seen.multiply(&tints, wavelengths.len());
             let products: Vec<[f64; 3]> = products.iter().map(|left| film.color(left)).collect();
-            let strongest = |color: &[f64; 3]| color.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let mut brightest: BTreeMap<u32, f64> = BTreeMap::new();
             let first = seen.colors.len();
             let mut after = Vec::new();
             for (scattered, sum) in colors {
                 let exact = [0, 1, 2].map(|c| sum.iter().map(|(product, weight)| weight * products[*product][c]).sum());
-                let scale = strongest(&exact);
+                let scale = strongest(exact);
                 let most = brightest.entry(scattered).or_default();
                 *most = most.max(scale);
                 after.push(scattered);

@@ -12,6 +12,7 @@ use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Quantity, Upsampler, normal_reflectance, visible,
 };
+use crate::trace::{Method, Transport};
 
 /// The share of the error that the model of color may make; noise may make the rest.
 const SHARE: f64 = 1.0 / 3.0;
@@ -24,6 +25,18 @@ pub(super) const SEED: u64 = 0;
 /// The relative error of a color that its model may make.
 pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
     SHARE * scene.render.error.unwrap_or(ERROR)
+}
+
+/// The channel that is farthest from 0: what an error of a color is relative to.
+pub(super) fn strongest(color: [f64; 3]) -> f64 {
+    color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+}
+
+/// The method by which a plan looks where colors go: no path splits, and none is ended at random.
+pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
+    let transport = Transport::Random { split: 1.0, roulette: 0.0 };
+    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
+    Method { diffuse_bounces, ..Method::of_paths(basis, transport, SEED) }
 }
 
 /// The colors of a scene: what shines and what tints.
@@ -170,7 +183,7 @@ impl<'a> Survey<'a> {
         (lights.chain(dyes.clone().map(|dye| dye.shines(self.color_space))).collect(), dyes.cloned().collect())
     }
 
-    /// The brightest ideal lines, ascending in nm, and how many there are in all.
+    /// The brightest ideal lines, ascending in nm.
     pub(super) fn lines(&self, most: usize) -> Vec<f64> {
         let brightness = |nm: f64, power: f64| power * visible::color_matching(nm).iter().sum::<f64>();
         let mut lines: Vec<[f64; 2]> = self.lights.iter().flat_map(|(_, light)| light.lines()).copied().collect();

@@ -13,6 +13,8 @@ use crate::trace::{Branching, Method, Transport, World, branching};
 const CUTOFF: f64 = 1e-9;
 /// Surfaces that one of its camera samples may meet: eight times what a mean one may.
 const MOST_SURFACES: u64 = 16_384;
+/// Nothing is left to chance.
+const DETERMINISTIC: Transport = Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES };
 /// Weight above which a path splits into all its branches (row W5 of the stability catalog).
 const SPLIT: f64 = 0.05;
 /// Weight below which paths are ended at random.
@@ -22,7 +24,6 @@ const AFFORDABLE: f64 = 2048.0;
 
 /// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
 pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
-    let random = Transport::Random { split: SPLIT, roulette: ROULETTE };
     let material = |object: &&Object| &scene.materials[object.material as usize].material;
     let rough =
         scene.objects.iter().find(|object| material(object).scatters_widely() && !material(object).is_diffuse());
@@ -45,13 +46,13 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
     };
     match why.or_else(|| holes_beside_mattes(scene)).or_else(|| too_many_ways(scene, basis, together)) {
         None => (
-            Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES },
+            DETERMINISTIC,
             format!(
                 "transport deterministic: no random light path, 1 sample per pixel is exact; branches end below weight {CUTOFF:e}"
             ),
         ),
         Some(why) => (
-            random,
+            Transport::Random { split: SPLIT, roulette: ROULETTE },
             format!(
                 "transport random: {why}; a path follows both reflection and refraction as long as it has {} of its weight or more, then \
                  one of them, until Russian roulette ends it",
@@ -85,12 +86,11 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
     if !scene.materials.iter().any(|named| named.material.has_single_directions()) {
         return None;
     }
-    let transport = Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES };
     let method = Method {
         together,
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
         max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        ..Method::of_paths(basis.clone(), transport, SEED)
+        ..Method::of_paths(basis.clone(), DETERMINISTIC, SEED)
     };
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,

@@ -12,17 +12,15 @@ use pyo3::types::{PyBool, PyDict, PyString};
 use super::errors::refuse;
 use super::text::shown;
 
-/// More threads than any one machine has processors for; many more would exhaust it.
-const MOST_THREADS: usize = 1024;
-
 /// The arguments of a render as the library takes them, of all that are given; None leaves one to the scene.
 ///
 /// # Errors
 /// If one of them is none of those that it may be.
 pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     let threads: Option<usize> = number(given, "threads", "a whole number of 1 or more")?;
-    if threads.is_some_and(|threads| !(1..=MOST_THREADS).contains(&threads)) {
-        return refuse(format!("a render has 1 to {MOST_THREADS} threads"), "leave threads out to take them all");
+    let most = Options::MOST_THREADS;
+    if threads.is_some_and(|threads| !(1..=usize::from(most)).contains(&threads)) {
+        return refuse(format!("a render has 1 to {most} threads"), "leave threads out to take them all");
     }
     Ok(Options {
         samples: number(given, "samples", "a whole number from 1 to 2**32 - 1")?,

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::film::{Format, Shard};
+use crate::film::{Format, Overscan, Shard, Window};
 use crate::scene::{FilmSettings, Scene};
 use crate::trace::{LightPass, Method, Stop};
 
@@ -21,17 +21,16 @@ impl Identity {
     /// Of a scene with the options in it. The number of samples is no part of it, unless the plan depends on that.
     pub(super) fn new(scene: &Scene, method: &Method, shard: Shard) -> Self {
         let FilmSettings { width, height, filter, color_space, overscan, crop } = scene.film;
+        let Overscan { left, top, right, bottom } = overscan;
+        let crop_text = |Window { left, top, width, height }| format!("{left},{top},{width},{height}");
         let Format { layers, first, spectral, .. } = &scene.format;
         let names: Vec<&str> = layers.iter().map(|layer| layer.name()).collect();
         let facts = [
             (VERSION, env!("CARGO_PKG_VERSION").to_owned()),
             (SCENE, scene.hash.clone()),
             ("size", format!("{width} x {height} pixels")),
-            ("overscan", overscan_text(overscan)),
-            (
-                "crop",
-                crop.map_or("none".into(), |crop| format!("{},{},{},{}", crop.left, crop.top, crop.width, crop.height)),
-            ),
+            ("overscan", format!("{left},{top},{right},{bottom}")),
+            ("crop", crop.map_or("none".into(), crop_text)),
             ("seed", scene.render.seed.to_string()),
             ("filter", filter.described()),
             ("color space", color_space.interop_id().to_owned()),
@@ -71,11 +70,6 @@ impl Identity {
             _ => format!("its {name} is {theirs}, not {}", value(name).map_or("known", String::as_str)),
         })
     }
-}
-
-fn overscan_text(overscan: crate::film::Overscan) -> String {
-    let crate::film::Overscan { left, top, right, bottom } = overscan;
-    format!("{left},{top},{right},{bottom}")
 }
 
 /// What of a method decides what a camera sample finds: not how many there are, nor when they are enough, nor how many

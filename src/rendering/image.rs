@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use super::image_error::ImageError;
+use super::origin::SAMPLES;
 use super::warnings::{few_samples, warnings};
 use crate::error::Result;
 use crate::film::{
-    Fact, Film, Format, Heading, Pixel, Provenance, View, encode_exr, film_png, write_exr, write_png,
+    Film, Format, Heading, Pixel, Provenance, SpectralImage, View, encode_exr, film_png, write_exr, write_png,
     write_spectral_exr,
 };
 use crate::trace::Report;
@@ -44,8 +45,13 @@ impl Image {
     /// # Panics
     /// If there is no such pixel.
     pub fn rgb_at(&self, x: u32, y: u32) -> [f32; 3] {
+        self.film.pixels[self.number(x, y)].rgb
+    }
+
+    /// The number of a pixel. A column that there is not would be one of the next row.
+    fn number(&self, x: u32, y: u32) -> usize {
         assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
-        self.film.at(x, y).rgb
+        y as usize * self.film.width as usize + x as usize
     }
 
     /// All values of a layer by its name in the file, row by row from the top left; none if there is no such layer.
@@ -93,10 +99,7 @@ impl Image {
 
     /// What whoever sees it should know: light that is too rare, an error that is not reached, samples left out.
     pub fn warnings(&self) -> Vec<String> {
-        let samples = self.provenance.facts.iter().find_map(|(key, fact)| match fact {
-            Fact::Count(samples) if key == "samples" => Some(*samples),
-            _ => None,
-        });
+        let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
         few.into_iter().chain(warnings(&self.report, self.error.as_ref())).collect()
     }
@@ -142,10 +145,7 @@ impl Image {
     /// # Panics
     /// If there is no such pixel.
     pub fn spectrum_at(&self, x: u32, y: u32) -> Option<Vec<[f64; 2]>> {
-        let spectral = self.film.spectral.as_ref()?;
-        assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
-        let values = spectral.pixel(y as usize * self.film.width as usize + x as usize).iter();
-        Some(spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect())
+        Some(spectrum(self.film.spectral.as_ref()?, self.number(x, y), 0))
     }
 
     /// The spectra of S1, S2 and S3 of a pixel, as [`spectrum_at`](Self::spectrum_at) has that of S0; none if no Stokes
@@ -155,12 +155,8 @@ impl Image {
     /// If there is no such pixel.
     pub fn stokes_spectra_at(&self, x: u32, y: u32) -> Option<[Vec<[f64; 2]>; 3]> {
         let spectral = self.film.spectral.as_ref().filter(|spectral| spectral.has_stokes)?;
-        assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
-        let pixel = y as usize * self.film.width as usize + x as usize;
-        Some([1, 2, 3].map(|component| {
-            let values = spectral.component(pixel, component).iter();
-            spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect()
-        }))
+        let pixel = self.number(x, y);
+        Some([1, 2, 3].map(|component| spectrum(spectral, pixel, component)))
     }
 
     /// Writes the spectra of all pixels as an OpenEXR file, in the layout of Fichet, Pacanowski & Wilkie 2021; nothing
@@ -187,4 +183,10 @@ impl Image {
     pub fn png_bytes(&self, exposure: f64) -> Result<Vec<u8>> {
         film_png(&self.film, exposure, Path::new("the picture"))
     }
+}
+
+/// The center of each band in nm, and a Stokes component of a pixel there.
+fn spectrum(spectral: &SpectralImage, pixel: usize, component: usize) -> Vec<[f64; 2]> {
+    let values = spectral.component(pixel, component).iter();
+    spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect()
 }

@@ -6,6 +6,7 @@ mod identity;
 mod image;
 mod image_error;
 mod options;
+mod origin;
 mod part;
 mod parts;
 mod plan_file;

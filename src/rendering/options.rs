@@ -47,6 +47,9 @@ pub struct Options {
 }
 
 impl Options {
+    /// Most threads that should be asked for: more than any one machine has processors for; many more would exhaust it.
+    pub const MOST_THREADS: u16 = 1024;
+
     /// Puts these settings in place of the scene's own.
     ///
     /// # Errors

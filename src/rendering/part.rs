@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::identity::Identity;
 use super::image::Image;
+use super::origin::{NON_FINITE, SAMPLES};
 use crate::error::{Error, Result};
 use crate::film::{
-    BlockReader, Fact, Film, Format, Kind, LayerImage, Pixel, Provenance, Shard, SpectralImage, TilePlace, View,
-    Window, write_blocks,
+    BlockReader, Film, Format, Kind, Pixel, Provenance, Shard, SpectralImage, TilePlace, View, write_blocks,
 };
 use crate::scene::FilmSettings;
 use crate::trace::{self, Values};
@@ -41,8 +41,6 @@ pub(super) struct Tile {
     pub(super) spectral: Vec<f32>,
 }
 
-const NON_FINITE: &str = "nonFinite";
-
 /// Writes the finished tiles of an image, of which all else is known.
 ///
 /// # Errors
@@ -56,7 +54,7 @@ pub(super) fn write(
 ) -> Result<()> {
     let Image { film, report, view, format, mut provenance, .. } = summary;
     let shared = passes.non_finite_in_all_parts();
-    set_non_finite(&mut provenance, shared);
+    provenance.set_count(NON_FINITE, shared);
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
     let head = Head { identity, shard, film, format, view, provenance, non_finite };
     write_blocks(path, PART, &|blocks| {
@@ -106,7 +104,7 @@ impl Head {
         let (ours, theirs) = (&self.provenance, &part.provenance);
         if let Some(((key, theirs), (_, ours))) = theirs.facts.iter().zip(&ours.facts).find(|(a, b)| a != b) {
             return Some(match &**key {
-                "samples" => format!("it has {theirs} samples per pixel, not {ours}"),
+                SAMPLES => format!("it has {theirs} samples per pixel, not {ours}"),
                 key => format!("its {key} is {theirs}, not {ours}"),
             });
         }
@@ -116,11 +114,7 @@ impl Head {
 
     /// What was left out of the light that all parts send alike.
     pub(super) fn shared_non_finite(&self) -> u64 {
-        let shared = self.provenance.facts.iter().find_map(|fact| match fact {
-            (key, Fact::Count(shared)) if key == NON_FINITE => Some(*shared),
-            _ => None,
-        });
-        shared.unwrap_or_default()
+        self.provenance.count(NON_FINITE).unwrap_or_default()
     }
 }
 
@@ -129,21 +123,7 @@ impl Tile {
     pub(super) fn fits(&self, place: TilePlace, film: &Film) -> bool {
         let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
         self.pixels.len() == place.pixels()
-            && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * numbers(layer)))
+            && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * layer.numbers()))
             && self.spectral.len() == place.pixels() * spectra
     }
-}
-
-pub(super) fn set_non_finite(provenance: &mut Provenance, count: u64) {
-    provenance.facts.iter_mut().filter(|(key, _)| key == NON_FINITE).for_each(|(_, fact)| *fact = Fact::Count(count));
-}
-
-/// The window of pixels that a film is.
-pub(super) fn window(film: &Film) -> Window {
-    Window { left: film.corner[0], top: film.corner[1], width: film.width, height: film.height }
-}
-
-/// Numbers of a pixel in a layer.
-pub(super) fn numbers(layer: &LayerImage) -> usize {
-    layer.layer.channels().len()
 }

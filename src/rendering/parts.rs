@@ -5,7 +5,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::image::Image;
-use super::part::{Head, Tile, numbers, open, set_non_finite, window};
+use super::origin::NON_FINITE;
+use super::part::{Head, Tile, open};
 use crate::error::{Error, Result};
 use crate::film::{
     BlockReader, DEPTH_OF_NOTHING, Film, Format, Heading, Pixel, Provenance, Rows, Shard, TILE, TilePlace, View,
@@ -73,7 +74,7 @@ impl Parts {
             return Error::refuse("no part of an image is given", "name all of them: render merge out.exr *.part");
         };
         let (whole, blocks) = open(first)?;
-        let (count, window) = (whole.shard.count(), window(&whole.film));
+        let (count, window) = (whole.shard.count(), whole.film.window());
         let mut non_finite = whole.non_finite;
         let mut found = BTreeMap::from([(whole.shard.number(), tiles(first, blocks, whole.shard, window)?)]);
         for path in others {
@@ -100,7 +101,7 @@ impl Parts {
         }
         non_finite += whole.shared_non_finite();
         let Head { film, format, view, mut provenance, .. } = whole;
-        set_non_finite(&mut provenance, non_finite);
+        provenance.set_count(NON_FINITE, non_finite);
         Ok(Self { film, format, view, provenance, non_finite, files: found.into_values().collect() })
     }
 
@@ -175,7 +176,7 @@ struct Strip<'p> {
 impl<'p> Strip<'p> {
     fn new(parts: &'p Parts, at_once: Option<u32>) -> Self {
         let readers = parts.files.iter().take(MOST_OPEN).map(|_| None).collect();
-        let (files, tiles) = (parts.files.clone(), Shard::WHOLE.tiles(window(&parts.film)).count());
+        let (files, tiles) = (parts.files.clone(), Shard::WHOLE.tiles(parts.film.window()).count());
         Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..parts.film.clone() } }
     }
 
@@ -185,7 +186,7 @@ impl<'p> Strip<'p> {
         film.height = rows;
         let pixels = film.width as usize * rows as usize;
         film.pixels.resize(pixels, BLANK);
-        film.layers.iter_mut().for_each(|layer| layer.values.resize(pixels * numbers(layer), 0.0));
+        film.layers.iter_mut().for_each(|layer| layer.values.resize(pixels * layer.numbers(), 0.0));
         if let Some(spectral) = &mut film.spectral {
             spectral.values.resize(pixels * spectral.numbers(), 0.0);
         }
@@ -218,10 +219,10 @@ impl<'p> Strip<'p> {
         let film = &mut self.film;
         let [left, top] = place.corner;
         let place = TilePlace { corner: [left, top - first], ..place };
-        let window = window(film);
+        let window = film.window();
         paste(&tile.pixels, 1, window, place, &mut film.pixels);
         for (layer, values) in film.layers.iter_mut().zip(&tile.layers) {
-            paste(values, numbers(layer), window, place, &mut layer.values);
+            paste(values, layer.numbers(), window, place, &mut layer.values);
         }
         if let Some(spectral) = &mut film.spectral {
             paste(&tile.spectral, spectral.numbers(), window, place, &mut spectral.values);
@@ -239,7 +240,7 @@ impl Rows for Strip<'_> {
 
     fn rows(&mut self, rows: Range<u32>) -> Result<(&Film, usize)> {
         self.resize(rows.end - rows.start);
-        let window = window(&self.parts.film);
+        let window = self.parts.film.window();
         let per_row = window.width.div_ceil(TILE) as usize;
         let [first, end] = [rows.start, rows.end].map(|row| row.div_ceil(TILE) as usize * per_row);
         for place in Shard::WHOLE.tiles(window).skip(first).take(end - first) {

@@ -10,13 +10,14 @@ use super::identity::Identity;
 use super::image::Image;
 use super::image_error::ImageError;
 use super::options::{Options, check_layers};
+use super::origin::{NON_FINITE, SAMPLES, origin};
 use super::part;
 use super::plan_file::read_plan;
 use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Advance, Method, REPLICATES, Report, bytes_of_film, prepare};
+use crate::trace::{self, Advance, Method, bytes_of_film, prepare};
 
 /// Renders a scene.
 ///
@@ -49,8 +50,8 @@ pub struct Rendering {
     passes: trace::Rendering<'static>,
     view: View,
     format: Format,
-    /// The scene file's hash, the projection and the filter.
-    origin: Origin,
+    /// What the image's file says of the render, but for the counts of what it has done.
+    provenance: Provenance,
     threads: rayon::ThreadPool,
     /// What a render has to be to go on from this one.
     identity: Identity,
@@ -63,14 +64,6 @@ pub struct Rendering {
     written: Vec<Written>,
     /// How much of the work an earlier run has done.
     resumed_at: u64,
-}
-
-struct Origin {
-    hash: String,
-    projection: Projection,
-    filter: String,
-    /// Values in place of the scene file's, as on a command line.
-    settings: String,
 }
 
 impl Rendering {
@@ -90,9 +83,7 @@ impl Rendering {
         } else {
             options.apply(scene.to_mut())?;
         }
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
-        let threads = threads
-            .map_err(|error| Error::Arguments { message: format!("cannot start threads: {error}"), help: None })?;
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
         let plan = match &options.plan {
             Some(path) => read_plan(path, &scene)?,
             None => threads.install(|| plan(&scene)),
@@ -108,18 +99,16 @@ impl Rendering {
             latlong: camera.projection() == Projection::Equirectangular,
             optics: camera.optics(scene.render.meters_per_unit),
         };
-        let settings: Vec<String> = scene.settings.iter().map(|setting| format!("--set {setting}")).collect();
-        let (hash, filter) = (scene.hash.clone(), scene.film.filter.described());
         Ok(Self {
             identity: Identity::new(&scene, &plan.method, options.shard),
             shard: options.shard,
+            provenance: origin(&scene, &plan),
             plan,
             passes: trace::Rendering::of_shard(Cow::Owned(world), options.shard)
                 .since(now)
                 .counting_photons_as(photon_cost),
             view,
             format: scene.format.clone(),
-            origin: Origin { hash, projection: camera.projection(), filter, settings: settings.join(" ") },
             threads,
             asked: scene.render.error,
             began,
@@ -309,7 +298,9 @@ impl Rendering {
         // Within a pass some pixels are ahead: then it is the mean.
         let within = report.samples.div_ceil((u64::from(film.width) * u64::from(film.height)).max(1));
         let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
-        let mut provenance = provenance(&self.origin, &self.plan, samples, &report);
+        let mut provenance = self.provenance.clone();
+        provenance.set_count(SAMPLES, samples);
+        provenance.set_count(NON_FINITE, report.non_finite);
         let stopped_by = report.stopped_by.map(|by| ("stoppedBy".into(), Fact::Text(by.name().to_owned())));
         provenance.facts.extend(stopped_by.into_iter().chain(error.iter().flat_map(facts_of_error)));
         if !self.passes.is_finished() {
@@ -351,35 +342,4 @@ fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let blur = (error.blur.at_most > 0.0).then_some(("blur", Fact::Number(error.blur.expected)));
     let alpha = error.alpha.map(|alpha| ("alphaNoise", Fact::Number(alpha.expected)));
     facts.into_iter().chain(blur).chain(alpha).map(|(key, fact)| (key.into(), fact)).collect()
-}
-
-fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Provenance {
-    let text = |text: &str| Fact::Text(text.to_owned());
-    let method = &plan.method;
-    let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
-    let replicates = method.stop.as_ref().map(|_| ("replicates", Fact::Count(REPLICATES as u64)));
-    let pass = method.light_pass.as_ref();
-    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
-    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
-    let facts = [
-        ("version", text(env!("CARGO_PKG_VERSION"))),
-        ("sceneHash", text(&origin.hash)),
-        ("model", text(&method.basis.name())),
-        ("wavelengths", text(&wavelengths.join(" "))),
-        ("projection", text(origin.projection.name())),
-        ("transport", text(method.transport.name())),
-        ("filter", text(&origin.filter)),
-        ("samples", Fact::Count(samples)),
-        ("seed", text(&method.seed.to_string())),
-        ("nonFinite", Fact::Count(report.non_finite)),
-    ];
-    let settings = (!origin.settings.is_empty()).then(|| ("set", text(&origin.settings)));
-    let facts = facts
-        .into_iter()
-        .chain(settings)
-        .chain(replicates)
-        .chain(photons)
-        .chain(blur)
-        .map(|(key, fact)| (key.into(), fact));
-    Provenance { facts: facts.collect(), time: None }
 }

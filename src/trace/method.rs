@@ -127,6 +127,13 @@ pub struct MapPasses {
     pub chance: f64,
 }
 
+impl MapPasses {
+    /// Photons of all of them, about.
+    pub fn all_photons(self) -> u64 {
+        u64::from(self.count) * self.photons
+    }
+}
+
 /// Which of a surface's branches are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Transport {

@@ -10,9 +10,9 @@ use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
-use super::keep::catch_plainly;
-use super::messages::{answer, say};
-use super::outputs::{check_exposure, check_png, refuse, spare};
+use super::messages::{answer, print_written, say};
+use super::outputs::{check_exposure, check_png, spare};
+use super::signals::catch_plainly;
 
 const HELP: &str = "\
 kitty, WezTerm and Ghostty show the pixels themselves, every other terminal two of them in a character. \
@@ -78,7 +78,7 @@ pub fn run(query: &Query) -> Result<()> {
             check_writable(png)?;
             catch_plainly()?;
             picture.write_png(png)?;
-            say(&format!("wrote {}", png.display()));
+            print_written(png);
             Ok(())
         }
         None => answer(&terminal::drawn(&picture, query.sixel)?),
@@ -120,7 +120,7 @@ fn of_mattes(query: &Query, file: &ExrFile, shown: &str, unknown: Error) -> Resu
 fn refuse_curves(query: &Query, name: &str) -> Result<()> {
     let given = [("--exposure", query.exposure.is_some()), ("--tone", query.tone.is_some())];
     match given.iter().find(|(_, given)| *given) {
-        Some((flag, _)) => refuse(&format!("{flag} is for colors, and {name} has none"), Some("leave it out")),
+        Some((flag, _)) => Error::refuse(format!("{flag} is for colors, and {name} has none"), "leave it out"),
         None => Ok(()),
     }
 }

@@ -1,6 +1,5 @@
 //! The lights that no surface gives.
 
-
 use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
