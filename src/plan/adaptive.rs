@@ -1,7 +1,7 @@
 //! Whether more samples are taken where the noise is.
 
 use crate::film::TELL_VARIANCE;
-use crate::scene::{AidText, Scene};
+use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Adaptive, FIRST_LOOK, SampleDensity, Transport, World, adaptive};
 
@@ -18,7 +18,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
     let (film, method) = (world.scene().film, world.method());
     let of_pixel = if method.stop.is_some() { FIRST_LOOK } else { method.samples };
     let samples = f64::from(film.width) * f64::from(film.height) * f64::from(of_pixel);
-    let is_asked = scene.render.adaptive == AidText::Auto && matches!(method.transport, Transport::Random { .. });
+    let is_asked = scene.render.adaptive == AutoText::Auto && matches!(method.transport, Transport::Random { .. });
     let fewest = f64::from(of_pixel) * SampleDensity::times(SampleDensity::LEAST);
     if !is_asked || samples < LARGE || fewest < f64::from(TELL_VARIANCE) {
         return None;

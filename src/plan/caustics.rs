@@ -7,7 +7,7 @@ use super::words::in_number;
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
-use crate::scene::{AidText, Scene};
+use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
 
@@ -97,6 +97,13 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         many => format!("{} smooth objects", many.len()),
     };
     let mut lines = Vec::new();
+    if let Some(endless) = smooth_objects(scene).find(|&object| !is_photon_target(scene, object)) {
+        lines.push(format!(
+            "left to chance: caustics of {}, which has no end, as a quad or a disc has{}",
+            scene.objects[endless].name,
+            missing(scene)
+        ));
+    }
     if !unseen.is_empty() {
         lines.push(format!(
             "no caustic of {} in sight: none of some thousand photons toward {to} was seen",
@@ -149,12 +156,15 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     if matches!(world.method().transport, Transport::Deterministic { .. }) {
         return Err(None);
     }
-    if scene.render.caustics == AidText::Off {
+    if scene.render.caustics == AutoText::Off {
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     if targets(scene).is_empty() {
-        let why = match smooth_object(scene) {
-            Some(object) => format!("{} has no end, so photons cannot be aimed at it", scene.objects[object].name),
+        let why = match smooth_objects(scene).next() {
+            Some(object) => {
+                let name = &scene.objects[object].name;
+                format!("{name} has no end, so photons cannot be aimed at it, as they could at a quad or a disc")
+            }
             None => "caustics of surfaces that are smooth only in part, such as clear coats, are left to chance".into(),
         };
         return Err(Some(format!("no photon tracing: {why}{}", missing(scene))));
@@ -188,7 +198,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
 /// Why a scene has no caustics, if it has none.
 fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     let mut materials = (0..scene.objects.len()).map(|object| scene.material_of(object as u32));
-    if smooth_object(scene).is_none() && !materials.any(Material::is_smooth_somewhere) {
+    if smooth_objects(scene).next().is_none() && !materials.any(Material::is_smooth_somewhere) {
         Some("no surface is smooth glass, a mirror or polished metal")
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
@@ -199,11 +209,11 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     }
 }
 
-/// The first object that only mirrors or refracts light.
-fn smooth_object(scene: &Scene<Curve>) -> Option<usize> {
+/// Objects that only mirror or refract light.
+fn smooth_objects(scene: &Scene<Curve>) -> impl Iterator<Item = usize> {
     let is_smooth =
         |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
-    (0..scene.objects.len()).find(|&object| is_smooth(scene.material_of(object as u32)))
+    (0..scene.objects.len()).filter(move |&object| is_smooth(scene.material_of(object as u32)))
 }
 
 /// Objects that photons can be sent to.

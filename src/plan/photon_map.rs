@@ -3,7 +3,7 @@
 use super::caustics::{sees_receivers, small_lights, targets};
 use super::efficiency::rounded;
 use super::words::{in_number, percent};
-use crate::scene::{AidText, Scene};
+use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{
     GatheredWorth, LightPass, MapPasses, Method, RAYS_OF_A_LOOK, Transport, World, gathered_worth, photons_within,
@@ -39,7 +39,7 @@ pub(super) fn with_map(
 ) -> (Option<LightPass>, Vec<String>) {
     let method = untaught.method();
     let as_shown = || (shown.cloned(), Vec::new());
-    let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AidText::Off;
+    let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AutoText::Off;
     // What is seen straight was weighed: where photons do not pay there, they are not sent for the sake of what is not.
     if is_off || targets(scene).is_empty() || (shown.is_none() && sees_receivers(scene)) {
         return as_shown();

@@ -25,7 +25,7 @@ pub use film::FilmSettings;
 pub use hit::{Ends, Hit, Primitive};
 pub use object::{MaterialId, Object, Sight};
 pub use relief::{Relief, ReliefKind};
-pub use render_text::{AidText, ModelText, PolarizationText, RenderText};
+pub use render_text::{AutoText, ModelText, PolarizationText, RenderText};
 pub use share::share;
 pub use source::{SETTINGS, Source};
 pub use text::{Numbers, Rows};

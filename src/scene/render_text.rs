@@ -31,10 +31,10 @@ pub struct RenderText {
     /// How often light may leave any surface, glass and mirrors included; no limit if absent.
     pub max_bounces: Option<u32>,
     /// Whether caustics may have a light pass of their own: photons, where the scene needs them.
-    pub caustics: AidText,
+    pub caustics: AutoText,
     /// Whether pixels may take more samples where the noise is, and fewer elsewhere: if an equal error comes clearly
     /// sooner.
-    pub adaptive: AidText,
+    pub adaptive: AutoText,
     /// Whether polarization is traced.
     pub polarization: PolarizationText,
     /// Whether a part of the image is made, which does not know the error of the whole: then all samples are taken.
@@ -69,7 +69,7 @@ pub enum PolarizationText {
 /// render.caustics = "auto"     # "off"
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AidText {
+pub enum AutoText {
     /// Where the plan finds that it pays.
     #[default]
     Auto,

@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use crate::error::nearest;
 use crate::scene::text::{Fields, Value};
-use crate::scene::{AidText, ModelText, PolarizationText, RenderText, duration};
+use crate::scene::{AutoText, ModelText, PolarizationText, RenderText, duration};
 
 /// The models that have a name.
 const MODELS: [(&str, ModelText); 3] = [("auto", ModelText::Auto), ("rgb", ModelText::Rgb), ("hero", ModelText::Hero)];
@@ -32,9 +32,9 @@ pub(super) fn render(value: Value) -> Option<RenderText> {
         let seed = render.or("seed", 0, |value| value.whole(0..=u64::MAX));
         let diffuse_bounces = render.maybe("diffuse_bounces", Value::count);
         let max_bounces = render.maybe("max_bounces", Value::count);
-        let words = [("auto", AidText::Auto), ("off", AidText::Off)];
+        let words = [("auto", AutoText::Auto), ("off", AutoText::Off)];
         let [adaptive, caustics] =
-            ["adaptive", "caustics"].map(|key| render.or(key, AidText::Auto, |value| value.word(&words)));
+            ["adaptive", "caustics"].map(|key| render.or(key, AutoText::Auto, |value| value.word(&words)));
         let words = [("auto", PolarizationText::Auto), ("on", PolarizationText::On), ("off", PolarizationText::Off)];
         let polarization = render.or("polarization", PolarizationText::Auto, |value| value.word(&words));
         Some(RenderText {
