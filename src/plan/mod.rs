@@ -117,7 +117,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
 fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
-    let stop = stopping::stop(&scene.render);
+    let stop = stopping::stop(&scene.render, scene.film.window());
     let samples = match (transport, scene.render.samples) {
         _ if stop.is_some() => stopping::COUNTED_FOR,
         (_, Some(samples)) => samples,

@@ -1,12 +1,16 @@
 //! When enough samples are taken.
 
 use super::words::{in_words, percent};
+use crate::film::Window;
 use crate::scene::{RenderText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{FIRST_LOOK, Stop};
 
 /// Fewest that replicates can share.
 const FEWEST: u32 = 8;
+/// Camera samples of a whole image that an error is believed of, at least: of a single pixel, 64 would often miss a lamp
+/// that fills a hundredth of it.
+const BELIEVED: u32 = 4096;
 /// Most samples where the scene does not say.
 const MOST: u32 = 65_536;
 /// Samples that photons are counted for: as many for each, however many there will be.
@@ -15,12 +19,14 @@ pub(super) const COUNTED_FOR: u32 = 1024;
 const NOISE: f64 = 0.942_809_041_582_063_4;
 
 /// When a render has enough, if it does not take all samples whatever they show.
-pub(super) fn stop(render: &RenderText) -> Option<Stop> {
+pub(super) fn stop(render: &RenderText, window: Window) -> Option<Stop> {
     let RenderText { error, time, samples, is_part, .. } = *render;
     let most = samples.unwrap_or(MOST) / FEWEST * FEWEST;
     let fewest = if time.is_some() { FEWEST } else { FIRST_LOOK };
     let asked = error.is_some() || time.is_some();
-    (asked && most >= fewest && !is_part).then(|| Stop { noise: error.map(|error| NOISE * error), time, most })
+    let pixels = window.width.saturating_mul(window.height).max(1);
+    let least = BELIEVED.div_ceil(pixels).clamp(FIRST_LOOK.min(most), most);
+    (asked && most >= fewest && !is_part).then(|| Stop { noise: error.map(|error| NOISE * error), time, least, most })
 }
 
 /// What a person is told of it.

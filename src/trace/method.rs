@@ -91,6 +91,8 @@ pub struct Stop {
     pub noise: Option<f64>,
     /// How long it may render.
     pub time: Option<Duration>,
+    /// Fewest camera samples per pixel that an error is believed of.
+    pub least: u32,
     /// Most camera samples per pixel; they are a multiple of eight.
     pub most: u32,
 }

@@ -56,7 +56,7 @@ fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) ->
 const MAP: MapPasses = MapPasses { count: 8, photons: 32_768, radius: 4.0, chance: 1.0 };
 
 fn all_of(most: u32) -> Stop {
-    Stop { noise: None, time: None, most }
+    Stop { noise: None, time: None, least: 64, most }
 }
 
 /// Mean and standard error.

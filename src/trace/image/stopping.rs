@@ -80,7 +80,7 @@ impl Clock {
 
 /// Whether noise and blur are small enough, and known well enough to say so.
 fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
-    let is_known = |Measured { noise, .. }: &&Measured| noise.samples >= FIRST_LOOK && noise.outlier.is_none();
+    let is_known = |Measured { noise, .. }: &&Measured| noise.samples >= stop.least && noise.outlier.is_none();
     matches!((stop.noise, measured.filter(is_known)), (Some(wanted), Some(error)) if error.at_most() <= wanted)
 }
 
@@ -133,7 +133,8 @@ pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     let mut wanted = each.max(FIRST).min(most(stop));
     if let (Some(goal), Some(measured)) = (stop.noise, &progress.measured) {
         let times = (measured.at_most() / goal).powi(2);
-        while f64::from(wanted) < times * f64::from(stage.before) && wanted < most(stop) {
+        let least = (times * f64::from(stage.before)).max(f64::from(stop.least / REPLICATES as u32));
+        while f64::from(wanted) < least && wanted < most(stop) {
             wanted = wanted.saturating_mul(2).min(most(stop));
         }
     } else {
