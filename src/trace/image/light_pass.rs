@@ -15,7 +15,7 @@ use crate::film::{Layer, Shard};
 use crate::trace::contribution::{Contribution, Found};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, Sent, Splat, batches, send, show as show_photon};
+use crate::trace::photon::{Batch, Splat, batches, send, send_shown, show as show_photon};
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -173,15 +173,6 @@ fn send_on<const N: usize, P: Polarization<N>>(
         }
     }
     true
-}
-
-/// Sends one batch.
-pub fn send_shown<const N: usize, P: Polarization<N>>(
-    world: &World,
-    targets: &PhotonTargets,
-    batch: Batch,
-) -> Sent<Splat> {
-    send(world, targets, batch, false, &show_photon::<N, P>)
 }
 
 /// What photons sent ahead found.

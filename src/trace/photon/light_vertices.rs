@@ -149,12 +149,6 @@ pub struct LightPaths<'a> {
     scale: OnceLock<(DVec3, f64)>,
 }
 
-/// What became of some light paths.
-struct Followed<const N: usize> {
-    vertices: Vec<LightVertex<N>>,
-    stats: Stats,
-}
-
 impl<'a> LightPaths<'a> {
     /// Those that the method asks for; none where no light can be followed.
     pub fn new(world: &'a World, seed: u64) -> Option<Self> {
@@ -215,10 +209,11 @@ impl<'a> LightPaths<'a> {
             // Sets differ in size: each has photons of its own.
             let seed = seed_of(self.seed ^ PHOTON_SEED, set.into());
             let batches = batches(&targets, |_| 0, |target| target.photons, seed);
-            let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, vertices: &mut Vec<_>| {
-                vertices.extend(kept(self.world, landing, true));
+            let of_batch = |number: usize| {
+                send(self.world, &targets, batches[number], false, &|_, landing: &Landing<N, P>, _, vertices| {
+                    vertices.extend(kept(self.world, landing, true));
+                })
             };
-            let of_batch = |number: usize| send(self.world, &targets, batches[number], false, &keep);
             for sent in in_parallel(batches.len(), &of_batch) {
                 stats += sent.stats;
                 vertices.extend(sent.kept);
@@ -246,9 +241,9 @@ impl<'a> LightPaths<'a> {
         let of_batch = |batch| self.follow::<N, P>(set, first(batch)..first(batch + 1).min(paths));
         let done = in_parallel(paths.div_ceil(BATCH) as usize, &of_batch);
         let (mut stats, mut vertices) = (Stats::default(), Vec::new());
-        for followed in done {
-            stats += followed.stats;
-            vertices.extend(followed.vertices);
+        for (of_batch, noticed) in done {
+            vertices.extend(of_batch);
+            stats += noticed;
         }
         let each = 1.0 / paths as f32;
         vertices.iter_mut().for_each(|vertex| vertex.leaving = vertex.leaving * each);
@@ -256,7 +251,7 @@ impl<'a> LightPaths<'a> {
     }
 
     /// Follows some light paths of a set.
-    fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
+    fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> (Vec<LightVertex<N>>, Stats) {
         let world = self.world;
         let mut walker = Walker::<N, P>::new(world, PHOTONS);
         let draw = world.method.basis.draw(0.0);
@@ -277,7 +272,7 @@ impl<'a> LightPaths<'a> {
                 vertices.extend(kept(world, landing, false));
             });
         }
-        Followed { vertices, stats: walker.stats }
+        (vertices, walker.stats)
     }
 
     /// Deals vertices into sets of candidates.
@@ -429,11 +424,11 @@ fn morton(place: DVec3) -> u64 {
 /// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over
 /// those from lights that send photons is left to photons.
 fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
-    let Landing { path, at, light, .. } = landing;
+    let Landing { path, at, start } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
-    let is_left = !is_of_photon && world.has_map() && world.sends_photons(*light) && came_over_smooth;
+    let is_left = !is_of_photon && world.has_map() && world.sends_photons(start.light) && came_over_smooth;
     let usable = holds_vertices(world, at.object, at.point)
         && !is_left
         && !leaving.is_zero()
@@ -441,7 +436,7 @@ fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon:
     // From the camera, a path leaves one diffuse surface more to come over smooth ones to the light.
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
     let SurfacePoint { position, error, normal, .. } = *at.point;
-    let (error, flat, light) = (normal.abs().dot(error), at.flat, *light);
+    let (error, flat, light) = (normal.abs().dot(error), at.flat, start.light);
     let (surfaces, parted) = (path.surfaces(), path.parted);
     usable.then_some(LightVertex { position, error, flat, leaving, light, surfaces, diffuse, is_of_photon, parted })
 }

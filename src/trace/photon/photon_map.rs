@@ -11,14 +11,14 @@ use super::follow::Landing;
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
 use crate::light::LightId;
-use crate::math::{DVec3, Sampler};
+use crate::math::DVec3;
 use crate::spectrum::{Lanes, Matching, Wavelength};
 use crate::trace::World;
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
-use crate::trace::walk::{Interaction, Polarization, Polarized, Walker};
+use crate::trace::walk::{Interaction, Polarization, Polarized};
 
 /// A photon that has landed, and what it carries.
 #[derive(Clone, Debug)]
@@ -111,10 +111,7 @@ pub fn send_kept<const N: usize, P: Polarization<N>>(
     targets: &PhotonTargets,
     batch: Batch,
 ) -> Sent<(DVec3, Kept<N, P::Landed>)> {
-    let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, kept: &mut Vec<_>| {
-        keep(world, landing, kept);
-    };
-    send(world, targets, batch, false, &keep)
+    send(world, targets, batch, false, &|_, landing: &Landing<N, P>, _, kept| keep(world, landing, kept))
 }
 
 /// Keeps a photon where it lands.
@@ -123,7 +120,7 @@ fn keep<const N: usize, P: Polarization<N>>(
     landing: &Landing<N, P>,
     kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
 ) {
-    let Landing { path, at, light, .. } = landing;
+    let Landing { path, at, start } = landing;
     let Interaction { arrival, flat, point, .. } = at;
     let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
     let photon = Landed {
@@ -134,17 +131,17 @@ fn keep<const N: usize, P: Polarization<N>>(
         polarization: path.polarization.landed(at),
         carries: (),
     };
-    let response = &world.responses[*light];
+    let (light, response) = (start.light, &world.responses[start.light]);
     let by_heroes = Matching::<N>::alone(arrival.draw, flux, path.parted, |lane, wavelength, weight| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
         let polarization = P::read_landed(&photon.polarization, of_lane);
         let color = wavelength.worth(response).map(|x| weight * x);
-        let carries = Alone { wavelength, light: *light, weight, color };
+        let carries = Alone { wavelength, light, weight, color };
         kept.push((point.position, Kept::Alone(photon.with(polarization, carries))));
     });
     if !by_heroes {
         let polarization = photon.polarization.clone();
-        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light: *light }))));
+        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light }))));
     }
 }
 

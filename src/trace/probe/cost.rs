@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
-use crate::trace::image::{PhotonCost, send_shown};
+use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{alone, in_parallel};
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept};
+use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept, send_shown};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};

@@ -7,7 +7,7 @@ use crate::math::Sampler;
 use crate::scene::FilmSettings;
 use crate::spectrum::apply;
 use crate::trace::camera::PathTracer;
-use crate::trace::image::light_pass;
+use crate::trace::image::splats;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, World};
@@ -86,10 +86,10 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
     let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
     for image in 0..IMAGES {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
-        let mut splats = Vec::new();
-        let shown = light_pass::splats::<N, Polarized>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
+        let mut seen = Vec::new();
+        let shown = splats::<N, Polarized>(world, &mut |splat| seen.push((splat.pixel, splat.rgb)));
         (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
-        values.extend(summed(splats).into_iter().map(|(pixel, rgb)| {
+        values.extend(summed(seen).into_iter().map(|(pixel, rgb)| {
             let [x, y, z] = apply(&to_xyz, rgb);
             (pixel, [x, y, z, x + y + z])
         }));

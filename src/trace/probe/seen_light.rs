@@ -7,7 +7,7 @@ use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
 use crate::trace::image::splats;
 use crate::trace::pass::Pass;
-use crate::trace::photon::photon_map;
+use crate::trace::photon::photons;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::width::in_lanes;
 use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
@@ -86,7 +86,7 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
     take: &mut impl FnMut([u32; 2], usize, Amount),
 ) {
     let window = world.scene.film.window();
-    let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
+    let photons = photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
     let mut samples = 0;
     for [x, y] in window.middles_of_cells(SIDE) {
