@@ -78,9 +78,7 @@ pub(super) fn with_map(
 /// What a person is told of a map beside so many camera samples, which are all of them or, with a stop rule, not.
 fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
     let photons = match (method.stop.is_some(), map.count) {
-        (true, _) => {
-            format!("{:.2} photons for each camera sample", (u64::from(map.count) * map.photons) as f64 / samples)
-        }
+        (true, _) => format!("{:.2} photons for each camera sample", map.all_photons() as f64 / samples),
         (false, 1) => format!("1 pass of {} photons", in_number(map.photons)),
         (false, count) => format!("{count} passes of {} photons", in_number(map.photons)),
     };

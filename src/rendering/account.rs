@@ -35,7 +35,7 @@ impl<'a> PlanAccount<'a> {
     pub fn new(plan: &'a Plan) -> Self {
         let method = &plan.method;
         let (pass, is_known) = (method.light_pass.as_ref(), method.stop.is_none());
-        let of_map = pass.and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count) * map.photons);
+        let of_map = method.map().map_or(0, |map| map.all_photons());
         Self {
             model: method.basis.name(),
             transport: method.transport.name(),

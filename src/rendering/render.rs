@@ -358,9 +358,8 @@ fn provenance(origin: &Origin, plan: &Plan, samples: u64, report: &Report) -> Pr
     let method = &plan.method;
     let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
     let replicates = method.stop.as_ref().map(|_| ("replicates", Fact::Count(REPLICATES as u64)));
-    let pass = method.light_pass.as_ref();
-    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
-    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
+    let photons = method.light_pass.as_ref().map(|pass| ("photons", Fact::Count(pass.photons)));
+    let blur = method.map().map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
     let facts = [
         ("version", text(env!("CARGO_PKG_VERSION"))),
         ("sceneHash", text(&origin.hash)),

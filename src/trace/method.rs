@@ -46,6 +46,11 @@ impl Method {
         self.max_bounces < u32::MAX || self.diffuse_bounces < u32::MAX
     }
 
+    /// How photons are gathered; none where they are not.
+    pub fn map(&self) -> Option<MapPasses> {
+        self.light_pass.as_ref().and_then(|pass| pass.map)
+    }
+
     /// One sample of each pixel by paths of any length from the camera alone, without polarization.
     pub fn of_paths(basis: Basis, transport: Transport, seed: u64) -> Self {
         Self {
@@ -125,6 +130,13 @@ pub struct MapPasses {
     /// The chance of each place that a path reaches that photons are gathered there, above 0 to 1; what is found counts
     /// for the others.
     pub chance: f64,
+}
+
+impl MapPasses {
+    /// Photons of all passes, about.
+    pub fn all_photons(&self) -> u64 {
+        u64::from(self.count) * self.photons
+    }
 }
 
 /// Which of a surface's branches are followed.

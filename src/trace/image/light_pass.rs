@@ -15,7 +15,7 @@ use crate::film::{Layer, Shard};
 use crate::trace::contribution::{Contribution, Found};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, Splat, batches, send, send_shown, show as show_photon};
+use crate::trace::photon::{Batch, Splat, batches, batches_of_pass, send, send_shown, show as show_photon};
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -59,6 +59,14 @@ impl Sending {
     pub fn begin_anew(&mut self) {
         self.batches = 0;
     }
+
+    /// The part of a pass's photons that are sent.
+    pub(in crate::trace) fn part(&self, world: &World, pass: &Pass) -> f64 {
+        let Some(targets) = world.photon_targets.as_ref().filter(|_| self.batches > 0) else { return 0.0 };
+        let batches = batches_of_pass(&pass.targets(world, targets, 1), 0, 0);
+        let photons = |batches: &[Batch]| batches.iter().map(|batch| batch.count).sum::<u64>() as f64;
+        photons(&batches[..self.batches.min(batches.len())]) / photons(&batches)
+    }
 }
 
 /// Sends the photons of a world's light pass that have not been sent, until it shall stop, and adds what they show to
@@ -75,7 +83,6 @@ pub fn show<const N: usize, P: Polarization<N>>(
     watch: &Watch,
 ) -> bool {
     let Some(targets) = &world.photon_targets else { return true };
-    let some = pass.part_of_photons(world).map(|part| targets.times(part));
     let weight = pass.weight_of_photons();
     let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
     for tile in tiles.iter_mut().filter(|tile| tile.shown.pixels.is_empty()) {
@@ -101,16 +108,7 @@ pub fn show<const N: usize, P: Polarization<N>>(
         }
         pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
     };
-    send_on::<N, P>(world, some.as_ref().unwrap_or(targets), pass.photon_seed().0, sending, watch, add)
-}
-
-/// The part of a pass's photons that are sent.
-pub fn part_sent(world: &World, pass: &Pass, sending: &Sending) -> f64 {
-    let Some(targets) = world.photon_targets.as_ref().filter(|_| sending.batches > 0) else { return 0.0 };
-    let some = pass.part_of_photons(world).map(|part| targets.times(part));
-    let batches = batches(some.as_ref().unwrap_or(targets), |_| 0, |target| target.photons, 0);
-    let photons = |batches: &[Batch]| batches.iter().map(|batch| batch.count).sum::<u64>() as f64;
-    photons(&batches[..sending.batches.min(batches.len())]) / photons(&batches)
+    send_on::<N, P>(world, &pass.targets(world, targets, 1), pass.photon_seed().0, sending, watch, add)
 }
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
@@ -137,10 +135,9 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
 /// Sends all of them and hands over what they show, in an order that never changes; holds no image.
 pub fn splats<const N: usize, P: Polarization<N>>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
     let (mut sending, watch) = (Sending::default(), Watch { progress: &|_| (), is_due: &|| false });
-    let targets = world.photon_targets.iter();
-    targets.for_each(|targets| {
+    if let Some(targets) = &world.photon_targets {
         send_on::<N, P>(world, targets, world.method.seed, &mut sending, &watch, take);
-    });
+    }
     sending
 }
 
@@ -153,7 +150,7 @@ fn send_on<const N: usize, P: Polarization<N>>(
     watch: &Watch,
     take: &mut dyn FnMut(Splat),
 ) -> bool {
-    let batches = batches(targets, |_| 0, |target| target.photons, seed ^ SEED);
+    let batches = batches_of_pass(targets, 0, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
         let send = |number: usize| (!(watch.is_due)()).then(|| send_shown::<N, P>(world, targets, group[number]));
         let done = in_parallel(group.len(), &send);
@@ -197,8 +194,8 @@ impl Learned {
 fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     let world = world.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
-    let count = |target: &PhotonTarget| target.photons.min(numbers.end).saturating_sub(numbers.start);
-    let batches = batches(targets, |_| numbers.start, count, world.method.seed ^ AHEAD_SEED);
+    let of_target = |target: &PhotonTarget| numbers.start..numbers.end.min(target.photons);
+    let batches = batches(targets, of_target, world.method.seed ^ AHEAD_SEED);
     let send =
         |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &show_photon::<N, Polarized>);
     let done = in_parallel(batches.len(), &send);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::light_pass::{Sending, part_sent};
+use super::light_pass::Sending;
 use super::noise::Measured;
 use crate::trace::World;
 use crate::trace::pass::{Pass, Stage};
@@ -64,7 +64,7 @@ impl Progress {
         let mut shown_for = std::array::from_fn(|replicate| f64::from(self.stage.samples_of(replicate as u32)));
         let pass = self.pass(world);
         if let Some(replicate) = pass.replicate {
-            shown_for[replicate as usize] += pass.numbers.len() as f64 * part_sent(world, &pass, &self.sending);
+            shown_for[replicate as usize] += pass.numbers.len() as f64 * self.sending.part(world, &pass);
         }
         shown_for
     }
@@ -89,14 +89,13 @@ impl Progress {
 
 /// Most samples of a replicate in one pass: as many as share a map, or light vertices that are in memory at once.
 pub fn most_at_once(world: &World) -> u32 {
-    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+    let map = world.method.map().filter(|_| world.has_map());
     map.map_or(MOST_AT_ONCE, |map| (world.method.samples / map.count).clamp(1, MOST_AT_ONCE))
 }
 
 fn end_of_pass(world: &World, samples: u32, passes: u32) -> u32 {
     let all = world.method.samples;
-    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
-    let end = match map {
+    let end = match world.method.map().filter(|_| world.has_map()) {
         Some(map) => (u64::from(passes + 1) * u64::from(all) / u64::from(map.count)).min(all.into()) as u32,
         None if world.method.light_vertices => samples.saturating_add(samples.clamp(FIRST_PASS, MOST_AT_ONCE)),
         None => samples.saturating_mul(2).max(FIRST_PASS),

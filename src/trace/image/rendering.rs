@@ -171,7 +171,7 @@ impl<'a> Rendering<'a> {
     fn work_of(&self, pixels: u64) -> u64 {
         let world = self.world();
         let samples = pixels * u64::from(world.method.samples);
-        let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
+        let passes = world.method.map().map_or(0, |map| u64::from(map.count));
         let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
         let PhotonCost { shown, kept } = self.photon_cost;
         samples + shown * photons(&world.photon_targets) + kept * passes * photons(&world.map_targets)

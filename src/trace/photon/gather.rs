@@ -156,7 +156,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
         bounces: path.bounces + surfaces,
         dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
     };
-    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return nothing };
+    let Some(map) = world.method.map() else { return nothing };
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
     if whether >= map.chance {
         return nothing;

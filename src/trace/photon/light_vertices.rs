@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use super::batch::{PHOTONS, batches, send};
+use super::batch::{PHOTONS, batches_of_pass, send};
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use super::usefulness::{Place, places, usefulness};
 use crate::film::Layer;
@@ -208,7 +208,7 @@ impl<'a> LightPaths<'a> {
             let targets = targets.times(of_a_path * paths as f64 / targets.photons() as f64);
             // Sets differ in size: each has photons of its own.
             let seed = seed_of(self.seed ^ PHOTON_SEED, set.into());
-            let batches = batches(&targets, |_| 0, |target| target.photons, seed);
+            let batches = batches_of_pass(&targets, 0, seed);
             let of_batch = |number: usize| {
                 send(self.world, &targets, batches[number], false, &|_, landing: &Landing<N, P>, _, vertices| {
                     vertices.extend(kept(self.world, landing, true));

@@ -11,7 +11,7 @@ mod photon_map;
 mod show;
 mod usefulness;
 
-pub use batch::{Batch, batches, send};
+pub use batch::{Batch, batches, batches_of_pass, send};
 pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
 pub use light_vertices::{LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, holds_vertices};
 pub use pass_light::PassLight;

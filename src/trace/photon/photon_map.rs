@@ -4,9 +4,7 @@
 //! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
 //! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
-use std::borrow::Cow;
-
-use super::batch::{Batch, Sent, batches, send};
+use super::batch::{Batch, Sent, batches_of_pass, send};
 use super::follow::Landing;
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
@@ -78,12 +76,9 @@ pub enum Kept<const N: usize, L = Polarized> {
 /// Sends the photons of one pass.
 pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
     let (targets, kernel) = (world.map_targets.as_ref()?, Kernel::of_pass(world, pass)?);
-    let count = world.method.light_pass.as_ref()?.map?.count;
-    let targets = &*pass
-        .part_of_photons(world)
-        .map_or(Cow::Borrowed(targets), |part| Cow::Owned(targets.times(part * f64::from(count))));
+    let targets = &*pass.targets(world, targets, world.method.map()?.count);
     let (seed, before) = pass.photon_seed();
-    let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
+    let batches = batches_of_pass(targets, before, seed ^ SEED);
     let done = in_parallel(batches.len(), &|number| send_kept::<N, P>(world, targets, batches[number]));
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());

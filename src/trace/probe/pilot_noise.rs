@@ -30,10 +30,8 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
     in_lanes!(&world.method.basis, N => {
         let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
         let (few, photons) = few_photons::<N, Polarized>(world);
-        let of_map = photons.as_ref().map_or(0.0, |photons| {
-            let of_photon = photons.stats.rays as f64 / photons.sent as f64;
-            let map = world.method.light_pass.as_ref().and_then(|pass| pass.map);
-            map.map_or(0.0, |map| of_photon * map.photons as f64 * f64::from(map.count))
+        let of_map = photons.as_ref().zip(world.method.map()).map_or(0.0, |(photons, map)| {
+            photons.stats.rays as f64 / photons.sent as f64 * map.photons as f64 * f64::from(map.count)
         });
         let noise = weigh(&few, photons.as_ref(), vertices.as_ref());
         PilotNoise { rays: noise.rays + of_map / world.samples_of_the_format(), ..noise }
