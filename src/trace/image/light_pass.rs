@@ -97,7 +97,7 @@ pub fn show<const N: usize, P: Polarization<N>>(
         if !world.layers.is_empty() {
             add_to_layers(world, &splat, &mut shown.layers[place * numbers..][..numbers]);
         }
-        if splat.caught && world.layers.catches() {
+        if splat.caught {
             let luminance = world.layers.luminance_of(&rgb);
             pass.replicate.iter().for_each(|&replicate| replicates.show_caught(place, replicate, luminance));
             return;

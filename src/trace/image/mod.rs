@@ -15,7 +15,7 @@ mod values;
 
 pub use blur::Blur;
 pub use light_pass::{learn_where_to_send, piloted, seen_photons, splats};
-pub use noise::{AlphaNoise, Noise, Outlier, TileNoise};
+pub use noise::{AlphaNoise, Measured, Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;
