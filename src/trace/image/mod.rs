@@ -14,7 +14,7 @@ mod tile;
 mod values;
 
 pub use blur::Blur;
-pub use light_pass::{learn_where_to_send, piloted, seen_photons, splats};
+pub use light_pass::splats;
 pub use noise::{AlphaNoise, Measured, Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
