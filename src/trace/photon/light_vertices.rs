@@ -131,6 +131,11 @@ pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool 
     matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }
 
+/// A few vertices of the light paths that a world's method asks for, for a pilot; none where no light can be followed.
+pub fn few_vertices<const N: usize>(world: &World) -> Option<LightVertices<N>> {
+    Some(LightPaths::new(world, world.method.seed)?.of_set::<N, Polarized>(PILOT, OF_A_PILOT))
+}
+
 /// How much fainter than the brightest one a lamp may be that has a layer of its own. One that is ten times fainter had
 /// nine times the noise in means over 32 x 32 pixels.
 const FAINT: f64 = 0.25;
@@ -189,14 +194,8 @@ impl<'a> LightPaths<'a> {
 
     /// The vertices for some samples of each pixel, at most `SHARED`.
     pub fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
-        let film = self.world.scene.film;
-        let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
+        let all = self.world.scene.film.whole().pixels() * samples.len() as u64;
         self.of_set::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
-    }
-
-    /// A few vertices, for a pilot.
-    pub fn few<const N: usize>(&self) -> LightVertices<N> {
-        self.of_set::<N, Polarized>(PILOT, OF_A_PILOT)
     }
 
     /// Those of so many light paths of a set, and where photons are gathered, of photons that are sent as those are: as

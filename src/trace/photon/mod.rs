@@ -13,7 +13,9 @@ mod usefulness;
 
 pub use batch::{Batch, batches, batches_of_pass, send};
 pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
-pub use light_vertices::{LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, holds_vertices};
+pub use light_vertices::{
+    LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, few_vertices, holds_vertices,
+};
 pub use pass_light::PassLight;
 pub use photon_map::{PhotonMap, photons, send_kept};
 pub use show::{Splat, send_shown, show};
