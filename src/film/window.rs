@@ -20,6 +20,12 @@ impl Window {
         [self.left + middle(cell % side, self.width), self.top + middle(cell / side, self.height)]
     }
 
+    /// The cell of a pixel that is counted from the window's corner, of `side` x `side` cells, row by row.
+    pub fn cell_of(&self, side: u32, [x, y]: [u32; 2]) -> usize {
+        let cell = |at: u32, size: u32| (u64::from(at) * u64::from(side) / u64::from(size)) as usize;
+        cell(y, self.height) * side as usize + cell(x, self.width)
+    }
+
     /// The pixels in the middle of all of side x side cells, far ones first: any number of them is spread over the
     /// window.
     pub fn middles_of_cells(self, side: u32) -> impl Iterator<Item = [i32; 2]> {

@@ -26,7 +26,7 @@ use crate::film::Window;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    FIRST_LOOK, LightPass, MapPasses, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times,
+    FIRST_LOOK, LightPass, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times,
     prepare_unguided, probe,
 };
 use lit::Lit;
@@ -187,9 +187,8 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
 fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
     let samples = window.pixels() as f64 * f64::from(method.samples);
-    let pass = method.light_pass.as_ref();
-    let of_map = pass.and_then(|pass| pass.map).map_or(0, MapPasses::all_photons);
-    let shown = pass.map_or(0, |pass| pass.photons);
+    let of_map = method.map().map_or(0, |map| map.all_photons());
+    let shown = method.light_pass.as_ref().map_or(0, |pass| pass.photons);
     let photons = shown + of_map;
     let of_photons = times.shown.mul_f64(shown as f64) + times.kept.mul_f64(of_map as f64);
     let of_light_paths = probe.light_paths.mul_f64(f64::from(method.samples));

@@ -8,7 +8,6 @@ use serde::Serialize;
 use super::image::Image;
 use super::image_error::ImageError;
 use crate::plan::Plan;
-use crate::trace::MapPasses;
 
 /// How a scene will be rendered.
 #[derive(Clone, Debug, Serialize)]
@@ -36,7 +35,7 @@ impl<'a> PlanAccount<'a> {
     pub fn new(plan: &'a Plan) -> Self {
         let method = &plan.method;
         let (pass, is_known) = (method.light_pass.as_ref(), method.stop.is_none());
-        let of_map = pass.and_then(|pass| pass.map).map_or(0, MapPasses::all_photons);
+        let of_map = method.map().map_or(0, |map| map.all_photons());
         Self {
             model: method.basis.name(),
             transport: method.transport.name(),

@@ -76,11 +76,10 @@ impl Identity {
 /// photons are shown beside them. Where photons are gathered, their number and radius belong to it, and so does the
 /// number of samples.
 fn of_camera(method: &Method) -> Method {
-    let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
     let light_pass = method.light_pass.clone().map(|pass| LightPass { photons: 0, ..pass });
     let stop = method.stop.as_ref().map(|_| Stop { noise: None, time: None, least: 0, most: 0 });
     let method = Method { stop, ..method.clone() };
-    if gathers { method } else { Method { samples: 0, light_pass, ..method } }
+    if method.map().is_some() { method } else { Method { samples: 0, light_pass, ..method } }
 }
 
 /// 64 hexadecimal digits that stand for a text.

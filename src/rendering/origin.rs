@@ -19,9 +19,8 @@ pub(super) fn origin(scene: &Scene, plan: &Plan) -> Provenance {
     let settings: Vec<String> = scene.settings.iter().map(|setting| format!("--set {setting}")).collect();
     let settings = (!settings.is_empty()).then(|| ("set", Fact::Text(settings.join(" "))));
     let replicates = method.stop.as_ref().map(|_| ("replicates", Fact::Count(REPLICATES as u64)));
-    let pass = method.light_pass.as_ref();
-    let photons = pass.map(|pass| ("photons", Fact::Count(pass.photons)));
-    let blur = pass.and_then(|pass| pass.map).map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
+    let photons = method.light_pass.as_ref().map(|pass| ("photons", Fact::Count(pass.photons)));
+    let blur = method.map().map(|map| ("photonRadius", text(&format!("{:.3} pixels", map.radius))));
     let facts = [
         ("version", text(env!("CARGO_PKG_VERSION"))),
         ("sceneHash", text(&scene.hash)),

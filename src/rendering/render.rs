@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, Scene};
-use crate::trace::{self, Advance, Method, bytes_of_film, prepare};
+use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare};
 
 /// Renders a scene.
 ///
@@ -277,10 +277,10 @@ impl Rendering {
 
     /// How far the image was off at the last look, where a stop rule looks.
     pub fn error(&self) -> Option<ImageError> {
-        let (noise, blur) = (*self.passes.noise()?, *self.passes.blur()?);
+        let &Measured { noise, blur, alpha } = self.passes.measured()?;
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
-        Some(ImageError { asked: self.asked, noise, blur, alpha: self.passes.alpha(), rare_light, model, stopped_by })
+        Some(ImageError { asked: self.asked, noise, blur, alpha, rare_light, model, stopped_by })
     }
 
     /// The image of all samples so far.

@@ -46,6 +46,11 @@ impl Method {
         self.max_bounces < u32::MAX || self.diffuse_bounces < u32::MAX
     }
 
+    /// How photons are gathered; none where they are not.
+    pub fn map(&self) -> Option<MapPasses> {
+        self.light_pass.as_ref().and_then(|pass| pass.map)
+    }
+
     /// One sample of each pixel by paths of any length from the camera alone, without polarization.
     pub fn of_paths(basis: Basis, transport: Transport, seed: u64) -> Self {
         Self {

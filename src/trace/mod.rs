@@ -62,8 +62,8 @@ pub use bright::{BrightPlace, BrightPlaces};
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
 pub use image::{
-    Advance, AlphaNoise, Blur, FIRST_LOOK, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored, Stopped,
-    TileNoise, Values, bytes_of_film, piloted, render, seen_photons,
+    Advance, AlphaNoise, Blur, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report,
+    Restored, Stopped, TileNoise, Values, bytes_of_film, render,
 };
 pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;
@@ -72,8 +72,8 @@ pub use path_start::Sunlit;
 pub use photon_targets::is_photon_target;
 pub use probe::{
     Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight, adaptive,
-    branching, bright_places, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise,
-    polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light,
+    branching, bright_places, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise, piloted,
+    polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light, seen_photons,
     with_light_vertices,
 };
 pub use replicates::REPLICATES;

@@ -1,11 +1,13 @@
 //! One pass over the pixels: which samples it takes.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use super::photon_targets::PhotonTargets;
 use super::replicates::{HALF, REPLICATES};
 use crate::math::seed_of;
 
@@ -41,9 +43,14 @@ impl Pass {
         }
     }
 
-    /// Its part of all the photons that are sent beside the method's samples; none where the first pass sends them all.
-    pub(super) fn part_of_photons(&self, world: &World) -> Option<f64> {
-        self.replicate.map(|_| self.numbers.len() as f64 / f64::from(world.method.samples))
+    /// Some targets with the photons that it sends to them: all of theirs, or, where there are replicates, a part of
+    /// `times` as many, as large as its part of the method's samples.
+    pub(super) fn targets<'t>(&self, world: &World, targets: &'t PhotonTargets, times: u32) -> Cow<'t, PhotonTargets> {
+        let part = self.numbers.len() as f64 / f64::from(world.method.samples);
+        match self.replicate {
+            None => Cow::Borrowed(targets),
+            Some(_) => Cow::Owned(targets.times(part * f64::from(times))),
+        }
     }
 
     /// What its photons count: as much as its samples, where every pass sends some.

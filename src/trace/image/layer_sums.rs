@@ -7,6 +7,7 @@ use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage
 use crate::trace::camera::Left;
 use crate::trace::contribution::add;
 use crate::trace::layers::{CaughtLuminance, Layers, OF_A_HALF, STOKES};
+use crate::trace::replicates::REPLICATES;
 use crate::trace::spectrum_sample::Spectrum;
 
 /// Sums of the pixels of a tile.
@@ -114,6 +115,8 @@ pub struct ShownCounts {
     pub image: f64,
     /// In the halves, times that: 1 each where as many samples have photons in both.
     pub halves: [f64; 2],
+    /// For how many samples of each pixel those of each replicate are, where there are replicates.
+    pub samples: Option<[f64; REPLICATES]>,
 }
 
 /// What is known of a pixel once its samples are taken.
@@ -203,15 +206,20 @@ impl Taken<'_> {
         }
     }
 
+    /// The sums of a number over samples that are added and subtracted, and what photons show of it.
+    fn number(&self, at: usize) -> ([f64; 2], f64) {
+        let of = |row: &[f64]| row.get(at).copied().unwrap_or_default();
+        (self.sums.map(of), of(self.shown))
+    }
+
     /// The mean of a number that is light, with what photons show.
     fn light(&self, at: usize) -> f64 {
-        let sums = self.sums.map(|row| row.get(at).copied().unwrap_or_default());
-        self.weights.sum(sums) / self.weights.taken() + self.shown.get(at).copied().unwrap_or_default()
+        let (sums, shown) = self.number(at);
+        self.weights.sum(sums) / self.weights.taken() + shown
     }
 
     fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
-        let sums = self.sums.map(|row| row.get(at + channel).copied().unwrap_or_default());
-        let shown = self.shown.get(at + channel).copied().unwrap_or_default();
+        let (sums, shown) = self.number(at + channel);
         let weights = &self.weights;
         match layer {
             Layer::Samples => weights.kept().into(),
@@ -222,7 +230,7 @@ impl Taken<'_> {
                 |variance| variance[channel],
             ),
             Layer::HalfA | Layer::HalfB => {
-                let taken = self.sums.map(|row| row.get(at + OF_A_HALF - 1).copied().unwrap_or_default());
+                let (taken, _) = self.number(at + OF_A_HALF - 1);
                 let counts = self.counts.halves[usize::from(layer == Layer::HalfB)];
                 weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + counts * shown
             }

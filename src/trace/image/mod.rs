@@ -3,7 +3,7 @@
 mod blur;
 mod coverage;
 mod layer_sums;
-pub mod light_pass;
+mod light_pass;
 mod noise;
 mod passes;
 mod rare_light;
@@ -14,8 +14,8 @@ mod tile;
 mod values;
 
 pub use blur::Blur;
-pub use light_pass::{learn_where_to_send, piloted, seen_photons, send_shown, splats};
-pub use noise::{AlphaNoise, Noise, Outlier, TileNoise};
+pub use light_pass::splats;
+pub use noise::{AlphaNoise, Measured, Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;

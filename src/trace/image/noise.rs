@@ -41,8 +41,11 @@ pub struct Noise {
 /// What replicates tell of the error of their mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
+    /// How far the image is off by chance.
     pub noise: Noise,
+    /// By how much gathered photons blur it.
     pub blur: Blur,
+    /// The noise of alpha, where shadow catchers make some.
     pub alpha: Option<AlphaNoise>,
 }
 

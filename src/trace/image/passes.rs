@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::light_pass::{Sending, part_sent};
+use super::layer_sums::ShownCounts;
+use super::light_pass::Sending;
 use super::noise::Measured;
 use crate::trace::World;
 use crate::trace::pass::{Pass, Stage};
-use crate::trace::replicates::REPLICATES;
+use crate::trace::replicates::{HALF, REPLICATES};
 use crate::trace::stats::Stats;
 
 /// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
@@ -60,13 +61,26 @@ impl Progress {
 
     /// For how many samples of each pixel photons of each replicate have been shown, where every pass sends some: of
     /// the pass under way, for as large a part of its samples as of its photons.
-    pub fn shown_for(&self, world: &World) -> [f64; REPLICATES] {
+    fn shown_for(&self, world: &World) -> [f64; REPLICATES] {
         let mut shown_for = std::array::from_fn(|replicate| f64::from(self.stage.samples_of(replicate as u32)));
         let pass = self.pass(world);
         if let Some(replicate) = pass.replicate {
-            shown_for[replicate as usize] += pass.numbers.len() as f64 * part_sent(world, &pass, &self.sending);
+            shown_for[replicate as usize] += pass.numbers.len() as f64 * self.sending.part(world, &pass);
         }
         shown_for
+    }
+
+    /// What the sums of what photons show count in the image.
+    pub fn shown_counts(&self, world: &World) -> ShownCounts {
+        if world.method.stop.is_none() {
+            return ShownCounts { image: 1.0, halves: [1.0; 2], samples: None };
+        }
+        let samples = self.shown_for(world);
+        let (first, second) = samples.split_at(HALF as usize);
+        let [all, first, second] = [&samples[..], first, second].map(|part| part.iter().sum::<f64>());
+        let over = |share: f64, samples: f64| if samples > 0.0 { share / samples } else { 0.0 };
+        let halves = [first, second].map(|half| over(0.5 * all, half));
+        ShownCounts { image: over(1.0, all), halves, samples: Some(samples) }
     }
 
     /// Camera samples of each pixel after the stage of all replicates.
@@ -89,14 +103,13 @@ impl Progress {
 
 /// Most samples of a replicate in one pass: as many as share a map, or light vertices that are in memory at once.
 pub fn most_at_once(world: &World) -> u32 {
-    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
+    let map = world.method.map().filter(|_| world.has_map());
     map.map_or(MOST_AT_ONCE, |map| (world.method.samples / map.count).clamp(1, MOST_AT_ONCE))
 }
 
 fn end_of_pass(world: &World, samples: u32, passes: u32) -> u32 {
     let all = world.method.samples;
-    let map = world.method.light_pass.as_ref().and_then(|pass| pass.map).filter(|_| world.has_map());
-    let end = match map {
+    let end = match world.method.map().filter(|_| world.has_map()) {
         Some(map) => (u64::from(passes + 1) * u64::from(all) / u64::from(map.count)).min(all.into()) as u32,
         None if world.method.light_vertices => samples.saturating_add(samples.clamp(FIRST_PASS, MOST_AT_ONCE)),
         None => samples.saturating_mul(2).max(FIRST_PASS),

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::noise::Outlier;
+use super::passes::most_at_once;
 use super::stopping::doubled;
 use crate::math::Sampler;
 use crate::trace::World;
@@ -46,16 +47,11 @@ impl Observer for Brightest<'_> {
 
 /// Takes the samples of the pixel that stands out once more, and looks for the brightest light of them, after so many
 /// samples of each replicate. None where it was a photon that the camera saw, which is no sample's.
-pub fn rare_light(world: &World, outlier: &Outlier, each: u32, most_at_once: u32) -> Option<RareLight> {
-    in_lanes_of!(world, N, P => brightest::<N, P>(world, outlier, each, most_at_once))
+pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
+    in_lanes_of!(world, N, P => brightest::<N, P>(world, outlier, each))
 }
 
-fn brightest<const N: usize, P: Polarization<N>>(
-    world: &World,
-    outlier: &Outlier,
-    each: u32,
-    most_at_once: u32,
-) -> Option<RareLight> {
+fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
     let brightest = Brightest { world, found: Cell::new(None), amount: Cell::new(0.0) };
     let pixel = outlier.pixel.map(|place| place as i32);
     let (mut all, mut stage) = (0.0, Stage::default());
@@ -66,7 +62,7 @@ fn brightest<const N: usize, P: Polarization<N>>(
             let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, stage.before));
             stage = Stage::of_replicate(outlier.replicate, stage.before, size.min(each - stage.before));
         }
-        let pass = stage.pass(world, 0, most_at_once);
+        let pass = stage.pass(world, 0, most_at_once(world));
         let light = PassLight::<N, P>::new(world, &pass);
         let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
         let rate = world.rate(pixel);

@@ -9,26 +9,25 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::blur::Blur;
-use super::layer_sums::ShownCounts;
 use super::noise::{AlphaNoise, Measured, Noise, measure};
-use super::passes::{Progress, most_at_once};
+use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
 use super::saved::Restored;
 use super::stopping::{Clock, FIRST_LOOK, Stopped, is_wanted_known, next_stage, samples_wanted};
 use super::tile::Tile;
-use super::values::{Shown, Values};
+use super::values::Values;
 use super::{light_pass, saved};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Film, Shard, TilePlace, Window};
 use crate::trace::parallel::for_each_in_parallel;
 use crate::trace::photon::PassLight;
 use crate::trace::photon_targets::PhotonTargets;
-use crate::trace::replicates::{HALF, REPLICATES};
+use crate::trace::replicates::REPLICATES;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
 use crate::trace::watch::Watch;
 use crate::trace::width::in_lanes_of_layers;
-use crate::trace::{Stop, World, media};
+use crate::trace::{World, media};
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -153,25 +152,20 @@ impl<'a> Rendering<'a> {
     pub fn is_finished(&self) -> bool {
         match &self.world().method.stop {
             None => self.samples() >= self.world().method.samples,
-            Some(stop) => self.progress.stage.size == 0 && self.next_stage(stop) == 0,
+            Some(stop) => self.progress.stage.size == 0 && next_stage(stop, &self.progress, &self.clock) == 0,
         }
     }
 
-    /// The work of the method's samples.
-    pub fn planned_work(&self) -> u64 {
-        self.work_of(self.pixels())
-    }
-
-    /// That of all parts of the image by one render.
+    /// The work of the method's samples in all parts of the image, by one render.
     pub fn work_of_all_parts(&self) -> u64 {
         self.work_of(self.world().scene.film.window().pixels())
     }
 
-    /// That of so many pixels, and of all photons.
+    /// The work of the method's samples of so many pixels, and of all photons.
     fn work_of(&self, pixels: u64) -> u64 {
         let world = self.world();
         let samples = pixels * u64::from(world.method.samples);
-        let passes = world.method.light_pass.as_ref().and_then(|pass| pass.map).map_or(0, |map| u64::from(map.count));
+        let passes = world.method.map().map_or(0, |map| u64::from(map.count));
         let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
         let PhotonCost { shown, kept } = self.photon_cost;
         samples + shown * photons(&world.photon_targets) + kept * passes * photons(&world.map_targets)
@@ -181,7 +175,7 @@ impl<'a> Rendering<'a> {
     /// about, and better known after each pass: the most that it may take as long as nothing
     /// [is known](Self::is_work_known).
     pub fn work(&self) -> u64 {
-        let (world, all) = (self.world(), self.planned_work());
+        let (world, all) = (self.world(), self.work_of(self.pixels()));
         match &world.method.stop {
             None => all,
             Some(_) if self.is_finished() => self.done(),
@@ -232,16 +226,11 @@ impl<'a> Rendering<'a> {
     /// Whether there is a next pass. Decides how many samples the replicates take, if that is not known.
     fn begin_pass(&mut self) -> bool {
         if let (Some(stop), 0) = (&self.world().method.stop, self.progress.stage.size) {
-            self.progress.stage.size = self.next_stage(stop);
+            self.progress.stage.size = next_stage(stop, &self.progress, &self.clock);
             self.clock.begin(self.samples());
             return self.progress.stage.size > 0;
         }
         self.world().method.stop.is_some() || !self.is_finished()
-    }
-
-    /// How many samples each replicate takes in the next stage; none if enough are taken.
-    fn next_stage(&self, stop: &Stop) -> u32 {
-        next_stage(stop, &self.progress, &self.clock)
     }
 
     /// Looks at the replicates, if they have as many samples each.
@@ -258,9 +247,9 @@ impl<'a> Rendering<'a> {
     pub fn film(&self) -> Film {
         let window = self.world().scene.film.window();
         let mut values = Values::new(&self.world().layers, window.pixels() as usize);
-        let shown = self.shown();
+        let counts = self.progress.shown_counts(self.world());
         for (tile, at) in self.places() {
-            values.write(self.world(), tile, &shown, |place| at.pixel(window, place as u32));
+            values.write(self.world(), tile, counts, |place| at.pixel(window, place as u32));
         }
         self.film_of(values)
     }
@@ -272,32 +261,28 @@ impl<'a> Rendering<'a> {
 
     /// The values of each tile that is made, row by row.
     pub fn tiles(&self) -> impl Iterator<Item = Values> {
-        let shown = self.shown();
+        let counts = self.progress.shown_counts(self.world());
         self.places().map(move |(tile, at)| {
             let mut values = Values::new(&self.world().layers, at.pixels());
-            values.write(self.world(), tile, &shown, |place| place);
+            values.write(self.world(), tile, counts, |place| place);
             values
         })
     }
 
-    fn shown(&self) -> Shown {
-        Shown { counts: self.shown_counts(), samples: self.shown_for() }
-    }
-
     fn film_of(&self, Values { pixels, layers, spectral }: Values) -> Film {
-        let (scene, of_layers) = (&self.world().scene, &self.world().layers);
-        let (Window { left, top, width, height }, film) = (scene.film.window(), scene.film);
-        let (corner, full, color_space) = ([left, top], [film.width, film.height], film.color_space);
+        let world = self.world();
+        let film = world.scene.film;
+        let Window { left, top, width, height } = film.window();
         Film {
             width,
             height,
-            corner,
-            full,
-            color_space,
+            corner: [left, top],
+            full: [film.width, film.height],
+            color_space: film.color_space,
             pixels,
             layers,
             spectral,
-            manifests: of_layers.manifests(scene),
+            manifests: world.layers.manifests(&world.scene),
         }
     }
 
@@ -309,7 +294,7 @@ impl<'a> Rendering<'a> {
     /// What was noticed so far.
     pub fn report(&self) -> Report {
         let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.shared_stats(), None, 0.0_f64);
-        let shown_counts = self.shown_counts().image;
+        let shown_counts = self.progress.shown_counts(self.world()).image;
         for tile in &self.tiles {
             let stats = self.stats_of(tile, shown_counts);
             if stats.light > 0.0 {
@@ -318,7 +303,7 @@ impl<'a> Rendering<'a> {
             first_non_finite = first_non_finite.or(tile.first_non_finite);
             all += stats;
         }
-        let samples = self.camera_samples();
+        let (samples, measured) = (self.camera_samples(), self.measured());
         let per_sample = |sum: f64| sum / u64::max(samples, 1) as f64;
         Report {
             samples,
@@ -333,30 +318,16 @@ impl<'a> Rendering<'a> {
             polarization: if all.light > 0.0 { all.polarization / all.light } else { 0.0 },
             polarization_of_tile,
             light: all.light,
-            photons: self.photons(),
-            noise: self.noise().copied(),
-            blur: self.blur().copied(),
-            alpha: self.alpha(),
+            photons: self.progress.sending.photons + self.progress.gathered_photons,
+            noise: measured.map(|measured| measured.noise),
+            blur: measured.map(|measured| measured.blur),
+            alpha: measured.and_then(|measured| measured.alpha),
             stopped_by: self.stopped_by(),
         }
     }
 
-    /// How far the image was off at the last look, where a stop rule looks.
-    pub fn noise(&self) -> Option<&Noise> {
-        self.measured().map(|measured| &measured.noise)
-    }
-
-    /// By how much gathered photons blurred it at the last look, where a stop rule looks.
-    pub fn blur(&self) -> Option<&Blur> {
-        self.measured().map(|measured| &measured.blur)
-    }
-
-    /// The noise of alpha at the last look, where shadow catchers make some.
-    pub fn alpha(&self) -> Option<AlphaNoise> {
-        self.measured().and_then(|measured| measured.alpha)
-    }
-
-    fn measured(&self) -> Option<&Measured> {
+    /// What replicates told at the last look, where a stop rule looks.
+    pub fn measured(&self) -> Option<&Measured> {
         self.progress.measured.as_ref().filter(|Measured { noise, .. }| noise.samples >= FIRST_LOOK)
     }
 
@@ -368,8 +339,8 @@ impl<'a> Rendering<'a> {
 
     /// Which light it is that one replicate found alone, if any did at the last look.
     pub fn rare_light(&self) -> Option<RareLight> {
-        let (world, noise) = (self.world(), self.noise()?);
-        rare_light(world, &noise.outlier?, noise.samples / REPLICATES as u32, most_at_once(world))
+        let noise = self.measured()?.noise;
+        rare_light(self.world(), &noise.outlier?, noise.samples / REPLICATES as u32)
     }
 
     /// What was left out of the light that all parts of an image send alike.
@@ -394,20 +365,6 @@ impl<'a> Rendering<'a> {
         saved::restore(&self.world, &mut self.progress, &mut self.tiles, blocks)
     }
 
-    /// For how many samples of each pixel photons of each replicate are shown, where there are replicates.
-    fn shown_for(&self) -> Option<[f64; REPLICATES]> {
-        self.world().method.stop.as_ref().map(|_| self.progress.shown_for(self.world()))
-    }
-
-    /// What the sums of what photons show count in the image.
-    fn shown_counts(&self) -> ShownCounts {
-        let Some(shown_for) = self.shown_for() else { return ShownCounts { image: 1.0, halves: [1.0; 2] } };
-        let (first, second) = shown_for.split_at(HALF as usize);
-        let [all, first, second] = [&shown_for[..], first, second].map(|part| part.iter().sum::<f64>());
-        let over = |share: f64, samples: f64| if samples > 0.0 { share / samples } else { 0.0 };
-        ShownCounts { image: over(1.0, all), halves: [first, second].map(|half| over(0.5 * all, half)) }
-    }
-
     /// Its tiles with their places.
     fn places(&self) -> impl Iterator<Item = (&Tile, TilePlace)> {
         self.tiles.iter().zip(self.shard.tiles(self.world().scene.film.window()))
@@ -415,10 +372,6 @@ impl<'a> Rendering<'a> {
 
     fn pixels(&self) -> u64 {
         self.tiles.iter().map(|tile| tile.sums.len() as u64).sum()
-    }
-
-    fn photons(&self) -> u64 {
-        self.progress.sending.photons + self.progress.gathered_photons
     }
 
     /// Camera samples taken, with those of the pass that was stopped, as if all pixels took as many.

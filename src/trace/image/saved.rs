@@ -46,9 +46,8 @@ pub enum Restored {
 pub fn save(world: &World, progress: &Progress, tiles: &[Tile], blocks: &mut BlockWriter) -> io::Result<()> {
     let is_ahead = |tile: &Tile| tile.ahead > 0 || tile.passes > progress.passes;
     let end_of_pass = tiles.iter().any(is_ahead).then(|| progress.end_of_pass(world));
-    let (samples, tiles_saved) = (world.method.samples, tiles.len() as u64);
-    let photons = photons(world);
-    blocks.block(&Head { progress: *progress, end_of_pass, samples, photons, tiles: tiles_saved })?;
+    let (samples, photons) = (world.method.samples, photons(world));
+    blocks.block(&Head { progress: *progress, end_of_pass, samples, photons, tiles: tiles.len() as u64 })?;
     tiles.iter().try_for_each(|tile| blocks.block(tile))
 }
 

@@ -54,8 +54,7 @@ pub struct Shown {
 pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let is_signed = scene.film.filter.is_signed();
     let (shows, catches) = (method.light_pass.is_some(), scene.has_shadow_catchers());
-    let gathers = method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
-    let of_replicates = |_: &_| Replicates::bytes_of_pixel(is_signed, gathers, catches, shows);
+    let of_replicates = |_: &_| Replicates::bytes_of_pixel(is_signed, method.map().is_some(), catches, shows);
     let replicates = method.stop.as_ref().map_or(0, of_replicates);
     let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
     let shown = if shows { size_of::<[f64; 3]>() } else { 0 };

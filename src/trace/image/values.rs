@@ -7,7 +7,6 @@ use super::tile::Tile;
 use crate::film::{LayerImage, Pixel, PixelSum, SampleWeights, SpectralImage};
 use crate::trace::World;
 use crate::trace::layers::Layers;
-use crate::trace::replicates::REPLICATES;
 
 /// The values of some pixels.
 pub struct Values {
@@ -17,14 +16,6 @@ pub struct Values {
     pub layers: Vec<LayerImage>,
     /// Spectra, if they are asked for.
     pub spectral: Option<SpectralImage>,
-}
-
-/// What the sums of what photons show count.
-pub(super) struct Shown {
-    /// In the image and its halves.
-    pub(super) counts: ShownCounts,
-    /// For how many samples of each replicate they are.
-    pub(super) samples: Option<[f64; REPLICATES]>,
 }
 
 const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
@@ -37,12 +28,11 @@ impl Values {
     }
 
     /// Writes a tile's pixels, of which each has a number here.
-    pub(super) fn write(&mut self, world: &World, tile: &Tile, shown: &Shown, number: impl Fn(usize) -> usize) {
-        (0..tile.sums.len()).for_each(|place| self.write_pixel(world, tile, shown, place, number(place)));
+    pub(super) fn write(&mut self, world: &World, tile: &Tile, counts: ShownCounts, number: impl Fn(usize) -> usize) {
+        (0..tile.sums.len()).for_each(|place| self.write_pixel(world, tile, counts, place, number(place)));
     }
 
-    fn write_pixel(&mut self, world: &World, tile: &Tile, of_shown: &Shown, place: usize, number: usize) {
-        let counts = of_shown.counts;
+    fn write_pixel(&mut self, world: &World, tile: &Tile, counts: ShownCounts, place: usize, number: usize) {
         let (filter, layers) = (world.scene.film.filter, &world.layers);
         let (sum, none) = (&tile.sums[place], PixelSum::default());
         let subtracted = tile.subtracted.get(place).unwrap_or(&none);
@@ -55,7 +45,7 @@ impl Values {
         let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
         let shown = &*times(shown, counts.image);
         let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
-        let variance = of_shown.samples.and_then(|each| tile.replicates.variance(place, filter, each));
+        let variance = counts.samples.and_then(|each| tile.replicates.variance(place, filter, each));
         let taken = Taken { sums, shown, counts, variance, rgb, weights, covered, place };
         write(layers, &taken, number, &mut self.layers);
         if let (Some(image), Some(spectrum)) = (&mut self.spectral, &layers.spectrum) {

@@ -1,5 +1,7 @@
 //! Photons are sent in batches.
 
+use std::ops::Range;
+
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use crate::light::Light;
 use crate::math::{BranchKey, Sampler};
@@ -38,17 +40,18 @@ pub struct Sent<T> {
 /// What is kept of a photon that lands.
 type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>) + 'a;
 
-/// The photons of some targets from number `first` on, batch by batch.
-pub fn batches(
-    targets: &PhotonTargets,
-    first: impl Fn(&PhotonTarget) -> u64,
-    count: impl Fn(&PhotonTarget) -> u64,
-    seed: u64,
-) -> Vec<Batch> {
-    let of_target = |(number, target): (usize, &PhotonTarget)| {
-        let (start, end) = (first(target), first(target) + count(target));
-        let batch = move |first: u64| Batch { target: number, first, count: BATCH.min(end - first), seed };
-        (start..end).step_by(BATCH as usize).map(batch)
+/// All photons of some targets, after those of so many passes, batch by batch.
+pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
+    batches(targets, |target| before * target.photons..(before + 1) * target.photons, seed)
+}
+
+/// Of each target the photons with some numbers, batch by batch.
+pub fn batches(targets: &PhotonTargets, numbers: impl Fn(&PhotonTarget) -> Range<u64>, seed: u64) -> Vec<Batch> {
+    let of_target = |(target, of): (usize, &PhotonTarget)| {
+        let numbers = numbers(of);
+        let end = numbers.end;
+        let batch = move |first: u64| Batch { target, first, count: BATCH.min(end - first), seed };
+        numbers.step_by(BATCH as usize).map(batch)
     };
     targets.targets.iter().enumerate().flat_map(of_target).collect()
 }

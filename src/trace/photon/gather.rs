@@ -14,7 +14,7 @@
 use std::f64::consts::PI;
 
 use super::kernel::Kernel;
-use super::photon_map::{Alone, Landed, PhotonMap};
+use super::photon_map::{Alone, Landed, PhotonMap, Together};
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
@@ -123,80 +123,106 @@ impl<const N: usize> Seen<N> {
     }
 }
 
+/// Photons that are looked for around a place.
+struct Search<'a, const N: usize, P> {
+    around: &'a Gathering<'a, N, P>,
+    kernel: &'a Kernel<N>,
+    place: Place<'a>,
+}
+
 /// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
 /// How much of it polarization may change is an estimate by the photon that is looked at.
 pub fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
     kernel: &Kernel<N>,
-    Gathering { world, path, at, excitation }: &Gathering<N, P>,
+    around: &Gathering<N, P>,
     sampler: &Sampler,
     apart: bool,
 ) -> Gathered<N> {
-    let Interaction { point, flat, material, arrival, parts, .. } = at;
-    let (flat, parts) = (*flat, *parts);
-    let found_here = contribution::Found::Gathered;
-    // Together they have no light, no lobe and no way, but came over two surfaces at least.
-    let bounces = path.bounces + 2;
-    let of_all = |rgb: [f64; 3], moved: f64| Contribution {
-        light: None,
-        found: found_here,
-        rgb,
-        moved,
-        first: path.first,
-        bounces,
-        dispersed: false,
-    };
-    let nothing = Gathered { all: of_all([0.0; 3], 0.0), parts: apart.then(Vec::new) };
-    let brought = |light: LightId, rgb: [f64; 3], parted: bool, back: DVec3, surfaces: u32| Contribution {
-        light: Some(light),
-        found: found_here,
-        rgb,
-        moved: 0.0,
-        first: path.first_lobe(world, at, back, back.dot(flat) < 0.0),
-        bounces: path.bounces + surfaces,
-        dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
-    };
-    let Some(map) = world.method.light_pass.as_ref().and_then(|pass| pass.map) else { return nothing };
+    let Gathering { world, path, at, .. } = around;
+    let (point, flat) = (at.point, at.flat);
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
-    if whether >= map.chance {
-        return nothing;
-    }
+    let Some(map) = world.method.map().filter(|map| whether < map.chance) else {
+        return Gathered { all: around.all([0.0; 3], 0.0), parts: apart.then(Vec::new) };
+    };
     let radius = kernel.radius * world.scene.camera.pixel_width(path.length);
     let front = flat.dot(point.normal) > 0.0;
     let place = Place { world, position: point.position, flat, front, radius };
+    let search = Search { around, kernel, place };
     let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
-    let parted = |back: DVec3| path.parted || (parts && back.dot(flat) < 0.0);
     photons.together.near(point.position, radius, &mut |position, photon| {
+        search.add_together(&mut found, position, photon);
+    });
+    photons.alone.near(point.position, radius, &mut |position, photon| {
+        search.add_alone(&mut found, position, photon);
+    });
+    let (rgb, moved) = search.place.seen_of(&mut found, point, sampler, path.key);
+    let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
+    found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
+    Gathered { all: around.all(rgb, moved), parts: found.parts }
+}
+
+impl<const N: usize, P: Polarization<N>> Gathering<'_, N, P> {
+    /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least.
+    fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
+        let (first, bounces) = (self.path.first, self.path.bounces + 2);
+        Contribution { light: None, found: contribution::Found::Gathered, rgb, moved, first, bounces, dispersed: false }
+    }
+
+    /// What one photon brings, but for a factor.
+    fn brought<T>(&self, photon: &Landed<T, P::Landed>, light: LightId, rgb: [f64; 3], parted: bool) -> Contribution {
+        let Self { world, path, at, excitation } = self;
+        Contribution {
+            light: Some(light),
+            found: contribution::Found::Gathered,
+            rgb,
+            moved: 0.0,
+            first: path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0),
+            bounces: path.bounces + photon.surfaces,
+            dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
+        }
+    }
+
+    /// Whether lanes part on the way of the path and a photon that came from a direction.
+    fn parted(&self, back: DVec3) -> bool {
+        self.path.parted || (self.at.parts && back.dot(self.at.flat) < 0.0)
+    }
+}
+
+impl<const N: usize, P: Polarization<N>> Search<'_, N, P> {
+    /// Adds a photon whose lanes have not parted.
+    fn add_together(&self, found: &mut Found<N>, position: DVec3, photon: &Landed<Together<N>, P::Landed>) {
+        let Self { around, kernel, place } = self;
+        let Gathering { world, path, at, excitation } = around;
         let Some(density) = place.density(path, position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
-        let parted = parted(photon.back);
-        let carries = &photon.carries;
-        let by_heroes = arrival.draw.hero_factor(parted).is_some();
-        let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(arrival.draw, lanes);
+        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.arrival, at.flat, photon.back) else { return };
+        let (draw, parted, carries) = (at.arrival.draw, around.parted(photon.back), &photon.carries);
+        let by_heroes = draw.hero_factor(parted).is_some();
+        let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(draw, lanes);
         let flux = if by_heroes { onto_heroes(carries.flux) } else { carries.flux };
         let read = if by_heroes { Some(P::read_landed(&photon.polarization, onto_heroes)) } else { None };
         let light = read.as_ref().unwrap_or(&photon.polarization);
         let joined = path.polarization.join(at, photon.back, light, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos * flux);
-        let arrived = Arrived { source: carries.light, draw: arrival.draw, lanes: &lanes, parted };
+        let arrived = Arrived { source: carries.light, draw, lanes: &lanes, parted };
         let Seen { rgb, stokes, spectrum } = match excitation {
             None => Seen::new(world, &arrived, joined.stokes()),
             Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
         };
-        let part = Part {
-            contribution: brought(carries.light, rgb, parted, photon.back, photon.surfaces),
-            stokes,
-            spectrum,
-            factor: density,
-        };
-        let change = || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes);
-        found.add(world, position, part, change);
-    });
-    photons.alone.near(point.position, radius, &mut |position, photon| {
-        let (wavelength, parted) = (&photon.carries.wavelength, parted(photon.back));
-        let by_heroes = arrival.draw.hero_factor(parted).is_some();
+        let contribution = around.brought(photon, carries.light, rgb, parted);
+        let part = Part { contribution, stokes, spectrum, factor: density };
+        found.add(world, position, part, || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes));
+    }
+
+    /// Adds a photon of one wavelength of lanes that have parted.
+    fn add_alone(&self, found: &mut Found<N>, position: DVec3, photon: &Landed<Alone, P::Landed>) {
+        let Self { around, kernel, place } = self;
+        let Gathering { world, path, at, excitation } = around;
+        let Alone { wavelength, light, weight, color } = &photon.carries;
+        let (draw, parted) = (at.arrival.draw, around.parted(photon.back));
+        let by_heroes = draw.hero_factor(parted).is_some();
         let read = |lanes: Lanes<N>| match by_heroes {
-            true => kernel.matching.shared(arrival.draw, wavelength, lanes, parted),
+            true => kernel.matching.shared(draw, wavelength, lanes, parted),
             false => kernel.matching.read(wavelength, lanes),
         };
         // Most photons of wavelengths that parted meet others.
@@ -204,31 +230,27 @@ pub fn gather<const N: usize, P: Polarization<N>>(
             return;
         }
         let Some(density) = place.density(path, position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(material, arrival, flat, photon.back) else { return };
+        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.arrival, at.flat, photon.back) else { return };
         let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos);
-        let (seen, Alone { light, weight, color, .. }) = (read(lanes), &photon.carries);
-        let (light, color) = (*light, *color);
+        let seen = read(lanes);
         let Seen { rgb, stokes, spectrum } = match excitation {
             None => {
                 let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
                 let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
-                Seen { rgb: color, stokes, spectrum: PartSpectrum::Alone(*wavelength) }
+                Seen { rgb: *color, stokes, spectrum: PartSpectrum::Alone(*wavelength) }
             }
             Some(dye) => {
-                let brightness = weight * dye.worth(world, light, wavelength);
+                let brightness = weight * dye.worth(world, *light, wavelength);
                 dye.seen_of(brightness, |seen| Seen::new(world, seen, dye.polarization.stokes()))
             }
         };
-        let contribution = brought(light, rgb, true, photon.back, photon.surfaces);
+        let contribution = around.brought(photon, *light, rgb, true);
         let part = Part { contribution, stokes, spectrum, factor: density * seen };
-        let change = || path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes);
-        found.add(world, position, part, change);
-    });
-    let (rgb, moved) = place.seen_of(&mut found, point, sampler, path.key);
-    let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
-    found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
-    Gathered { all: of_all(rgb, moved), parts: found.parts }
+        found.add(world, position, part, || {
+            path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes)
+        });
+    }
 }
 
 impl<const N: usize> Found<N> {

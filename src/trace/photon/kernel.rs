@@ -27,7 +27,7 @@ impl<const N: usize> Kernel<N> {
     /// noise then vanish together, and an error that is small enough comes (Knaus & Zwicker 2011, *Progressive Photon
     /// Mapping: A Probabilistic Approach*).
     pub fn of_pass(world: &World, pass: &Pass) -> Option<Self> {
-        let radius = world.method.light_pass.as_ref()?.map?.radius;
+        let radius = world.method.map()?.radius;
         let samples = pass.replicate.map_or(0.0, |_| REPLICATES as f64 * f64::from(pass.numbers.end));
         let more = (samples / f64::from(world.method.samples)).max(1.0);
         Some(Self::new(world, radius * libm::pow(more, -1.0 / 6.0)))

@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use super::batch::{PHOTONS, batches, send};
+use super::batch::{PHOTONS, batches_of_pass, send};
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use super::usefulness::{Place, places, usefulness};
 use crate::film::Layer;
@@ -131,6 +131,11 @@ pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool 
     matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }
 
+/// A few vertices of the light paths that a world's method asks for, for a pilot; none where no light can be followed.
+pub fn few_vertices<const N: usize>(world: &World) -> Option<LightVertices<N>> {
+    Some(LightPaths::new(world, world.method.seed)?.of_set::<N, Polarized>(PILOT, OF_A_PILOT))
+}
+
 /// How much fainter than the brightest one a lamp may be that has a layer of its own. One that is ten times fainter had
 /// nine times the noise in means over 32 x 32 pixels.
 const FAINT: f64 = 0.25;
@@ -147,12 +152,6 @@ pub struct LightPaths<'a> {
     places: Vec<Place>,
     /// The middle of vertices, and D.
     scale: OnceLock<(DVec3, f64)>,
-}
-
-/// What became of some light paths.
-struct Followed<const N: usize> {
-    vertices: Vec<LightVertex<N>>,
-    stats: Stats,
 }
 
 impl<'a> LightPaths<'a> {
@@ -195,14 +194,8 @@ impl<'a> LightPaths<'a> {
 
     /// The vertices for some samples of each pixel, at most `SHARED`.
     pub fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
-        let film = self.world.scene.film;
-        let all = u64::from(film.width) * u64::from(film.height) * samples.len() as u64;
+        let all = self.world.scene.film.whole().pixels() * samples.len() as u64;
         self.of_set::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
-    }
-
-    /// A few vertices, for a pilot.
-    pub fn few<const N: usize>(&self) -> LightVertices<N> {
-        self.of_set::<N, Polarized>(PILOT, OF_A_PILOT)
     }
 
     /// Those of so many light paths of a set, and where photons are gathered, of photons that are sent as those are: as
@@ -214,11 +207,12 @@ impl<'a> LightPaths<'a> {
             let targets = targets.times(of_a_path * paths as f64 / targets.photons() as f64);
             // Sets differ in size: each has photons of its own.
             let seed = seed_of(self.seed ^ PHOTON_SEED, set.into());
-            let batches = batches(&targets, |_| 0, |target| target.photons, seed);
-            let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, vertices: &mut Vec<_>| {
-                vertices.extend(kept(self.world, landing, true));
+            let batches = batches_of_pass(&targets, 0, seed);
+            let of_batch = |number: usize| {
+                send(self.world, &targets, batches[number], false, &|_, landing: &Landing<N, P>, _, vertices| {
+                    vertices.extend(kept(self.world, landing, true));
+                })
             };
-            let of_batch = |number: usize| send(self.world, &targets, batches[number], false, &keep);
             for sent in in_parallel(batches.len(), &of_batch) {
                 stats += sent.stats;
                 vertices.extend(sent.kept);
@@ -246,9 +240,9 @@ impl<'a> LightPaths<'a> {
         let of_batch = |batch| self.follow::<N, P>(set, first(batch)..first(batch + 1).min(paths));
         let done = in_parallel(paths.div_ceil(BATCH) as usize, &of_batch);
         let (mut stats, mut vertices) = (Stats::default(), Vec::new());
-        for followed in done {
-            stats += followed.stats;
-            vertices.extend(followed.vertices);
+        for (of_batch, noticed) in done {
+            vertices.extend(of_batch);
+            stats += noticed;
         }
         let each = 1.0 / paths as f32;
         vertices.iter_mut().for_each(|vertex| vertex.leaving = vertex.leaving * each);
@@ -256,7 +250,7 @@ impl<'a> LightPaths<'a> {
     }
 
     /// Follows some light paths of a set.
-    fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> Followed<N> {
+    fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> (Vec<LightVertex<N>>, Stats) {
         let world = self.world;
         let mut walker = Walker::<N, P>::new(world, PHOTONS);
         let draw = world.method.basis.draw(0.0);
@@ -277,7 +271,7 @@ impl<'a> LightPaths<'a> {
                 vertices.extend(kept(world, landing, false));
             });
         }
-        Followed { vertices, stats: walker.stats }
+        (vertices, walker.stats)
     }
 
     /// Deals vertices into sets of candidates.
@@ -429,11 +423,11 @@ fn morton(place: DVec3) -> u64 {
 /// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over
 /// those from lights that send photons is left to photons.
 fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
-    let Landing { path, at, light, .. } = landing;
+    let Landing { path, at, start } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
-    let is_left = !is_of_photon && world.has_map() && world.sends_photons(*light) && came_over_smooth;
+    let is_left = !is_of_photon && world.has_map() && world.sends_photons(start.light) && came_over_smooth;
     let usable = holds_vertices(world, at.object, at.point)
         && !is_left
         && !leaving.is_zero()
@@ -441,7 +435,7 @@ fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon:
     // From the camera, a path leaves one diffuse surface more to come over smooth ones to the light.
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
     let SurfacePoint { position, error, normal, .. } = *at.point;
-    let (error, flat, light) = (normal.abs().dot(error), at.flat, *light);
+    let (error, flat, light) = (normal.abs().dot(error), at.flat, start.light);
     let (surfaces, parted) = (path.surfaces(), path.parted);
     usable.then_some(LightVertex { position, error, flat, leaving, light, surfaces, diffuse, is_of_photon, parted })
 }

@@ -7,12 +7,15 @@ mod kd_tree;
 mod kernel;
 mod light_vertices;
 mod pass_light;
-pub mod photon_map;
+mod photon_map;
+mod show;
 mod usefulness;
 
-pub use batch::{Batch, Sent, batches, send};
-pub use follow::{Splat, show};
+pub use batch::{Batch, batches, batches_of_pass, send};
 pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
-pub use light_vertices::{LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, holds_vertices};
+pub use light_vertices::{
+    LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, few_vertices, holds_vertices,
+};
 pub use pass_light::PassLight;
 pub use photon_map::{PhotonMap, photons, send_kept};
+pub use show::{Splat, send_shown, show};

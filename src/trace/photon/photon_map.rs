@@ -4,21 +4,19 @@
 //! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
 //! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
-use std::borrow::Cow;
-
-use super::batch::{Batch, Sent, batches, send};
+use super::batch::{Batch, Sent, batches_of_pass, send};
 use super::follow::Landing;
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
 use crate::light::LightId;
-use crate::math::{DVec3, Sampler};
+use crate::math::DVec3;
 use crate::spectrum::{Lanes, Matching, Wavelength};
 use crate::trace::World;
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
-use crate::trace::walk::{Interaction, Polarization, Polarized, Walker};
+use crate::trace::walk::{Interaction, Polarization, Polarized};
 
 /// A photon that has landed, and what it carries.
 #[derive(Clone, Debug)]
@@ -78,12 +76,9 @@ pub enum Kept<const N: usize, L = Polarized> {
 /// Sends the photons of one pass.
 pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
     let (targets, kernel) = (world.map_targets.as_ref()?, Kernel::of_pass(world, pass)?);
-    let count = world.method.light_pass.as_ref()?.map?.count;
-    let targets = &*pass
-        .part_of_photons(world)
-        .map_or(Cow::Borrowed(targets), |part| Cow::Owned(targets.times(part * f64::from(count))));
+    let targets = &*pass.targets(world, targets, world.method.map()?.count);
     let (seed, before) = pass.photon_seed();
-    let batches = batches(targets, |target| before * target.photons, |target| target.photons, seed ^ SEED);
+    let batches = batches_of_pass(targets, before, seed ^ SEED);
     let done = in_parallel(batches.len(), &|number| send_kept::<N, P>(world, targets, batches[number]));
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
@@ -111,10 +106,7 @@ pub fn send_kept<const N: usize, P: Polarization<N>>(
     targets: &PhotonTargets,
     batch: Batch,
 ) -> Sent<(DVec3, Kept<N, P::Landed>)> {
-    let keep = |_: &Walker<N, P>, landing: &Landing<N, P>, _: &Sampler, kept: &mut Vec<_>| {
-        keep(world, landing, kept);
-    };
-    send(world, targets, batch, false, &keep)
+    send(world, targets, batch, false, &|_, landing: &Landing<N, P>, _, kept| keep(world, landing, kept))
 }
 
 /// Keeps a photon where it lands.
@@ -123,7 +115,7 @@ fn keep<const N: usize, P: Polarization<N>>(
     landing: &Landing<N, P>,
     kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
 ) {
-    let Landing { path, at, light, .. } = landing;
+    let Landing { path, at, start } = landing;
     let Interaction { arrival, flat, point, .. } = at;
     let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
     let photon = Landed {
@@ -134,17 +126,17 @@ fn keep<const N: usize, P: Polarization<N>>(
         polarization: path.polarization.landed(at),
         carries: (),
     };
-    let response = &world.responses[*light];
+    let (light, response) = (start.light, &world.responses[start.light]);
     let by_heroes = Matching::<N>::alone(arrival.draw, flux, path.parted, |lane, wavelength, weight| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
         let polarization = P::read_landed(&photon.polarization, of_lane);
         let color = wavelength.worth(response).map(|x| weight * x);
-        let carries = Alone { wavelength, light: *light, weight, color };
+        let carries = Alone { wavelength, light, weight, color };
         kept.push((point.position, Kept::Alone(photon.with(polarization, carries))));
     });
     if !by_heroes {
         let polarization = photon.polarization.clone();
-        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light: *light }))));
+        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light }))));
     }
 }
 

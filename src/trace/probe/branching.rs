@@ -31,7 +31,6 @@ pub fn branching(world: &World, most: f64) -> Branching {
 fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     let mut tracer = PathTracer::<N>::new(world);
     let film = world.scene.film.whole();
-    let all_over: Vec<[i32; 2]> = film.middles_of_cells(SIDE).collect();
     let mut ask = |[x, y]: [i32; 2]| {
         let before = tracer.walker.stats.rays;
         tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
@@ -39,7 +38,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     };
     let enough = most * f64::from(SIDE * SIDE);
     let mut met = 0;
-    for &pixel in &all_over {
+    for pixel in film.middles_of_cells(SIDE) {
         let (more, by_chance) = ask(pixel);
         met += more;
         if by_chance || met as f64 > enough {

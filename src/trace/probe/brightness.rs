@@ -7,7 +7,7 @@ use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphe
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
 use crate::trace::camera::{Bounce, Observer, PathTracer};
-use crate::trace::photon::LightPaths;
+use crate::trace::photon::few_vertices;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
 
@@ -49,7 +49,7 @@ fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
 pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let film = world.scene.film;
     let found = Bounces::default();
-    let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
+    let vertices = few_vertices::<N>(world);
     let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
     tracer.light_vertices = vertices.as_ref();
     for (place, [x, y]) in (0..).zip(film.whole().middles_of_cells(side)) {

@@ -23,7 +23,7 @@ fn compare<const N: usize, P: Polarization<N>>(world: &World) -> f64 {
     let mut all = Amount::default();
     for_each_light::<N, P>(world, 2, &mut |pixel, copy, found| {
         grids.iter_mut().for_each(|cells| cells.add(pixel, copy, found));
-        (all.light, all.change) = (all.light + found.light, all.change + found.change);
+        all += found;
     });
     let lit = all.light + all.change;
     let of_all = if lit > 0.0 { all.change.abs() / lit } else { 0.0 };
@@ -52,8 +52,7 @@ impl Cells {
         let cell = |at: u32, cells: u32, size: u32| u64::from(at) * u64::from(cells) / u64::from(size);
         let [width, height] = self.size;
         let place = cell(y, self.down, height) * u64::from(self.across) + cell(x, self.across, width);
-        let seen = &mut self.cells[place as usize][copy];
-        (seen.light, seen.change) = (seen.light + found.light, seen.change + found.change);
+        self.cells[place as usize][copy] += found;
     }
 
     fn error(&self) -> f64 {

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
-use crate::trace::image::{PhotonCost, send_shown};
+use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{alone, in_parallel};
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept};
+use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept, send_shown};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -71,15 +71,12 @@ pub fn probe(world: &World) -> Probe {
 }
 
 fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
+    let places: Vec<_> = world.scene.film.window().middles_of_cells(SIDE).collect();
     // Tables that are computed when first needed are no part of a sample's time.
     let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness > 0.0);
     if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
         let mut tracer = PathTracer::<N, P>::new(world);
-        let window = world.scene.film.window();
-        for place in 0..SIDE {
-            let at = |place: u32, size: u32| (u64::from(place) * u64::from(size) / u64::from(SIDE)) as u32;
-            let (x, y) = (at(place * 7 % SIDE, window.width), at(place, window.height));
-            let (x, y) = (window.left + x as i32, window.top + y as i32);
+        for &[x, y] in &places[..SIDE as usize] {
             tracer.sample(&Sampler::of_pixel(world.method.seed, [x, y], 0), [x, y]);
         }
     }
@@ -91,8 +88,6 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let (few, photons) = few_photons::<N, P>(world);
     let mut tracer = PathTracer::<N, P>::new(&few).with_photons(photons.as_ref());
     tracer.light_vertices = vertices.as_ref();
-    let window = world.scene.film.window();
-    let places: Vec<_> = window.middles_of_cells(SIDE).collect();
     let parted = Cell::new(0);
     let mut take = |numbers: Range<u32>| {
         let (start, before) = (Instant::now(), tracer.walker.stats.rays);
@@ -151,41 +146,41 @@ pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World,
 
 /// How many photons follow so many rays, about, by what a few follow: in a heap of glass balls, each follows hundreds.
 pub fn photons_within(world: &World, rays: f64) -> u64 {
-    let of = |targets: &Option<PhotonTargets>, send: &(dyn Fn(&PhotonTargets, Batch) -> Stats + Sync)| {
-        let Some(targets) = targets else { return 0 };
+    let [shown, kept] = of_both(world, &|targets, follow| {
         let of_photon = |number: usize| {
             let target = targets.of_photon((2 * number as u64 + 1) * targets.photons() / (2 * FEW));
-            send(targets, Batch { target, first: number as u64, count: 1, seed: world.method.seed }).rays
+            follow(Batch { target, first: number as u64, count: 1, seed: world.method.seed }).rays
         };
-        in_parallel(FEW as usize, &of_photon).into_iter().sum()
-    };
-    let followed: u64 = in_lanes!(&world.method.basis, N => {
-        let shown = of(&world.photon_targets, &|targets, batch| send_shown::<N, Polarized>(world, targets, batch).stats);
-        shown.max(of(&world.map_targets, &|targets, batch| send_kept::<N, Polarized>(world, targets, batch).stats))
+        in_parallel(FEW as usize, &of_photon).into_iter().sum::<u64>()
     });
-    (rays * FEW as f64 / followed.max(1) as f64) as u64
+    (rays * FEW as f64 / shown.max(kept).max(1) as f64) as u64
+}
+
+/// Follows a batch of photons.
+type Follow<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
+
+/// What is found by the photons of the light pass, and by those of a map, where there are any.
+fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T) -> [T; 2] {
+    in_lanes!(&world.method.basis, N => {
+        let shown = |to: &PhotonTargets| find(to, &|batch| send_shown::<N, Polarized>(world, to, batch).stats);
+        let kept = |to: &PhotonTargets| find(to, &|batch| send_kept::<N, Polarized>(world, to, batch).stats);
+        [world.photon_targets.as_ref().map(shown), world.map_targets.as_ref().map(kept)].map(Option::unwrap_or_default)
+    })
 }
 
 /// Sends some photons of those targets that send most.
 pub fn photon_times(world: &World) -> PhotonTimes {
-    let of = |targets: &Option<PhotonTargets>, send: &dyn Fn(&PhotonTargets, Batch) -> Stats| {
-        targets.as_ref().map_or(Duration::ZERO, |targets| photon_time(targets, world.method.seed, send))
-    };
-    in_lanes!(&world.method.basis, N => {
-        PhotonTimes {
-            shown: of(&world.photon_targets, &|targets, batch| send_shown::<N, Polarized>(world, targets, batch).stats),
-            kept: of(&world.map_targets, &|targets, batch| send_kept::<N, Polarized>(world, targets, batch).stats),
-        }
-    })
+    let [shown, kept] = of_both(world, &|targets, follow| photon_time(targets, world.method.seed, follow));
+    PhotonTimes { shown, kept }
 }
 
-fn photon_time(targets: &PhotonTargets, seed: u64, send: &dyn Fn(&PhotonTargets, Batch) -> Stats) -> Duration {
+fn photon_time(targets: &PhotonTargets, seed: u64, follow: Follow) -> Duration {
     let take = |number: u64| {
         // Far ones first, as some are enough where photons take long.
         let number = (number * 29) % TIMES;
         let target = targets.of_photon((2 * number + 1) * targets.photons() / (2 * TIMES));
         let start = Instant::now();
-        let stats = send(targets, Batch { target, first: number * FEW, count: FEW, seed });
+        let stats = follow(Batch { target, first: number * FEW, count: FEW, seed });
         Timed { time: start.elapsed(), rays: stats.rays }
     };
     let (start, mut batches) = (Instant::now(), Vec::new());

@@ -8,7 +8,7 @@ use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
 use crate::trace::density::SampleDensity;
 use crate::trace::parallel::in_parallel;
-use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
+use crate::trace::photon::{LightVertices, PhotonMap, few_vertices};
 use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
 use crate::trace::{RAYS_OF_A_LOOK, World};
@@ -55,7 +55,7 @@ const SEED: u64 = 0x6465_6e73;
 /// answer is the same everywhere; the whole format counts, whatever part of it is made.
 pub fn adaptive(world: &World, is_absolute: bool) -> Option<Adaptive> {
     let format = [world.scene.film.width, world.scene.film.height];
-    let pixels = f64::from(format[0]) * f64::from(format[1]);
+    let pixels = world.scene.film.whole().pixels() as f64;
     let cells = |most: f64| {
         let side = (pixels / (pixels / PIXELS_OF_A_CELL).clamp(1.0, most)).sqrt();
         format.map(|pixels| ((f64::from(pixels) / side) as u32).max(1))
@@ -92,7 +92,7 @@ struct Cell {
 /// Looks at as many cells as it may, by what few of them take. `cells` tells how many there are of at most so many.
 fn look<const N: usize, P: Polarization<N>>(world: &World, cells: &dyn Fn(f64) -> [u32; 2]) -> ([u32; 2], Vec<Found>) {
     let (few, photons) = few_photons::<N, P>(world);
-    let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
+    let vertices = few_vertices::<N>(world);
     let look = |most: f64| {
         let cells = cells(most);
         let row = |row: usize| look_at_row::<N, P>(&few, photons.as_ref(), vertices.as_ref(), cells, row as u32);

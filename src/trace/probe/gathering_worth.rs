@@ -116,7 +116,7 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
         places.truncate(looked_at);
         of_samples += tracer.walker.stats.rays;
     }
-    let pixels = f64::from(film.width) * f64::from(film.height);
+    let pixels = film.whole().pixels() as f64;
     let count = places.len() as f64;
     let mean = |variances: &[f64]| variances.iter().sum::<f64>() / count;
     let of_maps: Vec<f64> = by_photons[..places.len()].iter().map(|sums| sums.variance(MAPS as f64)).collect();

@@ -12,6 +12,7 @@ mod pilot_noise;
 mod prepare;
 mod reach;
 mod seen_light;
+mod sent_ahead;
 mod sunlit;
 mod visible_caps;
 
@@ -26,4 +27,5 @@ pub use pilot_noise::{PilotNoise, pilot_noise};
 pub use prepare::{prepare, prepare_unguided};
 pub use reach::reached_places;
 pub use seen_light::{SeenLight, seen_light};
+pub use sent_ahead::{piloted, seen_photons};
 pub use sunlit::with_light_vertices;

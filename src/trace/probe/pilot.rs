@@ -7,7 +7,7 @@ use crate::math::Sampler;
 use crate::scene::FilmSettings;
 use crate::spectrum::apply;
 use crate::trace::camera::PathTracer;
-use crate::trace::image::light_pass;
+use crate::trace::image::splats;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, World};
@@ -64,8 +64,7 @@ pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
 }
 
 fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
-    let mut world = whole.clone();
-    world.scene.film = world.scene.film.of_the_format();
+    let mut world = whole.of_the_format();
     let groups = whole.photon_light_groups();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
     let affordable = photons_within(&world, RAYS_OF_A_LOOK as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
@@ -77,7 +76,7 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
 fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
     let mut sending = whole.photon_targets.clone()?;
     sending.targets.retain(|target| lights.binary_search(&target.light).is_ok());
-    let all: u64 = sending.targets.iter().map(|target| target.photons).sum();
+    let all = sending.photons();
     for target in &mut sending.targets {
         target.photons = (target.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
     }
@@ -86,10 +85,10 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
     let (mut values, mut photons, mut rays) = (Vec::new(), 0, 0);
     for image in 0..IMAGES {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
-        let mut splats = Vec::new();
-        let shown = light_pass::splats::<N, Polarized>(world, &mut |splat| splats.push((splat.pixel, splat.rgb)));
+        let mut seen = Vec::new();
+        let shown = splats::<N, Polarized>(world, &mut |splat| seen.push((splat.pixel, splat.rgb)));
         (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
-        values.extend(summed(splats).into_iter().map(|(pixel, rgb)| {
+        values.extend(summed(seen).into_iter().map(|(pixel, rgb)| {
             let [x, y, z] = apply(&to_xyz, rgb);
             (pixel, [x, y, z, x + y + z])
         }));
@@ -106,18 +105,12 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
         let variances: [f64; 4] = std::array::from_fn(|i| of_value(sums[i], squares[i]));
         (0..3).for_each(|i| brings[i] += sums[i] / images);
         variance += variances[..3].iter().sum::<f64>();
-        let cell = cell_of(film, [pixel % film.width, pixel / film.width]);
+        let cell = film.whole().cell_of(SIDE, [pixel % film.width, pixel / film.width]);
         cells[cell].mean += sums[3] / (images * sizes[cell]);
         cells[cell].variance += variances[3] / sizes[cell];
     }
     let worth = PhotonWorth { lights, brings, variance, rays: rays as f64 / photons as f64, cells };
     brings.iter().any(|&x| x != 0.0).then_some(worth)
-}
-
-/// The cell in which a pixel of the format lies.
-pub(super) fn cell_of(film: FilmSettings, [x, y]: [u32; 2]) -> usize {
-    let of = |place: u32, size: u32| (u64::from(place) * u64::from(SIDE) / u64::from(size)) as usize;
-    of(y, film.height) * SIDE as usize + of(x, film.width)
 }
 
 /// How many pixels each cell has.
@@ -160,20 +153,22 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
             apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
         });
         let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
-        let count = taken.len().max(2) as f64;
-        let mut variance = 0.0;
-        for channel in 0..3 {
-            let mean = taken.iter().map(|xyz| xyz[channel]).sum::<f64>() / count;
-            let squares = taken.iter().map(|xyz| (xyz[channel] - mean) * (xyz[channel] - mean));
-            variance += squares.sum::<f64>() / (count - 1.0);
-        }
-        variances.push(variance);
+        let of_channel = |channel: usize| mean_and_variance(taken.iter().map(move |xyz| xyz[channel]));
+        variances.push((0..3).fold(0.0, |sum, channel| sum + of_channel(channel)[1]));
         if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
     }
     let rays = tracer.walker.stats.rays as f64 / (variances.len() as f64 * f64::from(SAMPLES));
-    SampleWorth::of(variances, f64::from(film.width) * f64::from(film.height), rays)
+    SampleWorth::of(variances, film.whole().pixels() as f64, rays)
+}
+
+/// The mean of some values, and the variance of one.
+pub(super) fn mean_and_variance(values: impl ExactSizeIterator<Item = f64> + Clone) -> [f64; 2] {
+    let count = values.len().max(2) as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let squares = values.map(|x| (x - mean) * (x - mean));
+    [mean, squares.sum::<f64>() / (count - 1.0)]
 }
 
 impl SampleWorth {

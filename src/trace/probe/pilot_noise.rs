@@ -6,11 +6,11 @@
 //! C_p) + sum sqrt(B_i C_i))^2. Rays followed stand for time, so that the answer is the same everywhere.
 
 use super::cost::few_photons;
-use super::pilot::{PhotonWorth, SIDE, cell_of};
+use super::pilot::{PhotonWorth, SIDE, mean_and_variance};
 use crate::math::Sampler;
 use crate::spectrum::apply;
 use crate::trace::camera::PathTracer;
-use crate::trace::photon::{LightPaths, LightVertices, PhotonMap};
+use crate::trace::photon::{LightVertices, PhotonMap, few_vertices};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, World};
@@ -28,12 +28,10 @@ const SEED: u64 = 0x7265_7361;
 /// method asks for them. All of the image counts, also where only a part of it is made.
 pub fn pilot_noise(world: &World) -> PilotNoise {
     in_lanes!(&world.method.basis, N => {
-        let vertices = LightPaths::new(world, world.method.seed).map(|light_paths| light_paths.few::<N>());
+        let vertices = few_vertices::<N>(world);
         let (few, photons) = few_photons::<N, Polarized>(world);
-        let of_map = photons.as_ref().map_or(0.0, |photons| {
-            let of_photon = photons.stats.rays as f64 / photons.sent as f64;
-            let map = world.method.light_pass.as_ref().and_then(|pass| pass.map);
-            map.map_or(0.0, |map| of_photon * map.photons as f64 * f64::from(map.count))
+        let of_map = photons.as_ref().zip(world.method.map()).map_or(0.0, |(photons, map)| {
+            photons.stats.rays as f64 / photons.sent as f64 * map.photons as f64 * f64::from(map.count)
         });
         let noise = weigh(&few, photons.as_ref(), vertices.as_ref());
         PilotNoise { rays: noise.rays + of_map / world.samples_of_the_format(), ..noise }
@@ -80,18 +78,15 @@ fn weigh<const N: usize>(
             apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb).iter().sum::<f64>()
         });
         let taken: Vec<f64> = taken.filter(|light| light.is_finite()).collect();
-        let count = taken.len().max(2) as f64;
-        let mean = taken.iter().sum::<f64>() / count;
-        let squares = taken.iter().map(|light| (light - mean) * (light - mean));
-        let cell = cell_of(film, [x, y].map(|place| place as u32));
-        pixels.push(Pixel { mean, variance: squares.sum::<f64>() / (count - 1.0), cell });
+        let [mean, variance] = mean_and_variance(taken.iter().copied());
+        pixels.push(Pixel { mean, variance, cell: film.whole().cell_of(SIDE, [x, y].map(|place| place as u32)) });
         if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
     }
     let stats = tracer.walker.stats;
     let rays = stats.rays as f64 + LOOKING * stats.resampled as f64;
-    let format = f64::from(film.width) * f64::from(film.height);
+    let format = film.whole().pixels() as f64;
     PilotNoise { format, rays: rays / (pixels.len() as f64 * f64::from(SAMPLES)), pixels }
 }
 

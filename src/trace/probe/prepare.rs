@@ -1,16 +1,16 @@
 //! A world made ready for rendering: tabulated, and taught by a few paths and photons where to look.
 
+use super::sent_ahead::learn_where_to_send;
 use super::visible_caps::learn_visible_caps;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
-use crate::trace::image::learn_where_to_send;
 use crate::trace::{Method, World};
 
 /// The scene, tabulated for the method, with rays and photons sent ahead to learn where lamps are visible and where to
 /// send the other photons.
 pub fn prepare(scene: &Scene<Curve>, method: Method) -> World {
     let mut world = prepare_unguided(scene, method);
-    learn_where_to_send(&mut world, u64::MAX);
+    learn_where_to_send(&mut world);
     world
 }
 

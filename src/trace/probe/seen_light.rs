@@ -1,13 +1,14 @@
 //! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand
 //! photons.
 
+use std::ops::AddAssign;
+
 use super::cost::photons_within;
-use crate::film::Window;
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
 use crate::trace::image::splats;
 use crate::trace::pass::Pass;
-use crate::trace::photon::photon_map;
+use crate::trace::photon::photons;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::width::in_lanes;
 use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
@@ -20,27 +21,25 @@ const PARTS: u32 = 6;
 const MOST: u64 = 2048;
 const FEWEST: u64 = 256;
 
-/// Light that was seen, X + Y + Z summed, and by how much polarization may change it.
+/// Light that was seen, and by how much polarization may change it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenLight {
-    /// Both of each 36th of the view.
-    parts: [[f64; 2]; (PARTS * PARTS) as usize],
+    /// That of each 36th of the view.
+    parts: [Amount; (PARTS * PARTS) as usize],
 }
 
 impl SeenLight {
     /// The share of all light by which polarization may change it.
     pub fn change(&self) -> f64 {
-        share(self.parts.iter().fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]]))
+        let mut all = Amount::default();
+        self.parts.into_iter().for_each(|part| all += part);
+        all.share()
     }
 
     /// The share of the light of a 36th of the view by which polarization may change it, where that is largest.
     pub fn change_of_part(&self) -> f64 {
-        self.parts.into_iter().map(share).fold(0.0, f64::max)
+        self.parts.into_iter().map(Amount::share).fold(0.0, f64::max)
     }
-}
-
-fn share([light, change]: [f64; 2]) -> f64 {
-    if light > 0.0 { change / light } else { 0.0 }
 }
 
 /// Looks at the part of the image that is made, with fewer photons than the world's method asks for.
@@ -62,19 +61,29 @@ pub fn with_fewer_photons(world: &World) -> World {
 
 fn look<const N: usize>(world: &World) -> SeenLight {
     let window = world.scene.film.window();
-    let mut seen = SeenLight { parts: [[0.0; 2]; (PARTS * PARTS) as usize] };
-    for_each_light::<N, Polarized>(world, 1, &mut |pixel, _, found| {
-        let part = &mut seen.parts[part_of(window, pixel)];
-        (part[0], part[1]) = (part[0] + found.light, part[1] + found.change);
-    });
+    let mut seen = SeenLight { parts: [Amount::default(); (PARTS * PARTS) as usize] };
+    for_each_light::<N, Polarized>(world, 1, &mut |pixel, _, found| seen.parts[window.cell_of(PARTS, pixel)] += found);
     seen
 }
 
 /// Light that is seen, X + Y + Z, and by how much polarization changes it.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Amount {
     pub light: f64,
     pub change: f64,
+}
+
+impl Amount {
+    /// The share of the light by which polarization changes it.
+    fn share(self) -> f64 {
+        if self.light > 0.0 { self.change / self.light } else { 0.0 }
+    }
+}
+
+impl AddAssign for Amount {
+    fn add_assign(&mut self, more: Self) {
+        (self.light, self.change) = (self.light + more.light, self.change + more.change);
+    }
 }
 
 /// Hands over the light of one or two copies of the view, which know nothing of each other: the pixel, counted from the
@@ -86,7 +95,7 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
     take: &mut impl FnMut([u32; 2], usize, Amount),
 ) {
     let window = world.scene.film.window();
-    let photons = photon_map::photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
+    let photons = photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
     let mut samples = 0;
     for [x, y] in window.middles_of_cells(SIDE) {
@@ -110,10 +119,4 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
         let copy = if splat.early { 0 } else { copies - 1 };
         take(pixel, copy, Amount { light, change: light * f64::from(splat.change) });
     });
-}
-
-/// The part of the view that a pixel of the window lies in.
-fn part_of(window: Window, [x, y]: [u32; 2]) -> usize {
-    let part = |at: u32, size: u32| (u64::from(at) * u64::from(PARTS) / u64::from(size)) as usize;
-    part(y, window.height) * PARTS as usize + part(x, window.width)
 }

@@ -1,0 +1,267 @@
+//! Photons that are shown: where one lands and the camera sees it, it adds to the pixels.
+
+use std::sync::Arc;
+
+use super::batch::{Batch, Sent, send};
+use super::follow::{Landing, Start};
+use crate::light::LightId;
+use crate::material::Arrival;
+use crate::math::{DVec2, DVec3, Ray, Sampler};
+use crate::scene::{Ends, FilmSettings, Seen, Sight};
+use crate::spectrum::{Draw, Lanes};
+use crate::trace::World;
+use crate::trace::arrived::Arrived;
+use crate::trace::dyes::Dyes;
+use crate::trace::first_lobe::FirstLobe;
+use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::spectrum_sample::Spectrum;
+use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhoton, Walker, parts, shading};
+
+/// Use of the random numbers where a photon is seen: the point of the lens.
+const LENS: u32 = 3;
+
+/// What a photon adds to a pixel of the window.
+#[derive(Clone, Debug)]
+pub struct Splat {
+    pub pixel: u32,
+    /// By what share polarization may change it.
+    pub change: f32,
+    pub rgb: [f64; 3],
+    /// S1, S2 and S3 if they are asked for, times a factor.
+    pub stokes: Option<Arc<[[f64; 3]; 3]>>,
+    /// What it adds to the numbers of a spectral image if one is asked for, times a factor.
+    pub bands: Option<Arc<[f32]>>,
+    pub weight: f64,
+    pub light: LightId,
+    /// Whether its wavelengths parted on the way.
+    pub dispersed: bool,
+    /// Whether the photon is of the first half of those sent with it.
+    pub early: bool,
+    /// Whether it landed on a shadow catcher.
+    pub caught: bool,
+    /// By which lobe that surface sends it to the camera, if layers tell that apart.
+    pub first: Option<FirstLobe>,
+}
+
+impl Splat {
+    /// So many times as bright.
+    pub fn times(self, factor: f64) -> Self {
+        Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
+    }
+
+    /// The same of a photon of the first half or not, if that is said.
+    pub fn of_half(self, early: Option<bool>) -> Self {
+        Self { early: early.unwrap_or(self.early), ..self }
+    }
+}
+
+/// Sends one batch of photons that are shown.
+pub fn send_shown<const N: usize, P: Polarization<N>>(
+    world: &World,
+    targets: &PhotonTargets,
+    batch: Batch,
+) -> Sent<Splat> {
+    send(world, targets, batch, false, &show::<N, P>)
+}
+
+/// How the camera sees the place where a photon has landed.
+struct View<'v, 'a, const N: usize, P: Polarization<N>> {
+    walker: &'v Walker<'a, N, P>,
+    landing: &'v Landing<'v, N, P>,
+    sampler: &'v Sampler,
+    seen: Seen,
+    /// Where on the film, near enough to the window.
+    places: Vec<DVec2>,
+    /// Whether the camera is on the side where the photon has arrived; the surface as it sees it, and its own unit
+    /// normal there.
+    same: bool,
+    viewed: Arrival<'v, N>,
+    side: DVec3,
+    sight: Sight,
+}
+
+/// Adds what the camera sees of a photon.
+pub fn show<const N: usize, P: Polarization<N>>(
+    walker: &Walker<N, P>,
+    landing: &Landing<N, P>,
+    sampler: &Sampler,
+    splats: &mut Vec<Splat>,
+) {
+    let Some(view) = View::new(walker, landing, sampler) else { return };
+    view.spread(view.scattered(), splats);
+    if let Some(dyes) = &walker.world.dyes {
+        for (number, dye) in dyes.of(&walker.world.scene, landing.at.object).enumerate() {
+            view.spread(view.shone_by(dyes, dye, number), splats);
+        }
+    }
+}
+
+impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
+    /// None where the camera does not see the place.
+    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>, sampler: &'v Sampler) -> Option<Self> {
+        let Landing { path, at, .. } = landing;
+        let Interaction { arrival, flat, point, .. } = at;
+        let world = walker.world;
+        let (camera, film) = (&world.scene.camera, world.scene.film);
+        let sight = world.sight(at.object);
+        if matches!(sight, Sight::Hidden | Sight::Holdout) {
+            return None;
+        }
+        let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
+        let seen = camera.see(point.position, [u[0], u[1]])?;
+        let (window, reach) = (film.window(), film.filter.reach());
+        let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
+        let [first, end] = window.ends().map(|place| place.map(|x| x as f64));
+        let near = |x: f64, axis: usize| x >= first[axis] - reach && x <= end[axis] + reach;
+        places.retain(|place| near(place.x, 0) && near(place.y, 1));
+        if places.is_empty() {
+            return None;
+        }
+        let same = seen.direction.dot(*flat) > 0.0;
+        let [side, normal] = shading::normals(point, seen.direction);
+        let turned = Arrival { wo: seen.direction, normal, ..*arrival };
+        let viewed = if same { turned } else { turned.turned_around() };
+        Some(Self { walker, landing, sampler, seen, places, same, viewed, side, sight })
+    }
+
+    /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
+    fn arriving(
+        &self,
+        draw: &Draw<N>,
+        start: impl FnOnce() -> P,
+        light: impl FnOnce() -> Lanes<N>,
+    ) -> Option<(Lanes<N>, P)> {
+        let Landing { path, at, .. } = self.landing;
+        let ray = at.point.leave(self.seen.direction);
+        let distance = (self.seen.start - ray.origin).length();
+        let world = self.walker.world;
+        let inside = match world.hides_objects && world.has_media {
+            true => world.seen_media(&ray).inside(&world.scene),
+            false => at.boundary.sides()[usize::from(!self.same)],
+        };
+        let ends = Ends { left: path.left, ..Ends::default() };
+        let last_occluder = &self.walker.last_occluder;
+        let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder };
+        passage.arriving(world, draw, start, light)
+    }
+
+    /// The ray of the camera that sees the place.
+    fn back(&self) -> Ray {
+        Ray { origin: self.seen.start, direction: -self.seen.direction }
+    }
+
+    /// What the pixels get of light that leaves the place toward the camera.
+    fn factor(&self) -> f64 {
+        let Interaction { arrival, flat, .. } = self.landing.at;
+        let cosines = self.seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
+        let filter = self.walker.world.scene.camera.filter();
+        self.landing.start.emitted.factor
+            * cosines
+            * self.seen.importance
+            * filter.map_or(1.0, |filter| filter.transmittance())
+    }
+
+    /// What the surface scatters toward the camera.
+    fn scattered(&self) -> Option<Splat> {
+        let Self { landing, viewed, side, same, .. } = self;
+        let Landing { path, at, .. } = landing;
+        let Interaction { arrival, material, .. } = at;
+        let world = self.walker.world;
+        let (mut bsdf_cos, _) = shading::evaluate(material, viewed, *side, arrival.wo)?;
+        let parted = path.parted || (!same && parts(at.lobes, material, viewed));
+        let start = || path.polarization.shown(at, self.seen.direction, &mut bsdf_cos);
+        let (shone, on_its_way) = self.arriving(arrival.draw, start, || landing.shone(world))?;
+        let polarized = path.polarization.seen(at, viewed, &on_its_way, world, &self.back());
+        let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
+        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
+        let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, viewed, arrival.wo);
+        let lobe = || if *same { reflected() } else { FirstLobe::Transmitted };
+        let first = world.layers.tell_lobes_apart().then(lobe);
+        let arrived = Arrived { source: landing.start.light, draw: arrival.draw, lanes, parted };
+        Some(self.splat(&arrived, &polarized, parted, first))
+    }
+
+    /// What a dye, one of its material by a number, shines toward the camera.
+    fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
+        let Self { landing, viewed, side, .. } = self;
+        let Landing { path, at, .. } = landing;
+        let world = self.walker.world;
+        if !self.same {
+            return None;
+        }
+        let (bsdf_cos, _) = shading::evaluate(&dyes.white, viewed, *side, at.arrival.wo)?;
+        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * landing.shone(world));
+        let parted = path.parted;
+        let brightness =
+            dyes.excited(dye, &Arrived { source: landing.start.light, draw: at.arrival.draw, lanes, parted });
+        // Its light is of other wavelengths than that of the photon, whose lanes may have parted.
+        let draw = &world.method.basis.draw(self.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
+        let mut shares = Vec::new();
+        at.material.shares_of_dyes(&Arrival { draw, ..*viewed }, Lanes::ONE, &mut shares);
+        let at = &at.of_dye(&dyes.white, draw);
+        let polarization = path.polarization.exciting();
+        let mut unpolarized = Lanes::ONE;
+        let start = || polarization.shown(at, self.seen.direction, &mut unpolarized);
+        let (arriving, on_its_way) = self.arriving(draw, start, || draw.start())?;
+        let polarized = polarization.seen(at, viewed, &on_its_way, world, &self.back());
+        let arriving =
+            polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
+        let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
+        let first = world.layers.tell_lobes_apart().then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
+        Some(self.splat(&arrived, &polarized, parted, first))
+    }
+
+    /// Of light that arrives at the camera.
+    fn splat(
+        &self,
+        arrived: &Arrived<N>,
+        polarized: &SeenPhoton<N>,
+        dispersed: bool,
+        first: Option<FirstLobe>,
+    ) -> Splat {
+        let (world, factor) = (self.walker.world, self.factor());
+        let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
+        let spectrum = world.layers.spectrum.as_ref();
+        let of_bands = |spectrum: &Spectrum| spectrum.of(arrived, polarized.stokes.as_ref(), factor);
+        let bands = spectrum.map(|spectrum| of_bands(spectrum).into_iter().map(|x| x as f32).collect());
+        let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
+        let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
+        let Start { light, early, .. } = *self.landing.start;
+        let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
+        let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
+        let caught = self.sight == Sight::ShadowCatcher;
+        Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, dispersed, early, caught, first }
+    }
+
+    /// Adds a splat to all pixels that it reaches.
+    fn spread(&self, splat: Option<Splat>, splats: &mut Vec<Splat>) {
+        let film = self.walker.world.scene.film;
+        if let Some(splat) = splat {
+            self.places.iter().for_each(|&place| spread_over_pixels(film, place, &splat, splats));
+        }
+    }
+}
+
+/// Spreads a splat over the pixels around a place of the film, as the filter weighs them.
+fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &mut Vec<Splat>) {
+    let (window, reach) = (film.window(), film.filter.reach());
+    let [first, end] = window.ends();
+    let first = |x: f64, axis: usize| (x - reach - 0.5).floor().max(first[axis] as f64) as i32;
+    let last = |x: f64, axis: usize| (x + reach).floor().min((end[axis] - 1) as f64) as i32;
+    for y in first(place.y, 1)..=last(place.y, 1) {
+        for x in first(place.x, 0)..=last(place.x, 0) {
+            let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            // Shadow catchers show no light, but the share of it that is missing.
+            let filter = |offset| match splat.caught {
+                true => film.filter.positive_value(offset),
+                false => film.filter.value(offset),
+            };
+            let weight = filter(place - middle);
+            if weight != 0.0 {
+                let pixel = (y - window.top) as u32 * window.width + (x - window.left) as u32;
+                let rgb = splat.rgb.map(|channel| channel * weight);
+                splats.push(Splat { pixel, rgb, weight, ..splat.clone() });
+            }
+        }
+    }
+}

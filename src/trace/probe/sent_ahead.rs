@@ -1,0 +1,206 @@
+//! Photons that are sent ahead: which ones the camera sees tells where to send the others, and what they are worth.
+
+use std::ops::Range;
+
+use crate::trace::parallel::in_parallel;
+use crate::trace::photon::{batches, send, show};
+use crate::trace::photon_targets::PhotonTarget;
+use crate::trace::walk::Polarized;
+use crate::trace::width::in_lanes;
+use crate::trace::{LightPass, RAYS_OF_A_LOOK, World};
+
+/// Sets these random numbers apart from those of the image.
+const SEED: u64 = 0x6168_6561;
+/// Of a target's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
+/// and as many as tell enough.
+const AHEAD: u64 = 8;
+const TOO_FEW: u64 = 4096;
+const ENOUGH: u64 = 1 << 16;
+/// Photons of all targets that the plan sends ahead, as many whatever the image is: no more than these, and than follow
+/// the rays of a look, if those are not too few to tell; and of all targets those that tell which are seen.
+const OF_A_PLAN: u64 = 1 << 16;
+const SEEN_OF_A_PLAN: u64 = 1 << 16;
+/// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen. A photon in a heap
+/// of glass balls follows a hundred.
+const MOST_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
+/// Photons of all targets that tell how many rays one follows.
+const FIRST: u64 = 256;
+
+/// What photons sent ahead found.
+#[derive(Default)]
+struct Learned {
+    /// Of each target, the places and whether the camera saw them.
+    found: Vec<Vec<([f64; 2], bool)>>,
+    /// Rays followed.
+    rays: u64,
+}
+
+impl Learned {
+    /// How many photons of each target follow so many rays, by what these took.
+    fn each_within(&self, rays: f64) -> u64 {
+        let sent = self.found.iter().map(Vec::len).sum::<usize>() as f64;
+        (rays * sent / (self.rays as f64 * self.found.len() as f64)) as u64
+    }
+}
+
+/// Sends photons ahead, of each target those of some numbers as far as it has so many. The format sees them, also where
+/// a part of it or more is made, so that all parts are made alike.
+fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
+    let world = world.of_the_format();
+    let Some(targets) = &world.photon_targets else { return Learned::default() };
+    let of_target = |target: &PhotonTarget| numbers.start..numbers.end.min(target.photons);
+    let batches = batches(targets, of_target, world.method.seed ^ SEED);
+    let send = |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &show::<N, Polarized>);
+    let done = in_parallel(batches.len(), &send);
+    let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
+    for (batch, sent) in batches.iter().zip(done) {
+        learned.rays += sent.stats.rays;
+        learned.found[batch.target].extend(sent.places);
+    }
+    learned
+}
+
+/// Photons of each target that tell how many rays one follows.
+fn first_of_each(world: &World) -> u64 {
+    world.photon_targets.as_ref().map_or(0, |targets| (FIRST / targets.targets.len() as u64).max(1))
+}
+
+/// Sends so many photons of each target ahead, or as many as follow [`MOST_RAYS`], but [`FIRST`] at least.
+fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
+    let first = most.min(first_of_each(world));
+    let mut learned = send_ahead::<N>(world, 0..first);
+    let more = send_ahead::<N>(world, first..most.min(learned.each_within(MOST_RAYS)));
+    learned.rays += more.rays;
+    learned.found.iter_mut().zip(more.found).for_each(|(found, more)| found.extend(more));
+    learned
+}
+
+/// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
+pub fn seen_photons(world: &World) -> Vec<f64> {
+    let mut shares = vec![0.0; world.scene.lights.len()];
+    let Some(targets) = &world.photon_targets else { return shares };
+    let most = (SEEN_OF_A_PLAN / targets.targets.len() as u64).clamp(1, TOO_FEW);
+    let found = in_lanes!(&world.method.basis, N => send_some_ahead::<N>(world, most)).found;
+    let mut counts = vec![[0_u32; 2]; shares.len()];
+    for (target, photons) in targets.targets.iter().zip(found) {
+        let [sent, seen] = &mut counts[target.light];
+        *sent += photons.len() as u32;
+        *seen += photons.iter().filter(|photon| photon.1).count() as u32;
+    }
+    for group in world.photon_light_groups() {
+        let of_group = |i: usize| group.iter().map(|&light| counts[light][i]).sum::<u32>();
+        let share = f64::from(of_group(1)) / f64::from(of_group(0).max(1));
+        group.iter().for_each(|&light| shares[light] = share);
+    }
+    shares
+}
+
+/// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
+/// for one of few, and none where enough to learn from would follow too many rays.
+pub fn piloted(world: &World, light_pass: LightPass) -> World {
+    let world = world.with_light_pass(Some(light_pass));
+    in_lanes!(&world.method.basis, N => taught::<N>(world))
+}
+
+fn taught<const N: usize>(mut world: World) -> World {
+    let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
+    let most = OF_A_PLAN / targets;
+    if most >= TOO_FEW {
+        let first = send_ahead::<N>(&world, 0..first_of_each(&world));
+        if first.each_within(MOST_RAYS) >= TOO_FEW {
+            teach::<N>(&mut world, first.each_within(RAYS_OF_A_LOOK as f64).clamp(TOO_FEW, most));
+        }
+    }
+    world
+}
+
+/// Sends photons ahead, and the others where those were seen.
+pub fn learn_where_to_send(world: &mut World) {
+    in_lanes!(&world.method.basis, N => teach::<N>(world, u64::MAX));
+}
+
+/// The same by at most so many photons of a target.
+fn teach<const N: usize>(world: &mut World, most: u64) {
+    let targets = world.photon_targets.iter().flat_map(|targets| &targets.targets);
+    let Some(least) = targets.map(|target| target.photons / AHEAD).min() else { return };
+    let ahead = least.min(ENOUGH).min(most);
+    if ahead >= TOO_FEW {
+        let found = send_ahead::<N>(world, 0..ahead).found;
+        if let Some(targets) = &mut world.photon_targets {
+            targets.learn(&found);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::spectrum::{Basis, ColorSpace};
+    use crate::trace::{Method, Transport};
+
+    /// A scene whose first light sends so many photons.
+    fn sending(photons: u64, text: &str) -> World {
+        let scene = Scene::parse(text, ".").expect("it is a scene");
+        let transport = Transport::Random { split: 0.05, roulette: 0.05 };
+        let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
+        World::new(&scene, method).with_light_pass(Some(LightPass { photons, lights: vec![0], map: None }))
+    }
+
+    /// A heap of glass balls under a spot, in which a photon follows dozens of rays.
+    fn heap() -> World {
+        let mut text = String::from(
+            "[camera]\nposition = [0, -20, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n[film]\nwidth = 64\nheight = 48\n\
+             [material.glass]\ndielectric = { index = 1.5 }\n[material.floor]\ndiffuse = { reflectance = 0.5 }\n\
+             [[object]]\nmaterial = \"floor\"\nshape.quad = { center = [0, 0, -4], u = [20, 0, 0], v = [0, 20, 0] }\n\
+             [[light]]\nspot = { position = [0, 0, 20], toward = [0, 0, -1], cone_angle = 30, intensity = 3000 }\n",
+        );
+        for ball in 0..512 {
+            let [x, y, z] = [ball % 8, ball / 8 % 8, ball / 64].map(|i| f64::from(i) - 3.5);
+            text += &format!(
+                "[[object]]\nmaterial = \"glass\"\nshape.sphere = {{ center = [{x}, {y}, {z}], radius = 0.4 }}\n"
+            );
+        }
+        sending(1 << 20, &text)
+    }
+
+    #[test]
+    fn a_plan_sends_no_more_photons_ahead_than_it_has_time_for() {
+        let world = heap();
+        let first = send_ahead::<4>(&world, 0..first_of_each(&world));
+        let all = first.rays as f64 * TOO_FEW as f64 / first_of_each(&world) as f64;
+        assert!(all > 2.0 * MOST_RAYS, "{all} rays are affordable");
+        let some = send_some_ahead::<4>(&world, TOO_FEW);
+        assert!((some.rays as f64 / MOST_RAYS - 1.0).abs() < 0.1, "{} rays", some.rays);
+        for (first, some) in first.found.iter().zip(&some.found) {
+            assert!(some.len() > first.len() && some.starts_with(first), "{} and {}", first.len(), some.len());
+        }
+        // Nothing is learned from them.
+        let photons = |world: &World| -> Vec<u64> {
+            world.photon_targets.iter().flat_map(|targets| &targets.targets).map(|target| target.photons).collect()
+        };
+        assert_eq!(photons(&taught::<4>(world.clone())), photons(&world));
+    }
+
+    /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that was followed both ways at every one
+    /// came to no end.
+    #[test]
+    fn photons_between_many_panes_come_to_an_end() {
+        let mut text = String::from(
+            "[camera]\nposition = [0, 3, 12]\nlook_at = [0, 0, 0]\nvertical_fov = 45\n[film]\nwidth = 64\nheight = 36\n\
+             [material.pane]\nthin = { index = 1.5 }\n[material.floor]\ndiffuse = { reflectance = 0.7 }\n[[object]]\n\
+             material = \"floor\"\nshape.plane = { point = [0, -1, 0], normal = [0, 1, 0] }\n\
+             [[light]]\npoint = { position = [0, 2, -3], intensity = 10 }\n",
+        );
+        for pane in 0..30 {
+            let z = 0.1 * f64::from(pane);
+            text += &format!(
+                "[[object]]\nmaterial = \"pane\"\nshape.quad = {{ center = [0, 0, {z}], u = [4, 0, 0], v = [0, 4, 0] }}\n"
+            );
+        }
+        let learned = send_ahead::<4>(&sending(1 << 16, &text), 0..64);
+        let sent: usize = learned.found.iter().map(Vec::len).sum();
+        let each = learned.rays as f64 / sent as f64;
+        assert!((30.0..300.0).contains(&each), "{each} rays");
+    }
+}
