@@ -36,8 +36,7 @@ impl Attributes {
     pub(super) fn transformed(&self, map: &Transform) -> Self {
         // Not normalized, so that they are interpolated as before the map; the largest number of the map is made 1.
         let Some(back) = map.inverse() else { return self.clone() };
-        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| back.transposed(axis).abs().max_element());
-        let size = a.max(b).max(c);
+        let size = back.size();
         let turned =
             |normal: &[f32; 3]| (back.transposed(normal.map(f64::from).into()) / size).to_array().map(|x| x as f32);
         let (normals, coordinates) = (self.normals.iter().map(turned).collect(), self.coordinates.clone());

@@ -228,8 +228,7 @@ impl Document {
                 } else {
                     double.extend(points.iter().map(|p| map.point(p.map(f64::from).into())));
                 }
-                let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
-                faces.extend(cut(&corners, primitive.mode).map(|face| turned(face.map(|corner| corner + first))));
+                faces.extend(cut(&corners, primitive.mode).map(|face| map.wound(face.map(|corner| corner + first))));
             }
         }
         if !has_normals {

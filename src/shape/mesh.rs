@@ -179,9 +179,8 @@ impl Mesh {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        let points = (0..self.vertices.count() as u32).map(|index| map.point(self.vertices.at(index))).collect();
-        let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
-        let triangles = self.triangles.iter().copied().map(turned).collect();
+        let points = self.vertices().map(|vertex| map.point(vertex)).collect();
+        let triangles = self.triangles.iter().map(|&corners| map.wound(corners)).collect();
         Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
     }
 

@@ -63,9 +63,7 @@ impl Triangle {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        let [p1, p2, p3] = self.points.map(|p| map.point(p));
-        // A mirror image runs the other way around; swapping two points keeps the front in front.
-        Self { points: if map.mirrors() { [p1, p3, p2] } else { [p1, p2, p3] } }
+        Self { points: map.wound(self.points.map(|p| map.point(p))) }
     }
 
     pub(super) fn area(&self) -> f64 {
