@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{Crossing, Shape, SurfacePoint};
+use super::{Crossing, Disc, Quad, Shape, SurfacePoint};
 use crate::math::{DMat3, DVec3, Transform, level};
 
 /// The coordinates (u, v) of the points of a shape, by which images lie on it; a transform carries them along.
@@ -105,11 +105,7 @@ impl Coordinates {
     pub fn tangents(&self, shape: &Shape, crossing: &Crossing, point: &SurfacePoint) -> Option<[DVec3; 2]> {
         match self {
             Self::Square => {
-                let plane = match shape {
-                    Shape::Quad(quad) => quad.plane(),
-                    Shape::Disc(disc) => disc.plane(),
-                    _ => return None,
-                };
+                let (Shape::Disc(Disc { plane }) | Shape::Quad(Quad { plane })) = shape else { return None };
                 Some([plane.u * 2.0, plane.v * 2.0])
             }
             Self::Triangle { swapped } => {
@@ -165,7 +161,7 @@ fn coordinates_of_mesh(shape: &Shape, crossing: &Crossing) -> Option<[f64; 2]> {
 mod tests {
     use super::*;
     use crate::math::Ray;
-    use crate::shape::{Attributes, Cube, Disc, Mesh, Plane, Quad, Sphere, Triangle, Vertices};
+    use crate::shape::{Attributes, Cube, Mesh, Plane, Sphere, Triangle, Vertices};
 
     /// Coordinates of the point that a ray toward -`from` first meets.
     fn seen(shape: Shape, map: &Transform, from: DVec3, toward: DVec3) -> [f64; 2] {

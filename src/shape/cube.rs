@@ -33,7 +33,7 @@ impl Cube {
         };
         let faces: [AffinePlane; 6] = std::array::from_fn(face);
         let duals = std::array::from_fn(|axis| {
-            let normal = faces[2 * axis + 1].normal();
+            let normal = faces[2 * axis + 1].normal;
             normal / normal.dot(half_edges[axis])
         });
         Self { center, half_edges, duals, faces: Box::new(faces) }

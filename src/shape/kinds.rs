@@ -108,8 +108,7 @@ impl Shape {
             Self::Triangle(triangle) => triangle.point(crossing.uv),
             Self::Sphere(sphere) => sphere.point(ray.at(crossing.t)),
             Self::Ellipsoid(ellipsoid) => ellipsoid.point(ray.at(crossing.t)),
-            Self::Disc(disc) => disc.point(crossing.uv),
-            Self::Quad(quad) => quad.point(crossing.uv),
+            Self::Disc(Disc { plane }) | Self::Quad(Quad { plane }) => plane.point(crossing.uv),
             Self::Cube(cube) => cube.point(crossing),
             Self::Mesh(mesh) => mesh.point(crossing),
             Self::Instance(instance) => instance.point(crossing),
@@ -134,7 +133,7 @@ impl Shape {
             Self::Sphere(sphere) => Some(sphere.bounds()),
             Self::Ellipsoid(ellipsoid) => Some(ellipsoid.bounds()),
             Self::Disc(disc) => Some(disc.bounds()),
-            Self::Quad(quad) => Some(quad.bounds()),
+            Self::Quad(quad) => Some(quad.plane.bounds()),
             Self::Cube(cube) => Some(cube.bounds()),
             Self::Mesh(mesh) => Some(mesh.bounds()),
             Self::Instance(instance) => Some(instance.bounds()),
@@ -154,8 +153,8 @@ impl Shape {
                 None => Self::Ellipsoid(sphere.ellipsoid().transformed(map)),
             },
             Self::Ellipsoid(ellipsoid) => Self::Ellipsoid(ellipsoid.transformed(map)),
-            Self::Disc(disc) => Self::Disc(disc.transformed(map)),
-            Self::Quad(quad) => Self::Quad(quad.transformed(map)),
+            Self::Disc(Disc { plane }) => Self::Disc(Disc { plane: plane.transformed(map) }),
+            Self::Quad(Quad { plane }) => Self::Quad(Quad { plane: plane.transformed(map) }),
             Self::Cube(cube) => Self::Cube(cube.transformed(map)),
             Self::Mesh(mesh) => Self::Mesh(Arc::new(mesh.transformed(map))),
             Self::Instance(instance) => match instance.transformed(map) {
@@ -192,7 +191,7 @@ impl Shape {
             Self::Sphere(sphere) => sphere.area(),
             Self::Ellipsoid(ellipsoid) => ellipsoid.area(),
             Self::Disc(disc) => disc.area(),
-            Self::Quad(quad) => quad.area(),
+            Self::Quad(quad) => quad.plane.area(),
             Self::Cube(cube) => cube.area(),
             Self::Mesh(mesh) => mesh.area(),
             Self::Instance(instance) => instance.area(),
@@ -204,8 +203,7 @@ impl Shape {
         match self {
             Self::Plane(plane) => Some(plane.normal()),
             Self::Triangle(triangle) => Some(triangle.normal()),
-            Self::Disc(disc) => Some(disc.normal()),
-            Self::Quad(quad) => Some(quad.normal()),
+            Self::Disc(Disc { plane }) | Self::Quad(Quad { plane }) => Some(plane.normal),
             _ => None,
         }
     }
@@ -227,7 +225,7 @@ impl Shape {
             Self::Plane(_) => return None,
             Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
             Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
-            Self::Quad(quad) => return Polygon::Parallelogram(quad.plane()).sample(from, u),
+            Self::Quad(quad) => return Polygon::Parallelogram(&quad.plane).sample(from, u),
             Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_surface(u) - from),
             Self::Disc(disc) => {
                 let sample = ShapeSample::along(disc.sample_area(u) - from)?;
@@ -247,7 +245,7 @@ impl Shape {
             Self::Sphere(sphere) => return sphere.pdf(ray),
             Self::Ellipsoid(ellipsoid) => return ellipsoid.pdf(ray),
             Self::Triangle(triangle) => Polygon::Triangle(triangle.clone()).density(ray.origin),
-            Self::Quad(quad) => Polygon::Parallelogram(quad.plane()).density(ray.origin),
+            Self::Quad(quad) => Polygon::Parallelogram(&quad.plane).density(ray.origin),
             Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => self.density_of_part(crossing.part),
         };
         self.toward(density, ray, crossing)
@@ -318,8 +316,8 @@ impl Shape {
             Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
             Self::Sphere(sphere) => sphere.sample_emission(self.ball()?, toward, u),
             Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
-            Self::Disc(shape) => shape.point(disk(u).into()),
-            Self::Quad(shape) => shape.point(u.map(|x| 2.0 * x - 1.0)),
+            Self::Disc(disc) => disc.plane.point(disk(u).into()),
+            Self::Quad(quad) => quad.plane.point(u.map(|x| 2.0 * x - 1.0)),
             Self::Cube(cube) => {
                 let (face, along) = cube.choose(u[0]);
                 cube.face(face).point([2.0 * along - 1.0, 2.0 * u[1] - 1.0])

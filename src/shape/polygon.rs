@@ -30,7 +30,7 @@ impl Polygon<'_> {
         match self {
             Self::Triangle(triangle) => triangle.normal(),
             Self::Facet(facet) => facet.normal,
-            Self::Parallelogram(plane) => plane.normal(),
+            Self::Parallelogram(plane) => plane.normal,
         }
     }
 
