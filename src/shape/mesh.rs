@@ -3,7 +3,7 @@ use std::sync::OnceLock;
 use super::edges::open_edges;
 use super::packed::Packed;
 use super::triangle::{Facet, tangents_over};
-use super::{Attributes, Bvh, Crossing, Polygon, SurfacePoint, Triangle, Vertices, fragments};
+use super::{Attributes, Crossing, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -18,7 +18,6 @@ use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 pub struct Mesh {
     vertices: Vertices,
     triangles: Vec<[u32; 3]>,
-    bvh: Bvh,
     packed: Packed,
     /// The triangles of a small mesh, at which more rays arrive than it has of them.
     facets: Vec<Facet>,
@@ -59,15 +58,12 @@ impl Mesh {
     }
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
-        let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
-        let count = triangles.len() as u32;
-        let bvh = fragments::tree(count, corners);
-        let packed = Packed::new(&vertices, &triangles, bvh.items());
-        let facet = |index: u32| Facet::new(&Triangle::new(corners(index)));
-        let facets = if triangles.len() <= SMALL { (0..count).map(facet).collect() } else { vec![] };
+        let packed = Packed::new(&vertices, &triangles);
+        let facet = |corners: &[u32; 3]| Facet::new(Triangle::new(corners.map(|corner| vertices.at(corner))));
+        let facets = if triangles.len() <= SMALL { triangles.iter().map(facet).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
-        Self { bvh, packed, facets, vertices, triangles, bounds, areas, closed, attributes }
+        Self { packed, facets, vertices, triangles, bounds, areas, closed, attributes }
     }
 
     /// How many triangles there are.
@@ -113,7 +109,7 @@ impl Mesh {
     /// The nearest crossing of a ray that may leave one of the triangles; of equally near ones, that of the triangle
     /// listed first.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
-        self.packed.nearest(&self.bvh, ray, t_max, |part| left == Some(part), |_| true)
+        self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
     }
 
     /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, told its
@@ -125,7 +121,7 @@ impl Mesh {
         left: Option<u32>,
         counts: impl Fn(u32, f64) -> bool,
     ) -> bool {
-        self.packed.any(&self.bvh, ray, t_max, |part| left == Some(part), counts)
+        self.packed.any(ray, t_max, |part| left == Some(part), counts)
     }
 
     #[inline]

@@ -113,10 +113,10 @@ pub struct Facet {
 }
 
 impl Facet {
-    pub(super) fn new(triangle: &Triangle) -> Self {
-        let error = triangle.error();
+    pub(super) fn new(triangle: Triangle) -> Self {
+        let (normal, area, error) = (triangle.normal(), triangle.area(), triangle.error());
         let (middle, squared) = (triangle.middle(), triangle.squared());
-        Self { triangle: triangle.clone(), normal: triangle.normal(), area: triangle.area(), error, middle, squared }
+        Self { triangle, normal, area, error, middle, squared }
     }
 
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
