@@ -70,7 +70,7 @@ impl Coordinates {
         let unit = |[x, y]: [f64; 2]| [0.5 + 0.5 * x, 0.5 + 0.5 * y];
         match self {
             Self::Square => unit([a, b]),
-            Self::Mesh => coordinates_of_mesh(shape, crossing).unwrap_or_default(),
+            Self::Mesh => shape.mesh().and_then(|mesh| mesh.coordinates(crossing.part, [a, b])).unwrap_or_default(),
             Self::Triangle { swapped } => {
                 if *swapped {
                     [b, a]
@@ -145,15 +145,6 @@ impl Coordinates {
                 Some([along_u / along_u.dot(*u), along_v / along_v.dot(*v)])
             }
         }
-    }
-}
-
-/// The coordinates that a mesh has at a crossing.
-fn coordinates_of_mesh(shape: &Shape, crossing: &Crossing) -> Option<[f64; 2]> {
-    match shape {
-        Shape::Mesh(mesh) => mesh.coordinates(crossing.part, crossing.uv),
-        Shape::Instance(instance) => instance.mesh().coordinates(crossing.part, crossing.uv),
-        _ => None,
     }
 }
 

@@ -112,10 +112,6 @@ impl Instance {
         self.bounds
     }
 
-    pub(super) fn is_closed(&self) -> bool {
-        self.mesh.is_closed()
-    }
-
     /// A triangle of the mesh, in the world.
     pub(super) fn triangle(&self, part: u32) -> Triangle {
         self.mesh.triangle(part).transformed(&self.to_world)
@@ -127,7 +123,7 @@ impl Instance {
     }
 
     fn triangles(&self) -> impl Iterator<Item = Triangle> + '_ {
-        (0..self.mesh.len() as u32).map(|part| self.triangle(part))
+        (0..self.mesh.count()).map(|part| self.triangle(part))
     }
 
     pub(super) fn area(&self) -> f64 {

@@ -98,7 +98,16 @@ impl Shape {
 
     /// Whether its parts are triangles, which can be met one by one.
     pub fn has_triangles(&self) -> bool {
-        matches!(self, Self::Mesh(_) | Self::Instance(_))
+        self.mesh().is_some()
+    }
+
+    /// The mesh that it is or places.
+    pub fn mesh(&self) -> Option<&Arc<Mesh>> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh),
+            Self::Instance(instance) => Some(instance.mesh()),
+            _ => None,
+        }
     }
 
     /// The surface at a crossing that `intersect` found on this ray.
@@ -179,7 +188,7 @@ impl Shape {
             Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
             Self::Triangle(_) | Self::Disc(_) | Self::Quad(_) => false,
             Self::Mesh(mesh) => mesh.is_closed(),
-            Self::Instance(instance) => instance.is_closed(),
+            Self::Instance(instance) => instance.mesh().is_closed(),
         }
     }
 
@@ -278,9 +287,7 @@ impl Shape {
     pub fn part_count(&self) -> u32 {
         match self {
             Self::Cube(_) => 6,
-            Self::Mesh(mesh) => mesh.len() as u32,
-            Self::Instance(instance) => instance.mesh().len() as u32,
-            _ => 0,
+            _ => self.mesh().map_or(0, |mesh| mesh.count()),
         }
     }
 
@@ -331,11 +338,7 @@ impl Shape {
 
     /// Whether its shading normals may differ from its own.
     pub fn is_smooth(&self) -> bool {
-        match self {
-            Self::Mesh(mesh) => mesh.is_smooth(),
-            Self::Instance(instance) => instance.mesh().is_smooth(),
-            _ => false,
-        }
+        self.mesh().is_some_and(|mesh| mesh.is_smooth())
     }
 
     /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.

@@ -29,7 +29,7 @@ pub struct Mesh {
 }
 
 /// Triangles of a mesh up to which memory does not matter.
-pub(super) const SMALL: usize = 1024;
+pub(super) const SMALL: u32 = 1024;
 
 /// What building a mesh left out or noticed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,20 +60,15 @@ impl Mesh {
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
         let packed = Packed::new(&vertices, &triangles);
         let facet = |corners: &[u32; 3]| Facet::new(Triangle::new(corners.map(|corner| vertices.at(corner))));
-        let facets = if triangles.len() <= SMALL { triangles.iter().map(facet).collect() } else { vec![] };
+        let facets = if triangles.len() <= SMALL as usize { triangles.iter().map(facet).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
         Self { packed, facets, vertices, triangles, bounds, areas, closed, attributes }
     }
 
-    /// How many triangles there are.
-    pub fn len(&self) -> usize {
-        self.triangles.len()
-    }
-
-    /// Never: a mesh has at least one triangle.
-    pub fn is_empty(&self) -> bool {
-        false
+    /// How many triangles there are, at least one.
+    pub fn count(&self) -> u32 {
+        self.triangles.len() as u32
     }
 
     pub(super) fn is_closed(&self) -> bool {
@@ -182,7 +177,7 @@ impl Mesh {
 
     fn areas(&self) -> &Distribution {
         let area = |index| self.triangle(index).area();
-        self.areas.get_or_init(|| Distribution::new((0..self.triangles.len() as u32).map(area)))
+        self.areas.get_or_init(|| Distribution::new((0..self.count()).map(area)))
     }
 
     pub(super) fn area(&self) -> f64 {

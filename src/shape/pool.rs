@@ -16,7 +16,7 @@ impl Pool {
     pub fn takes(shape: &Shape) -> bool {
         match shape {
             Shape::Triangle(_) => true,
-            Shape::Mesh(mesh) => mesh.len() <= SMALL,
+            Shape::Mesh(mesh) => mesh.count() <= SMALL,
             _ => false,
         }
     }
@@ -32,7 +32,7 @@ impl Pool {
             match shape {
                 Shape::Triangle(triangle) => add(triangle, 0),
                 Shape::Mesh(mesh) if Self::takes(shape) => {
-                    (0..mesh.len() as u32).for_each(|part| add(&mesh.triangle(part), part));
+                    (0..mesh.count()).for_each(|part| add(&mesh.triangle(part), part));
                 }
                 _ => {}
             }

@@ -122,11 +122,7 @@ impl TexturedShape<'_> {
 
     /// Whether an image lies on two shapes alike, however they are placed.
     pub fn is_like(&self, other: &TexturedShape) -> bool {
-        let mesh = |shape: &Shape| match shape {
-            Shape::Mesh(mesh) => Some(Arc::as_ptr(mesh)),
-            Shape::Instance(instance) => Some(Arc::as_ptr(instance.mesh())),
-            _ => None,
-        };
+        let mesh = |shape: &Shape| shape.mesh().map(Arc::as_ptr);
         match (self.coordinates, other.coordinates) {
             (Coordinates::Square, Coordinates::Square) => discriminant(self.shape) == discriminant(other.shape),
             (Coordinates::Mesh, Coordinates::Mesh) => mesh(self.shape) == mesh(other.shape),
