@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use super::{Crossing, SurfacePoint};
-use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, ball_surface, gamma};
+use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 
 /// A sphere after an uneven scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
 #[derive(Clone, Debug)]
@@ -84,10 +84,6 @@ impl Ellipsoid {
         let [a, b, c] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
         let squares = a.cross(b).length_squared() + b.cross(c).length_squared() + c.cross(a).length_squared();
         4.0 * PI * (squares / 3.0).sqrt()
-    }
-
-    pub(super) fn sample_surface(&self, u: [f64; 2]) -> DVec3 {
-        self.point_at(ball_surface(u)).position
     }
 
     /// Both crossings along a direction are drawn, so their densities add.

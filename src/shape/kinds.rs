@@ -219,10 +219,11 @@ impl Shape {
 
     /// A ball around the shape: itself if it is one, else that around its box; none for an infinite shape.
     pub fn ball(&self) -> Option<Ball> {
+        if let Self::Sphere(sphere) = self {
+            return Some(sphere.ball());
+        }
         let bounds = self.bounds()?;
-        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
-        let radius = if matches!(self, Self::Sphere(_)) { half.max_element() } else { half.length() };
-        Some(Ball { center, radius })
+        Some(Ball { center: bounds.center(), radius: (0.5 * (bounds.max - bounds.min)).length() })
     }
 
     /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
@@ -235,7 +236,9 @@ impl Shape {
             Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
             Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
             Self::Quad(quad) => return Polygon::Parallelogram(&quad.plane).sample(from, u),
-            Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_surface(u) - from),
+            Self::Ellipsoid(ellipsoid) => {
+                return ShapeSample::along(ellipsoid.point_at(ball_surface(u)).position - from);
+            }
             Self::Disc(disc) => {
                 let sample = ShapeSample::along(disc.sample_area(u) - from)?;
                 return Some(sample.with_density(Density::Area(1.0 / disc.area())));
@@ -321,7 +324,7 @@ impl Shape {
         Some(match self {
             Self::Plane(_) | Self::Instance(_) => return None,
             Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
-            Self::Sphere(sphere) => sphere.sample_emission(self.ball()?, toward, u),
+            Self::Sphere(sphere) => sphere.sample_emission(toward, u),
             Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
             Self::Disc(disc) => disc.plane.point(disk(u).into()),
             Self::Quad(quad) => quad.plane.point(u.map(|x| 2.0 * x - 1.0)),
@@ -344,7 +347,7 @@ impl Shape {
     /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.
     pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {
-            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_emission(own, toward, point)),
+            Self::Sphere(sphere) => sphere.pdf_emission(toward, point),
             Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
             _ => 1.0 / self.area(),
         }
@@ -353,7 +356,7 @@ impl Shape {
     /// A point as `sample_emission` draws it; of a sphere, most often of a cap of it, given by its unit normals.
     pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
         match self {
-            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, self.ball()?, toward, u)),
+            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, toward, u)),
             _ => self.sample_emission(toward, u),
         }
     }
@@ -361,7 +364,7 @@ impl Shape {
     /// Density per unit of area with which `sample_cap_emission` draws a point of the shape for a ball.
     pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {
-            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_cap_emission(cap, own, toward, point)),
+            Self::Sphere(sphere) => sphere.pdf_cap_emission(cap, toward, point),
             _ => self.pdf_emission(toward, point),
         }
     }
