@@ -126,7 +126,11 @@ impl Shape {
 
     /// The geometric unit normal there.
     pub fn normal(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
-        if let Self::Mesh(mesh) = self { mesh.normal(crossing.part) } else { self.point(ray, crossing).normal }
+        if let Self::Mesh(mesh) = self {
+            mesh.polygon(crossing.part).normal()
+        } else {
+            self.point(ray, crossing).normal
+        }
     }
 
     /// Whether the shape is finite, as all are but planes.

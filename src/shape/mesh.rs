@@ -83,13 +83,6 @@ impl Mesh {
         }
     }
 
-    pub(super) fn normal(&self, index: u32) -> DVec3 {
-        match self.facets.get(index as usize) {
-            Some(facet) => facet.normal,
-            None => self.triangle(index).normal(),
-        }
-    }
-
     pub(super) fn triangle(&self, index: u32) -> Triangle {
         match self.facets.get(index as usize) {
             Some(facet) => facet.triangle.clone(),
