@@ -115,17 +115,20 @@ impl Transform {
     pub fn normal(&self, normal: DVec3) -> DVec3 {
         let scaled = self.linear / self.size();
         let cofactors = cofactors(scaled);
-        unit(cofactors * normal) * 1f64.copysign(cofactors.z_axis.dot(scaled.z_axis))
+        let turned = cofactors * normal;
+        let turned = unit(turned / power_of_two(turned.abs().max_element()));
+        turned * 1f64.copysign(cofactors.z_axis.dot(scaled.z_axis))
     }
 
     /// What takes differences of points back to what they were.
     pub fn inverse_linear(&self) -> DMat3 {
-        self.linear.inverse()
+        let size = power_of_two(self.size());
+        (self.linear / size).inverse() / size
     }
 
     /// Whether the map turns left hands into right hands.
     pub fn mirrors(&self) -> bool {
-        self.linear.determinant() < 0.0
+        (self.linear / power_of_two(self.size())).determinant() < 0.0
     }
 
     /// The corners of a triangle in the order that keeps its front in front: a mirror image runs the other way around.
@@ -160,4 +163,29 @@ impl Transform {
 fn cofactors(linear: DMat3) -> DMat3 {
     let [a, b, c] = [linear.x_axis, linear.y_axis, linear.z_axis];
     DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b))
+}
+
+/// The largest power of two that is not above a number: what is divided by it keeps its digits, and has squares.
+fn power_of_two(number: f64) -> f64 {
+    f64::from_bits(number.max(f64::MIN_POSITIVE).to_bits() & f64::INFINITY.to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_that_flatten_to_nearly_nothing_keep_normals_and_know_that_they_mirror() {
+        for flat in [1.0, 1e-70, 1e-90, 1e-150] {
+            let map = Transform::scale(DVec3::new(flat, -flat, 1.0)).then(&Transform::scale(DVec3::splat(1e-20)));
+            assert!(map.is_invertible());
+            assert_eq!((map.normal(DVec3::Z), map.mirrors()), (DVec3::Z, true), "{flat}");
+        }
+    }
+
+    #[test]
+    fn maps_that_shrink_to_nearly_nothing_are_taken_back() {
+        let [small, large] = [-400.0, 400.0].map(|exponent| DVec3::splat(libm::exp2(exponent)));
+        assert_eq!(Transform::scale(small).inverse_linear(), DMat3::from_diagonal(large));
+    }
 }
