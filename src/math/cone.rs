@@ -49,8 +49,8 @@ impl Cone {
         1.0 / (2.0 * PI * self.one_minus_cos)
     }
 
-    /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, 1
-    /// - cos = r^2 times the cone's. None beside the disk.
+    /// A direction of the cone for a place of the unit square: equal areas of the disk in it are equal solid angles, as
+    /// 1 - cos is r^2 times the cone's. None beside the disk.
     pub fn sample(&self, place: [f64; 2]) -> Option<DVec3> {
         let [x, y] = disk_in_square(place)?;
         let here = (x * x + y * y) * self.one_minus_cos;

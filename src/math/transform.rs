@@ -73,19 +73,16 @@ impl Transform {
     /// A map with all lengths scaled by a power of two gives the same digits.
     pub fn inverse(&self) -> Option<Self> {
         let size = self.size();
-        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(|v| v / size);
-        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
-        let volume = a.dot(cofactors.x_axis) * size;
-        let linear = DMat3::from_cols(cofactors.x_axis / volume, cofactors.y_axis / volume, cofactors.z_axis / volume);
-        let linear = linear.transpose();
-        let back = Self { linear, translation: -(linear * self.translation) };
-        (back.linear.is_finite() && back.translation.is_finite()).then_some(back)
+        let scaled = self.linear / size;
+        let cofactors = cofactors(scaled);
+        let linear = (cofactors / (scaled.x_axis.dot(cofactors.x_axis) * size)).transpose();
+        let translation = -(linear * self.translation);
+        (linear.is_finite() && translation.is_finite()).then_some(Self { linear, translation })
     }
 
     /// The linear part with every entry positive: |M| of the error bounds of `point` and `vector`.
     pub fn magnitudes(&self) -> DMat3 {
-        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
-        DMat3::from_cols(a.abs(), b.abs(), c.abs())
+        self.linear.abs()
     }
 
     /// Bound of the rounding of `point(p)` for |p| up to `reach`, coordinate by coordinate: gamma(4) (|M| |p| + |t|).
@@ -101,8 +98,7 @@ impl Transform {
     /// |s|).
     pub fn mismatch(&self, back: &Self, reach: DVec3) -> DVec3 {
         let both = self.then(back);
-        let left = both.linear - DMat3::IDENTITY;
-        let left = DMat3::from_cols(left.x_axis.abs(), left.y_axis.abs(), left.z_axis.abs());
+        let left = (both.linear - DMat3::IDENTITY).abs();
         let rounded = back.magnitudes() * (self.magnitudes() * reach) + reach;
         let shifted = back.magnitudes() * self.translation.abs() + back.translation.abs();
         left * reach + both.translation.abs() + rounded * super::gamma(4) + shifted * super::gamma(5)
@@ -110,26 +106,34 @@ impl Transform {
 
     /// The product of the linear part, turned over, with a vector: how normals go the other way.
     pub fn transposed(&self, v: DVec3) -> DVec3 {
-        DVec3::new(self.linear.x_axis.dot(v), self.linear.y_axis.dot(v), self.linear.z_axis.dot(v))
+        self.linear.transpose() * v
     }
 
     /// The unit normal of a transformed surface whose unit normal was `normal`; the front stays the front.
     ///
     /// Computed from the cofactors, which neither overflow nor vanish before the map itself does.
     pub fn normal(&self, normal: DVec3) -> DVec3 {
-        let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].map(|v| v / self.size());
-        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
-        unit(cofactors * normal) * 1f64.copysign(a.cross(b).dot(c))
+        let scaled = self.linear / self.size();
+        let cofactors = cofactors(scaled);
+        let turned = cofactors * normal;
+        let turned = unit(turned / power_of_two(turned.abs().max_element()));
+        turned * 1f64.copysign(cofactors.z_axis.dot(scaled.z_axis))
     }
 
     /// What takes differences of points back to what they were.
     pub fn inverse_linear(&self) -> DMat3 {
-        self.linear.inverse()
+        let size = power_of_two(self.size());
+        (self.linear / size).inverse() / size
     }
 
     /// Whether the map turns left hands into right hands.
     pub fn mirrors(&self) -> bool {
-        self.linear.determinant() < 0.0
+        (self.linear / power_of_two(self.size())).determinant() < 0.0
+    }
+
+    /// The corners of a triangle in the order that keeps its front in front: a mirror image runs the other way around.
+    pub fn wound<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
+        if self.mirrors() { [a, c, b] } else { [a, b, c] }
     }
 
     /// Whether every plane stays a plane: the map is finite and flattens nothing.
@@ -152,5 +156,36 @@ impl Transform {
     pub fn size(&self) -> f64 {
         let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
         a.abs().max(b.abs()).max(c.abs()).max_element().max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The inverse turned over, times the determinant.
+fn cofactors(linear: DMat3) -> DMat3 {
+    let [a, b, c] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b))
+}
+
+/// The largest power of two that is not above a number: what is divided by it keeps its digits, and has squares.
+fn power_of_two(number: f64) -> f64 {
+    f64::from_bits(number.max(f64::MIN_POSITIVE).to_bits() & f64::INFINITY.to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_that_flatten_to_nearly_nothing_keep_normals_and_know_that_they_mirror() {
+        for flat in [1.0, 1e-70, 1e-90, 1e-150] {
+            let map = Transform::scale(DVec3::new(flat, -flat, 1.0)).then(&Transform::scale(DVec3::splat(1e-20)));
+            assert!(map.is_invertible());
+            assert_eq!((map.normal(DVec3::Z), map.mirrors()), (DVec3::Z, true), "{flat}");
+        }
+    }
+
+    #[test]
+    fn maps_that_shrink_to_nearly_nothing_are_taken_back() {
+        let [small, large] = [-400.0, 400.0].map(|exponent| DVec3::splat(libm::exp2(exponent)));
+        assert_eq!(Transform::scale(small).inverse_linear(), DMat3::from_diagonal(large));
     }
 }

@@ -9,7 +9,7 @@ pub struct AffinePlane {
     pub(super) center: DVec3,
     pub(super) u: DVec3,
     pub(super) v: DVec3,
-    normal: DVec3,
+    pub(super) normal: DVec3,
     dual_u: DVec3,
     dual_v: DVec3,
     /// Largest terms of the sums behind a point of the plane, coordinate by coordinate.
@@ -83,10 +83,6 @@ impl AffinePlane {
     pub(super) fn bounds(&self) -> Bounds {
         let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
         Bounds::around(corners.map(|uv| self.at(uv))).padded(8)
-    }
-
-    pub(super) fn normal(&self) -> DVec3 {
-        self.normal
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {

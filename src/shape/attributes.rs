@@ -1,7 +1,5 @@
 //! What a mesh's vertices carry besides their places.
 
-use std::collections::HashMap;
-
 use super::Vertices;
 use crate::math::{DVec3, Transform};
 
@@ -36,8 +34,7 @@ impl Attributes {
     pub(super) fn transformed(&self, map: &Transform) -> Self {
         // Not normalized, so that they are interpolated as before the map; the largest number of the map is made 1.
         let Some(back) = map.inverse() else { return self.clone() };
-        let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| back.transposed(axis).abs().max_element());
-        let size = a.max(b).max(c);
+        let size = back.size();
         let turned =
             |normal: &[f32; 3]| (back.transposed(normal.map(f64::from).into()) / size).to_array().map(|x| x as f32);
         let (normals, coordinates) = (self.normals.iter().map(turned).collect(), self.coordinates.clone());
@@ -55,10 +52,8 @@ fn interpolated<const K: usize>(numbers: &[[f32; K]], corners: [u32; 3], [u, v]:
 ///
 /// Thuermer & Wuethrich 1998, *Computing Vertex Normals from Polygonal Facets*.
 pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
-    let mut places: HashMap<[u64; 3], usize> = HashMap::new();
-    // Adding 0 makes -0 and 0 the same place.
-    let place = |index: u32| vertices.at(index).to_array().map(|x| (x + 0.0).to_bits());
-    let mut sums: Vec<DVec3> = Vec::new();
+    let merged = vertices.merged();
+    let mut sums = vec![DVec3::ZERO; merged.len()];
     for face in faces {
         let points = face.map(|corner| vertices.at(corner));
         for i in 0..3 {
@@ -67,15 +62,11 @@ pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> 
             let (along, back) = (along / size, back / size);
             let across = along.cross(back);
             let angle = libm::atan2(across.length(), along.dot(back));
-            let number = *places.entry(place(face[i])).or_insert_with(|| {
-                sums.push(DVec3::ZERO);
-                sums.len() - 1
-            });
             if let Some(normal) = across.try_normalize() {
-                sums[number] += normal * angle;
+                sums[merged[face[i] as usize] as usize] += normal * angle;
             }
         }
     }
-    let normal = |index| places.get(&place(index)).map_or(DVec3::ZERO, |&number| sums[number].normalize_or_zero());
-    (0..vertices.count() as u32).map(|index| normal(index).to_array().map(|x| x as f32)).collect()
+    let normal = |&vertex: &u32| sums[vertex as usize].normalize_or_zero().to_array().map(|x| x as f32);
+    merged.iter().map(normal).collect()
 }

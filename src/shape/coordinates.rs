@@ -1,8 +1,9 @@
 //! Where the points of shapes lie in images on them.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Neg;
 
-use super::{Crossing, Shape, SurfacePoint};
+use super::{Crossing, Disc, Quad, Shape, SurfacePoint};
 use crate::math::{DMat3, DVec3, Transform, level};
 
 /// The coordinates (u, v) of the points of a shape, by which images lie on it; a transform carries them along.
@@ -66,27 +67,14 @@ impl Coordinates {
 
     /// At a crossing of the shape, whose point in the world is known.
     pub fn at(&self, shape: &Shape, crossing: &Crossing, position: DVec3) -> [f64; 2] {
-        let [a, b] = crossing.uv;
-        let unit = |[x, y]: [f64; 2]| [0.5 + 0.5 * x, 0.5 + 0.5 * y];
+        let unit = |uv: [f64; 2]| uv.map(|x| 0.5 + 0.5 * x);
         match self {
-            Self::Square => unit([a, b]),
-            Self::Mesh => coordinates_of_mesh(shape, crossing).unwrap_or_default(),
-            Self::Triangle { swapped } => {
-                if *swapped {
-                    [b, a]
-                } else {
-                    [a, b]
-                }
+            Self::Square => unit(crossing.uv),
+            Self::Mesh => {
+                shape.mesh().and_then(|mesh| mesh.coordinates(crossing.part, crossing.uv)).unwrap_or_default()
             }
-            // Faces -x, +x, -y, +y, -z, +z, whose own coordinates run along the next two axes.
-            Self::Cube => unit(match crossing.part {
-                0 => [b, a],
-                1 => [-b, a],
-                2 => [b, a],
-                3 => [b, -a],
-                4 => [-a, b],
-                _ => [a, b],
-            }),
+            Self::Triangle { swapped } => swapped_if(*swapped, crossing.uv),
+            Self::Cube => unit(upright(crossing.part, crossing.uv)),
             Self::Sphere { center, inverse } => {
                 let DVec3 { x, y, z } = *inverse * (position - *center);
                 [0.5 + libm::atan2(x, z) / TAU, 1.0 - libm::atan2((x * x + z * z).sqrt(), y) / PI]
@@ -105,30 +93,18 @@ impl Coordinates {
     pub fn tangents(&self, shape: &Shape, crossing: &Crossing, point: &SurfacePoint) -> Option<[DVec3; 2]> {
         match self {
             Self::Square => {
-                let plane = match shape {
-                    Shape::Quad(quad) => quad.plane(),
-                    Shape::Disc(disc) => disc.plane(),
-                    _ => return None,
-                };
+                let (Shape::Disc(Disc { plane }) | Shape::Quad(Quad { plane })) = shape else { return None };
                 Some([plane.u * 2.0, plane.v * 2.0])
             }
             Self::Triangle { swapped } => {
                 let Shape::Triangle(triangle) = shape else { return None };
                 let [p1, p2, p3] = triangle.points();
-                Some(if *swapped { [p3 - p1, p2 - p1] } else { [p2 - p1, p3 - p1] })
+                Some(swapped_if(*swapped, [p2 - p1, p3 - p1]))
             }
             Self::Cube => {
                 let Shape::Cube(cube) = shape else { return None };
                 let plane = cube.face(crossing.part);
-                let [a, b] = [plane.u * 2.0, plane.v * 2.0];
-                // As the coordinates of the faces are turned.
-                Some(match crossing.part {
-                    0 | 2 => [b, a],
-                    1 => [-b, a],
-                    3 => [b, -a],
-                    4 => [-a, b],
-                    _ => [a, b],
-                })
+                Some(upright(crossing.part, [plane.u * 2.0, plane.v * 2.0]))
             }
             Self::Mesh => match shape {
                 Shape::Mesh(mesh) => mesh.tangents(crossing.part),
@@ -152,12 +128,20 @@ impl Coordinates {
     }
 }
 
-/// The coordinates that a mesh has at a crossing.
-fn coordinates_of_mesh(shape: &Shape, crossing: &Crossing) -> Option<[f64; 2]> {
-    match shape {
-        Shape::Mesh(mesh) => mesh.coordinates(crossing.part, crossing.uv),
-        Shape::Instance(instance) => instance.mesh().coordinates(crossing.part, crossing.uv),
-        _ => None,
+fn swapped_if<T>(swapped: bool, [a, b]: [T; 2]) -> [T; 2] {
+    if swapped { [b, a] } else { [a, b] }
+}
+
+/// From a pair along the own coordinates of a face of a cube, the pair along those of an image that stands upright.
+///
+/// The own ones of faces -x, +x, -y, +y, -z, +z run along the next two axes.
+fn upright<T: Neg<Output = T>>(face: u32, [a, b]: [T; 2]) -> [T; 2] {
+    match face {
+        0 | 2 => [b, a],
+        1 => [-b, a],
+        3 => [b, -a],
+        4 => [-a, b],
+        _ => [a, b],
     }
 }
 
@@ -165,7 +149,7 @@ fn coordinates_of_mesh(shape: &Shape, crossing: &Crossing) -> Option<[f64; 2]> {
 mod tests {
     use super::*;
     use crate::math::Ray;
-    use crate::shape::{Attributes, Cube, Disc, Mesh, Plane, Quad, Sphere, Triangle, Vertices};
+    use crate::shape::{Attributes, Cube, Mesh, Plane, Sphere, Triangle, Vertices};
 
     /// Coordinates of the point that a ray toward -`from` first meets.
     fn seen(shape: Shape, map: &Transform, from: DVec3, toward: DVec3) -> [f64; 2] {

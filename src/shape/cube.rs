@@ -33,7 +33,7 @@ impl Cube {
         };
         let faces: [AffinePlane; 6] = std::array::from_fn(face);
         let duals = std::array::from_fn(|axis| {
-            let normal = faces[2 * axis + 1].normal();
+            let normal = faces[2 * axis + 1].normal;
             normal / normal.dot(half_edges[axis])
         });
         Self { center, half_edges, duals, faces: Box::new(faces) }
@@ -103,7 +103,7 @@ impl Cube {
     }
 
     pub(super) fn area(&self) -> f64 {
-        (0..3).map(|axis| 2.0 * self.face_area(axis)).sum()
+        (0..3).map(|axis| 2.0 * self.faces[2 * axis].area()).sum()
     }
 
     /// The plane of a face, which fills its unit square.
@@ -111,21 +111,17 @@ impl Cube {
         &self.faces[index as usize]
     }
 
-    fn face_area(&self, axis: usize) -> f64 {
-        4.0 * self.half_edges[(axis + 1) % 3].cross(self.half_edges[(axis + 2) % 3]).length()
-    }
-
     /// A point uniform by area, and the face it lies on.
     pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
         let (face, along) = self.choose(u[0]);
-        (self.face(face).at([2.0 * along - 1.0, 2.0 * u[1] - 1.0]), face)
+        (self.face(face).sample_area([along, u[1]]), face)
     }
 
     /// A face by its area, and what is left of the random number.
     pub(super) fn choose(&self, u: f64) -> (u32, f64) {
         let mut left = u * self.area();
         for face in 0..6 {
-            let area = self.face_area(face / 2);
+            let area = self.faces[face].area();
             if left < area || face == 5 {
                 return (face as u32, (left / area).min(1.0));
             }

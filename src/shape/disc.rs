@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 
+use super::Crossing;
 use super::affine_plane::AffinePlane;
-use super::{Crossing, SurfacePoint};
-use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, disk, level};
+use crate::math::{Bounds, DMat3, DVec3, Ray, disk, level};
 
 /// A flat disc; its front is the side `normal` points to. An uneven scale makes it an ellipse.
 ///
@@ -14,7 +14,8 @@ use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, disk, level};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Disc {
-    plane: AffinePlane,
+    /// The plane it lies in, whose unit circle it fills.
+    pub(super) plane: AffinePlane,
 }
 
 impl Disc {
@@ -38,25 +39,8 @@ impl Disc {
         self.plane.intersect(ray, t_max).filter(|c| c.uv[0] * c.uv[0] + c.uv[1] * c.uv[1] < 1.0)
     }
 
-    /// The plane it lies in, whose unit circle it fills.
-    pub(super) fn plane(&self) -> &AffinePlane {
-        &self.plane
-    }
-
-    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
-        self.plane.point(uv)
-    }
-
     pub(super) fn bounds(&self) -> Bounds {
         Bounds::of_ellipsoid(self.plane.center, DMat3::from_cols(self.plane.u, self.plane.v, DVec3::ZERO)).padded(8)
-    }
-
-    pub(super) fn normal(&self) -> DVec3 {
-        self.plane.normal()
-    }
-
-    pub(super) fn transformed(&self, map: &Transform) -> Self {
-        Self { plane: self.plane.transformed(map) }
     }
 
     pub(super) fn area(&self) -> f64 {

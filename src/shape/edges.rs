@@ -8,23 +8,10 @@ pub(super) fn open_edges(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
     match unbalanced(vertices.count(), triangles, |corner| corner) {
         0 => 0,
         _ => {
-            let merged = merged(vertices);
+            let merged = vertices.merged();
             unbalanced(vertices.count(), triangles, |corner| merged[corner as usize])
         }
     }
-}
-
-/// For each vertex, one vertex at the same place.
-fn merged(vertices: &Vertices) -> Vec<u32> {
-    // Adding 0 makes -0 and 0 the same place.
-    let place = |index: u32| vertices.at(index).to_array().map(|x| (x + 0.0).to_bits());
-    let mut order: Vec<u32> = (0..vertices.count() as u32).collect();
-    order.sort_unstable_by_key(|&index| place(index));
-    let mut merged = vec![0; order.len()];
-    for same in order.chunk_by(|&a, &b| place(a) == place(b)) {
-        same.iter().for_each(|&index| merged[index as usize] = same[0]);
-    }
-    merged
 }
 
 /// Edges that do not run as often one way as the other.

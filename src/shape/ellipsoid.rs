@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 
 use super::{Crossing, SurfacePoint};
-use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, ball_surface, gamma};
+use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 
 /// A sphere after an uneven scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
 #[derive(Clone, Debug)]
@@ -59,10 +59,10 @@ impl Ellipsoid {
         let normal = gradient / length;
         // As on a sphere, with 3 more roundings for the matrix, on the sizes of its terms; the unit vector itself comes
         // from the inverse matrix, whose own rounding grows with the axes' ratio and moves the point along the surface.
-        let terms = terms_of(self.axes) * unit.abs();
+        let terms = self.axes.abs() * unit.abs();
         // The roots of the ray that leaves are off by up to 24 roundings on the unit sphere, on the sizes of the terms
         // of the inverse matrix; a step along the normal changes the height over that sphere by the gradient's length.
-        let height = unit.abs().dot(terms_of(self.inverse) * terms) / length;
+        let height = unit.abs().dot(self.inverse.abs() * terms) / length;
         let error = terms * gamma(12) + position.abs() * gamma(6) + normal.abs() * height * gamma(24);
         SurfacePoint { position, error, normal, shading: normal }
     }
@@ -86,10 +86,6 @@ impl Ellipsoid {
         4.0 * PI * (squares / 3.0).sqrt()
     }
 
-    pub(super) fn sample_surface(&self, u: [f64; 2]) -> DVec3 {
-        self.point_at(ball_surface(u)).position
-    }
-
     /// Both crossings along a direction are drawn, so their densities add.
     pub(super) fn pdf(&self, ray: &Ray) -> f64 {
         let roots = self.roots(ray).into_iter().flatten();
@@ -111,11 +107,6 @@ impl Ellipsoid {
     fn area_normal(&self, unit: DVec3) -> DVec3 {
         self.inverse.transpose() * unit * self.axes.determinant().abs()
     }
-}
-
-/// The matrix with every entry without its sign.
-fn terms_of(matrix: DMat3) -> DMat3 {
-    DMat3::from_cols(matrix.x_axis.abs(), matrix.y_axis.abs(), matrix.z_axis.abs())
 }
 
 #[cfg(test)]

@@ -12,9 +12,8 @@ use super::{Attributes, Vertices};
 use crate::math::{DMat3, DVec3, Transform};
 
 /// What Abbe reads of a file. Indices refer to lists of the same document.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
-#[derive(Default)]
 struct Document {
     asset: Asset,
     scene: Option<usize>,
@@ -145,20 +144,11 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 impl Document {
     /// The meshes of the default scene, each with the map from its node's space to the scene's.
     fn placed(&self) -> Result<Vec<(&MeshText, Transform)>, String> {
-        let roots = match self.scene.map(|scene| self.scenes.get(scene).ok_or(scene)) {
-            Some(Err(scene)) => return Err(format!("there is no scene {scene}")),
-            Some(Ok(scene)) => scene.nodes.clone(),
-            None => match self.scenes.first() {
-                Some(scene) => scene.nodes.clone(),
-                None => {
-                    let mut is_root = vec![true; self.nodes.len()];
-                    for &child in self.nodes.iter().flat_map(|node| &node.children) {
-                        is_root.get_mut(child).into_iter().for_each(|root| *root = false);
-                    }
-                    (0..self.nodes.len()).filter(|&node| is_root[node]).collect()
-                }
-            },
+        let scene = match self.scene {
+            Some(scene) => Some(self.scenes.get(scene).ok_or_else(|| format!("there is no scene {scene}"))?),
+            None => self.scenes.first(),
         };
+        let roots = scene.map_or_else(|| self.roots(), |scene| scene.nodes.clone());
         let mut seen = vec![false; self.nodes.len()];
         let mut placed = Vec::new();
         let mut open: Vec<(usize, Transform)> = roots.iter().rev().map(|&node| (node, Transform::IDENTITY)).collect();
@@ -174,6 +164,15 @@ impl Document {
             open.extend(node.children.iter().rev().map(|&child| (child, map)));
         }
         Ok(placed)
+    }
+
+    /// The nodes that are no children.
+    fn roots(&self) -> Vec<usize> {
+        let mut is_root = vec![true; self.nodes.len()];
+        for &child in self.nodes.iter().flat_map(|node| &node.children) {
+            is_root.get_mut(child).into_iter().for_each(|root| *root = false);
+        }
+        (0..self.nodes.len()).filter(|&node| is_root[node]).collect()
     }
 
     fn read(&self, placed: &[(&MeshText, Transform)], store: &Store, smooth: bool) -> Result<MeshFile, String> {
@@ -228,8 +227,7 @@ impl Document {
                 } else {
                     double.extend(points.iter().map(|p| map.point(p.map(f64::from).into())));
                 }
-                let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
-                faces.extend(cut(&corners, primitive.mode).map(|face| turned(face.map(|corner| corner + first))));
+                faces.extend(cut(&corners, primitive.mode).map(|face| map.wound(face.map(|corner| corner + first))));
             }
         }
         if !has_normals {
@@ -239,7 +237,7 @@ impl Document {
             (attributes.coordinates, attributes.bare) = (Vec::new(), 0);
         }
         let vertices = if as_written { Vertices::Single(single) } else { Vertices::Double(double) };
-        Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+        Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
     }
 }
 

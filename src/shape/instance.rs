@@ -100,9 +100,9 @@ impl Instance {
     ///
     /// With M and t the map to the world, N and s the map back, p = M q + t the computed image of q, itself off by e:
     /// the map to the world rounds by gamma(4) (|M| |q| + |t|). The ray's origin near p is taken back with a rounding
-    /// of gamma(4) (|N| |p| + |s|), one more for the little way between both, to a place that differs from q by |N M -
-    /// 1| |q| +
-    /// |N t + s|. Those are lengths in the mesh's space, as e is, and worth |M| times as much in the world.
+    /// of gamma(4) (|N| |p| + |s|), one more for the little way between both, to a place that differs from q by
+    /// |N M - 1| |q| + |N t + s|. Those are lengths in the mesh's space, as e is, and worth |M| times as much in the
+    /// world.
     fn error(&self, own: DVec3, placed: DVec3, error: DVec3) -> DVec3 {
         let there = error + self.mismatch + self.to_object.rounding(placed) * 1.25;
         (self.to_world.magnitudes() * there + self.to_world.rounding(own)) * (1.0 + gamma(16))
@@ -110,10 +110,6 @@ impl Instance {
 
     pub(super) fn bounds(&self) -> Bounds {
         self.bounds
-    }
-
-    pub(super) fn is_closed(&self) -> bool {
-        self.mesh.is_closed()
     }
 
     /// A triangle of the mesh, in the world.
@@ -127,7 +123,7 @@ impl Instance {
     }
 
     fn triangles(&self) -> impl Iterator<Item = Triangle> + '_ {
-        (0..self.mesh.len() as u32).map(|part| self.triangle(part))
+        (0..self.mesh.count()).map(|part| self.triangle(part))
     }
 
     pub(super) fn area(&self) -> f64 {

@@ -98,7 +98,16 @@ impl Shape {
 
     /// Whether its parts are triangles, which can be met one by one.
     pub fn has_triangles(&self) -> bool {
-        matches!(self, Self::Mesh(_) | Self::Instance(_))
+        self.mesh().is_some()
+    }
+
+    /// The mesh that it is or places.
+    pub fn mesh(&self) -> Option<&Arc<Mesh>> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh),
+            Self::Instance(instance) => Some(instance.mesh()),
+            _ => None,
+        }
     }
 
     /// The surface at a crossing that `intersect` found on this ray.
@@ -108,8 +117,7 @@ impl Shape {
             Self::Triangle(triangle) => triangle.point(crossing.uv),
             Self::Sphere(sphere) => sphere.point(ray.at(crossing.t)),
             Self::Ellipsoid(ellipsoid) => ellipsoid.point(ray.at(crossing.t)),
-            Self::Disc(disc) => disc.point(crossing.uv),
-            Self::Quad(quad) => quad.point(crossing.uv),
+            Self::Disc(Disc { plane }) | Self::Quad(Quad { plane }) => plane.point(crossing.uv),
             Self::Cube(cube) => cube.point(crossing),
             Self::Mesh(mesh) => mesh.point(crossing),
             Self::Instance(instance) => instance.point(crossing),
@@ -118,7 +126,11 @@ impl Shape {
 
     /// The geometric unit normal there.
     pub fn normal(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
-        if let Self::Mesh(mesh) = self { mesh.normal(crossing.part) } else { self.point(ray, crossing).normal }
+        if let Self::Mesh(mesh) = self {
+            mesh.polygon(crossing.part).normal()
+        } else {
+            self.point(ray, crossing).normal
+        }
     }
 
     /// Whether the shape is finite, as all are but planes.
@@ -134,7 +146,7 @@ impl Shape {
             Self::Sphere(sphere) => Some(sphere.bounds()),
             Self::Ellipsoid(ellipsoid) => Some(ellipsoid.bounds()),
             Self::Disc(disc) => Some(disc.bounds()),
-            Self::Quad(quad) => Some(quad.bounds()),
+            Self::Quad(quad) => Some(quad.plane.bounds()),
             Self::Cube(cube) => Some(cube.bounds()),
             Self::Mesh(mesh) => Some(mesh.bounds()),
             Self::Instance(instance) => Some(instance.bounds()),
@@ -154,8 +166,8 @@ impl Shape {
                 None => Self::Ellipsoid(sphere.ellipsoid().transformed(map)),
             },
             Self::Ellipsoid(ellipsoid) => Self::Ellipsoid(ellipsoid.transformed(map)),
-            Self::Disc(disc) => Self::Disc(disc.transformed(map)),
-            Self::Quad(quad) => Self::Quad(quad.transformed(map)),
+            Self::Disc(Disc { plane }) => Self::Disc(Disc { plane: plane.transformed(map) }),
+            Self::Quad(Quad { plane }) => Self::Quad(Quad { plane: plane.transformed(map) }),
             Self::Cube(cube) => Self::Cube(cube.transformed(map)),
             Self::Mesh(mesh) => Self::Mesh(Arc::new(mesh.transformed(map))),
             Self::Instance(instance) => match instance.transformed(map) {
@@ -180,7 +192,7 @@ impl Shape {
             Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
             Self::Triangle(_) | Self::Disc(_) | Self::Quad(_) => false,
             Self::Mesh(mesh) => mesh.is_closed(),
-            Self::Instance(instance) => instance.is_closed(),
+            Self::Instance(instance) => instance.mesh().is_closed(),
         }
     }
 
@@ -192,7 +204,7 @@ impl Shape {
             Self::Sphere(sphere) => sphere.area(),
             Self::Ellipsoid(ellipsoid) => ellipsoid.area(),
             Self::Disc(disc) => disc.area(),
-            Self::Quad(quad) => quad.area(),
+            Self::Quad(quad) => quad.plane.area(),
             Self::Cube(cube) => cube.area(),
             Self::Mesh(mesh) => mesh.area(),
             Self::Instance(instance) => instance.area(),
@@ -204,18 +216,18 @@ impl Shape {
         match self {
             Self::Plane(plane) => Some(plane.normal()),
             Self::Triangle(triangle) => Some(triangle.normal()),
-            Self::Disc(disc) => Some(disc.normal()),
-            Self::Quad(quad) => Some(quad.normal()),
+            Self::Disc(Disc { plane }) | Self::Quad(Quad { plane }) => Some(plane.normal),
             _ => None,
         }
     }
 
     /// A ball around the shape: itself if it is one, else that around its box; none for an infinite shape.
     pub fn ball(&self) -> Option<Ball> {
+        if let Self::Sphere(sphere) = self {
+            return Some(sphere.ball());
+        }
         let bounds = self.bounds()?;
-        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
-        let radius = if matches!(self, Self::Sphere(_)) { half.max_element() } else { half.length() };
-        Some(Ball { center, radius })
+        Some(Ball { center: bounds.center(), radius: (0.5 * (bounds.max - bounds.min)).length() })
     }
 
     /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
@@ -227,8 +239,10 @@ impl Shape {
             Self::Plane(_) => return None,
             Self::Sphere(sphere) => return Some(sphere.sample(from, u)),
             Self::Triangle(triangle) => return Polygon::Triangle(triangle.clone()).sample(from, u),
-            Self::Quad(quad) => return Polygon::Parallelogram(quad.plane()).sample(from, u),
-            Self::Ellipsoid(ellipsoid) => return ShapeSample::along(ellipsoid.sample_surface(u) - from),
+            Self::Quad(quad) => return Polygon::Parallelogram(&quad.plane).sample(from, u),
+            Self::Ellipsoid(ellipsoid) => {
+                return ShapeSample::along(ellipsoid.point_at(ball_surface(u)).position - from);
+            }
             Self::Disc(disc) => {
                 let sample = ShapeSample::along(disc.sample_area(u) - from)?;
                 return Some(sample.with_density(Density::Area(1.0 / disc.area())));
@@ -247,7 +261,7 @@ impl Shape {
             Self::Sphere(sphere) => return sphere.pdf(ray),
             Self::Ellipsoid(ellipsoid) => return ellipsoid.pdf(ray),
             Self::Triangle(triangle) => Polygon::Triangle(triangle.clone()).density(ray.origin),
-            Self::Quad(quad) => Polygon::Parallelogram(quad.plane()).density(ray.origin),
+            Self::Quad(quad) => Polygon::Parallelogram(&quad.plane).density(ray.origin),
             Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => self.density_of_part(crossing.part),
         };
         self.toward(density, ray, crossing)
@@ -280,9 +294,7 @@ impl Shape {
     pub fn part_count(&self) -> u32 {
         match self {
             Self::Cube(_) => 6,
-            Self::Mesh(mesh) => mesh.len() as u32,
-            Self::Instance(instance) => instance.mesh().len() as u32,
-            _ => 0,
+            _ => self.mesh().map_or(0, |mesh| mesh.count()),
         }
     }
 
@@ -316,10 +328,10 @@ impl Shape {
         Some(match self {
             Self::Plane(_) | Self::Instance(_) => return None,
             Self::Triangle(triangle) => triangle.point(triangle_coordinates(u)),
-            Self::Sphere(sphere) => sphere.sample_emission(self.ball()?, toward, u),
+            Self::Sphere(sphere) => sphere.sample_emission(toward, u),
             Self::Ellipsoid(ellipsoid) => ellipsoid.point_at(ball_surface(u)),
-            Self::Disc(shape) => shape.point(disk(u).into()),
-            Self::Quad(shape) => shape.point(u.map(|x| 2.0 * x - 1.0)),
+            Self::Disc(disc) => disc.plane.point(disk(u).into()),
+            Self::Quad(quad) => quad.plane.point(u.map(|x| 2.0 * x - 1.0)),
             Self::Cube(cube) => {
                 let (face, along) = cube.choose(u[0]);
                 cube.face(face).point([2.0 * along - 1.0, 2.0 * u[1] - 1.0])
@@ -333,17 +345,13 @@ impl Shape {
 
     /// Whether its shading normals may differ from its own.
     pub fn is_smooth(&self) -> bool {
-        match self {
-            Self::Mesh(mesh) => mesh.is_smooth(),
-            Self::Instance(instance) => instance.mesh().is_smooth(),
-            _ => false,
-        }
+        self.mesh().is_some_and(|mesh| mesh.is_smooth())
     }
 
     /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.
     pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {
-            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_emission(own, toward, point)),
+            Self::Sphere(sphere) => sphere.pdf_emission(toward, point),
             Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
             _ => 1.0 / self.area(),
         }
@@ -352,7 +360,7 @@ impl Shape {
     /// A point as `sample_emission` draws it; of a sphere, most often of a cap of it, given by its unit normals.
     pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
         match self {
-            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, self.ball()?, toward, u)),
+            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, toward, u)),
             _ => self.sample_emission(toward, u),
         }
     }
@@ -360,7 +368,7 @@ impl Shape {
     /// Density per unit of area with which `sample_cap_emission` draws a point of the shape for a ball.
     pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {
-            Self::Sphere(sphere) => self.ball().map_or(0.0, |own| sphere.pdf_cap_emission(cap, own, toward, point)),
+            Self::Sphere(sphere) => sphere.pdf_cap_emission(cap, toward, point),
             _ => self.pdf_emission(toward, point),
         }
     }

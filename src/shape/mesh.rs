@@ -3,7 +3,7 @@ use std::sync::OnceLock;
 use super::edges::open_edges;
 use super::packed::Packed;
 use super::triangle::{Facet, tangents_over};
-use super::{Attributes, Bvh, Crossing, Polygon, SurfacePoint, Triangle, Vertices, fragments};
+use super::{Attributes, Crossing, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -18,7 +18,6 @@ use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 pub struct Mesh {
     vertices: Vertices,
     triangles: Vec<[u32; 3]>,
-    bvh: Bvh,
     packed: Packed,
     /// The triangles of a small mesh, at which more rays arrive than it has of them.
     facets: Vec<Facet>,
@@ -30,7 +29,7 @@ pub struct Mesh {
 }
 
 /// Triangles of a mesh up to which memory does not matter.
-pub(super) const SMALL: usize = 1024;
+pub(super) const SMALL: u32 = 1024;
 
 /// What building a mesh left out or noticed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,25 +58,17 @@ impl Mesh {
     }
 
     fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
-        let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
-        let count = triangles.len() as u32;
-        let bvh = fragments::tree(count, corners);
-        let packed = Packed::new(&vertices, &triangles, bvh.items());
-        let facet = |index: u32| Facet::new(&Triangle::new(corners(index)));
-        let facets = if triangles.len() <= SMALL { (0..count).map(facet).collect() } else { vec![] };
+        let packed = Packed::new(&vertices, &triangles);
+        let facet = |corners: &[u32; 3]| Facet::new(Triangle::new(corners.map(|corner| vertices.at(corner))));
+        let facets = if triangles.len() <= SMALL as usize { triangles.iter().map(facet).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
-        Self { bvh, packed, facets, vertices, triangles, bounds, areas, closed, attributes }
+        Self { packed, facets, vertices, triangles, bounds, areas, closed, attributes }
     }
 
-    /// How many triangles there are.
-    pub fn len(&self) -> usize {
-        self.triangles.len()
-    }
-
-    /// Never: a mesh has at least one triangle.
-    pub fn is_empty(&self) -> bool {
-        false
+    /// How many triangles there are, at least one.
+    pub fn count(&self) -> u32 {
+        self.triangles.len() as u32
     }
 
     pub(super) fn is_closed(&self) -> bool {
@@ -89,13 +80,6 @@ impl Mesh {
         match self.facets.get(index as usize) {
             Some(facet) => Polygon::Facet(facet),
             None => Polygon::Triangle(self.triangle(index)),
-        }
-    }
-
-    pub(super) fn normal(&self, index: u32) -> DVec3 {
-        match self.facets.get(index as usize) {
-            Some(facet) => facet.normal,
-            None => self.triangle(index).normal(),
         }
     }
 
@@ -113,7 +97,7 @@ impl Mesh {
     /// The nearest crossing of a ray that may leave one of the triangles; of equally near ones, that of the triangle
     /// listed first.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
-        self.packed.nearest(&self.bvh, ray, t_max, |part| left == Some(part), |_| true)
+        self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
     }
 
     /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, told its
@@ -125,7 +109,7 @@ impl Mesh {
         left: Option<u32>,
         counts: impl Fn(u32, f64) -> bool,
     ) -> bool {
-        self.packed.any(&self.bvh, ray, t_max, |part| left == Some(part), counts)
+        self.packed.any(ray, t_max, |part| left == Some(part), counts)
     }
 
     #[inline]
@@ -179,15 +163,14 @@ impl Mesh {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        let points = (0..self.vertices.count() as u32).map(|index| map.point(self.vertices.at(index))).collect();
-        let turned = |[a, b, c]: [u32; 3]| if map.mirrors() { [a, c, b] } else { [a, b, c] };
-        let triangles = self.triangles.iter().copied().map(turned).collect();
+        let points = self.vertices().map(|vertex| map.point(vertex)).collect();
+        let triangles = self.triangles.iter().map(|&corners| map.wound(corners)).collect();
         Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
     }
 
     fn areas(&self) -> &Distribution {
         let area = |index| self.triangle(index).area();
-        self.areas.get_or_init(|| Distribution::new((0..self.triangles.len() as u32).map(area)))
+        self.areas.get_or_init(|| Distribution::new((0..self.count()).map(area)))
     }
 
     pub(super) fn area(&self) -> f64 {

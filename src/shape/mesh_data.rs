@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use super::{Attributes, Vertices};
 
 /// What a mesh file holds.
+#[derive(Default)]
 pub struct MeshFile {
     /// Its vertices, in the precision of the file.
     pub vertices: Vertices,

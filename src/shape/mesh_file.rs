@@ -47,10 +47,6 @@ fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
 
 /// Whether a file begins as gzip begins (RFC 1952, section 2.3.1).
 fn is_packed(path: &Path) -> bool {
-    begins_with(path, &[0x1f, 0x8b])
-}
-
-fn begins_with(path: &Path, bytes: &[u8]) -> bool {
-    let mut start = vec![0; bytes.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == bytes
+    let mut start = [0; 2];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == [0x1f, 0x8b]
 }

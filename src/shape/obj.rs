@@ -192,6 +192,6 @@ impl Lists {
         }
         let vertices = vertices(corners.iter().map(|corner| self.places[corner[0] as usize]));
         let (faces, names_materials) = (self.faces.triangles(&vertices)?, self.names_materials);
-        Ok(MeshFile { vertices, faces, attributes, names_materials, ignored: Vec::new(), others: Vec::new() })
+        Ok(MeshFile { vertices, faces, attributes, names_materials, ..MeshFile::default() })
     }
 }

@@ -1,28 +1,41 @@
-//! A mesh's triangles in the order of its tree's leaves, tested against a ray four at a time.
+//! Triangles under a tree of boxes, in the order of its leaves, tested against a ray four at a time.
 
 use super::bvh::{Crossings, GROUP, Line, Number, prefetch};
 use super::triangle::Sheared;
-use super::{Bvh, Crossing, Vectors, Vertices, Visitor};
+use super::{Bvh, Crossing, Vectors, Vertices, Visitor, fragments};
 use crate::math::{DVec3, Ray};
 
-/// Copies of all corners, in the precision of the vertices.
+/// A tree over triangles, and copies of all their corners.
 #[derive(Clone, Debug)]
-pub(super) enum Packed {
+pub(super) struct Packed {
+    bvh: Bvh,
+    blocks: Blocks,
+}
+
+/// The corners in the precision of the vertices.
+#[derive(Clone, Debug)]
+enum Blocks {
     Single(Vec<Block<f32>>),
     Double(Vec<Block<f64>>),
 }
 
 /// Four triangles side by side: for each corner and coordinate, four numbers. Absent triangles have NaN.
 #[derive(Clone, Debug)]
-pub(super) struct Block<T>([[[T; GROUP]; 3]; 3]);
+struct Block<T>([[[T; GROUP]; 3]; 3]);
 
 impl Packed {
-    /// The blocks of triangles listed in the order of a tree.
-    pub fn new(vertices: &Vertices, triangles: &[[u32; 3]], items: &[u32]) -> Self {
-        match vertices {
-            Vertices::Single(points) => Self::Single(blocks(points, triangles, items, f32::NAN)),
-            Vertices::Double(points) => Self::Double(blocks(points, triangles, items, f64::NAN)),
-        }
+    /// Triangles whose corners index the vertices.
+    pub fn new(vertices: &Vertices, triangles: &[[u32; 3]]) -> Self {
+        let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
+        Self::under(fragments::tree(triangles.len() as u32, corners), vertices, triangles)
+    }
+
+    fn under(bvh: Bvh, vertices: &Vertices, triangles: &[[u32; 3]]) -> Self {
+        let blocks = match vertices {
+            Vertices::Single(points) => Blocks::Single(blocks(points, triangles, bvh.items(), f32::NAN)),
+            Vertices::Double(points) => Blocks::Double(blocks(points, triangles, bvh.items(), f64::NAN)),
+        };
+        Self { bvh, blocks }
     }
 
     /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one
@@ -33,31 +46,23 @@ impl Packed {
     #[inline]
     pub fn nearest(
         &self,
-        bvh: &Bvh,
         ray: &Ray,
         t_max: f64,
         leaves: impl Fn(u32) -> bool,
         counts: impl Fn(u32) -> bool,
     ) -> Option<Crossing> {
-        match self {
-            Self::Single(blocks) => nearest(blocks, bvh, ray, t_max, leaves, counts),
-            Self::Double(blocks) => nearest(blocks, bvh, ray, t_max, leaves, counts),
+        match &self.blocks {
+            Blocks::Single(blocks) => nearest(blocks, &self.bvh, ray, t_max, leaves, counts),
+            Blocks::Double(blocks) => nearest(blocks, &self.bvh, ray, t_max, leaves, counts),
         }
     }
 
     /// Whether there is a crossing with 0 < t <= `t_max` that counts, told its triangle and t.
     #[inline]
-    pub fn any(
-        &self,
-        bvh: &Bvh,
-        ray: &Ray,
-        t_max: f64,
-        leaves: impl Fn(u32) -> bool,
-        counts: impl Fn(u32, f64) -> bool,
-    ) -> bool {
-        match self {
-            Self::Single(blocks) => any(blocks, bvh, ray, t_max, leaves, counts),
-            Self::Double(blocks) => any(blocks, bvh, ray, t_max, leaves, counts),
+    pub fn any(&self, ray: &Ray, t_max: f64, leaves: impl Fn(u32) -> bool, counts: impl Fn(u32, f64) -> bool) -> bool {
+        match &self.blocks {
+            Blocks::Single(blocks) => any(blocks, &self.bvh, ray, t_max, leaves, counts),
+            Blocks::Double(blocks) => any(blocks, &self.bvh, ray, t_max, leaves, counts),
         }
     }
 }
@@ -271,9 +276,8 @@ mod tests {
         let double = points.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
         for vertices in [Vertices::Single(points.clone()), Vertices::Double(double)] {
             let bounds = faces.iter().map(|face| Triangle::new(face.map(corner)).bounds());
-            let wide = Bvh::new::<GROUP>(bounds);
-            let packed = Packed::new(&vertices, &faces, wide.items());
-            let plain = wide.clone().plain();
+            let wide = Packed::under(Bvh::new::<GROUP>(bounds), &vertices, &faces);
+            let plain = Packed { bvh: wide.bvh.clone().plain(), blocks: wide.blocks.clone() };
             let mut met = 0;
             for i in 0..60_000 {
                 let mut place = || ((number() * 16.0) as i32 - 8) as f64 * 0.25;
@@ -291,10 +295,10 @@ mod tests {
                 }
                 let ray = Ray { origin, direction };
                 let t_max = if i % 5 == 0 { number() } else { f64::INFINITY };
-                let found = packed.nearest(&wide, &ray, t_max, |_| false, |_| true);
-                assert_eq!(found, packed.nearest(&plain, &ray, t_max, |_| false, |_| true), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&wide, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
-                assert_eq!(found.is_some(), packed.any(&plain, &ray, t_max, |_| false, |_, _| true), "{ray:?}");
+                let found = wide.nearest(&ray, t_max, |_| false, |_| true);
+                assert_eq!(found, plain.nearest(&ray, t_max, |_| false, |_| true), "{ray:?}");
+                assert_eq!(found.is_some(), wide.any(&ray, t_max, |_| false, |_, _| true), "{ray:?}");
+                assert_eq!(found.is_some(), plain.any(&ray, t_max, |_| false, |_, _| true), "{ray:?}");
                 if i % 16 < 4 {
                     let one = |part: u32| {
                         let triangle = Triangle::new(faces[part as usize].map(corner));

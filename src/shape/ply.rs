@@ -243,7 +243,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     lists.part_corners()?;
     let Lists { vertices, attributes, faces, .. } = lists;
     let faces = faces.triangles(&vertices)?;
-    Ok(MeshFile { vertices, faces, attributes, names_materials: false, ignored: Vec::new(), others: Vec::new() })
+    Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
 }
 
 /// Elements that are read at once: each takes several times the memory of what is kept of it.

@@ -19,8 +19,7 @@ impl Polygon<'_> {
     /// The box that it fills.
     pub fn bounds(&self) -> Bounds {
         match self {
-            Self::Triangle(triangle) => triangle.bounds(),
-            Self::Facet(facet) => facet.triangle.bounds(),
+            Self::Triangle(triangle) | Self::Facet(Facet { triangle, .. }) => triangle.bounds(),
             Self::Parallelogram(plane) => plane.bounds(),
         }
     }
@@ -30,7 +29,7 @@ impl Polygon<'_> {
         match self {
             Self::Triangle(triangle) => triangle.normal(),
             Self::Facet(facet) => facet.normal,
-            Self::Parallelogram(plane) => plane.normal(),
+            Self::Parallelogram(plane) => plane.normal,
         }
     }
 
@@ -45,15 +44,13 @@ impl Polygon<'_> {
 
     /// A direction from a point toward it: evenly over its solid angle nearby, through a point drawn by area far away.
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
-        match (self.outline(from), self) {
-            (Some(outline), _) => Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle())),
-            (None, Self::Triangle(triangle)) => self.toward(from, triangle.sample_area(u)),
-            (None, Self::Facet(facet)) => self.toward(from, facet.triangle.sample_area(u)),
-            (None, Self::Parallelogram(plane)) => self.toward(from, plane.sample_area(u)),
+        if let Some(outline) = self.outline(from) {
+            return Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle()));
         }
-    }
-
-    fn toward(&self, from: DVec3, point: DVec3) -> Option<ShapeSample> {
+        let point = match self {
+            Self::Triangle(triangle) | Self::Facet(Facet { triangle, .. }) => triangle.sample_area(u),
+            Self::Parallelogram(plane) => plane.sample_area(u),
+        };
         Some(ShapeSample::along(point - from)?.with_density(Density::Area(1.0 / self.area())))
     }
 

@@ -1,12 +1,11 @@
 use super::mesh::SMALL;
 use super::packed::Packed;
-use super::{Bvh, Crossing, Shape, Triangle, Vertices, fragments};
+use super::{Crossing, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
 
 /// The triangles of several small shapes in one tree, which a ray goes through once.
 #[derive(Clone, Debug)]
 pub struct Pool {
-    bvh: Bvh,
     packed: Packed,
     /// Number of the shape, and the triangle's in the shape.
     owners: Vec<[u32; 2]>,
@@ -17,7 +16,7 @@ impl Pool {
     pub fn takes(shape: &Shape) -> bool {
         match shape {
             Shape::Triangle(_) => true,
-            Shape::Mesh(mesh) => mesh.len() <= SMALL,
+            Shape::Mesh(mesh) => mesh.count() <= SMALL,
             _ => false,
         }
     }
@@ -33,15 +32,13 @@ impl Pool {
             match shape {
                 Shape::Triangle(triangle) => add(triangle, 0),
                 Shape::Mesh(mesh) if Self::takes(shape) => {
-                    (0..mesh.len() as u32).for_each(|part| add(&mesh.triangle(part), part));
+                    (0..mesh.count()).for_each(|part| add(&mesh.triangle(part), part));
                 }
                 _ => {}
             }
         }
         let triangles: Vec<[u32; 3]> = (0..owners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let bvh = fragments::tree(owners.len() as u32, |item| triangles[item as usize].map(|i| points[i as usize]));
-        let packed = Packed::new(&Vertices::Double(points), &triangles, bvh.items());
-        Self { bvh, packed, owners }
+        Self { packed: Packed::new(&Vertices::Double(points), &triangles), owners }
     }
 
     /// The nearest crossing with 0 < t <= `t_max` of a shape that counts, and the shape's number. Of equally near ones,
@@ -56,7 +53,7 @@ impl Pool {
     ) -> Option<(u32, Crossing)> {
         let owner = |item: u32| self.owners[item as usize];
         let leaves = |item| left == Some(owner(item));
-        let crossing = self.packed.nearest(&self.bvh, ray, t_max, leaves, |item| counts(owner(item)[0]))?;
+        let crossing = self.packed.nearest(ray, t_max, leaves, |item| counts(owner(item)[0]))?;
         let [number, part] = owner(crossing.part);
         Some((number, Crossing { part, ..crossing }))
     }
@@ -66,6 +63,6 @@ impl Pool {
     pub fn any(&self, ray: &Ray, t_max: f64, left: Option<[u32; 2]>, counts: impl Fn([u32; 2], f64) -> bool) -> bool {
         let owner = |item: u32| self.owners[item as usize];
         let leaves = |item| left == Some(owner(item));
-        self.packed.any(&self.bvh, ray, t_max, leaves, |item, t| counts(owner(item), t))
+        self.packed.any(ray, t_max, leaves, |item, t| counts(owner(item), t))
     }
 }

@@ -1,6 +1,6 @@
+use super::Crossing;
 use super::affine_plane::AffinePlane;
-use super::{Crossing, SurfacePoint};
-use crate::math::{Bounds, DVec3, Ray, Transform};
+use crate::math::{DVec3, Ray};
 
 /// The parallelogram `center +- u +- v`; its front is the side `u x v` points to.
 ///
@@ -9,7 +9,8 @@ use crate::math::{Bounds, DVec3, Ray, Transform};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Quad {
-    plane: AffinePlane,
+    /// The plane it lies in, whose unit square it is.
+    pub(super) plane: AffinePlane,
 }
 
 impl Quad {
@@ -20,30 +21,5 @@ impl Quad {
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
         self.plane.intersect(ray, t_max).filter(|c| c.uv[0].abs() <= 1.0 && c.uv[1].abs() <= 1.0)
-    }
-
-    /// The plane it lies in, whose unit square it is.
-    pub(super) fn plane(&self) -> &AffinePlane {
-        &self.plane
-    }
-
-    pub(super) fn point(&self, uv: [f64; 2]) -> SurfacePoint {
-        self.plane.point(uv)
-    }
-
-    pub(super) fn bounds(&self) -> Bounds {
-        self.plane.bounds()
-    }
-
-    pub(super) fn normal(&self) -> DVec3 {
-        self.plane.normal()
-    }
-
-    pub(super) fn transformed(&self, map: &Transform) -> Self {
-        Self { plane: self.plane.transformed(map) }
-    }
-
-    pub(super) fn area(&self) -> f64 {
-        self.plane.area()
     }
 }

@@ -69,6 +69,12 @@ impl Sphere {
         Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
     }
 
+    /// The ball that fills its box.
+    pub(super) fn ball(&self) -> Ball {
+        let bounds = self.bounds();
+        Ball { center: bounds.center(), radius: 0.5 * (bounds.max - bounds.min).max_element() }
+    }
+
     /// The sphere after a map; none after an uneven one, which makes an ellipsoid of it.
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
         map.uniform_scale().map(|scale| Self::new(map.point(self.center), self.radius * scale))
@@ -106,7 +112,7 @@ impl Sphere {
             return Some(ShapeSample { density: None, ..self.sample(from, [u, v]) });
         }
         let normal = cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
-        let direction = self.center + normal * self.radius - from;
+        let direction = self.over(normal) - from;
         // A point behind the horizon is hidden by one in front, whose own density counts.
         if normal.dot(direction) < 0.0 { ShapeSample::along(direction) } else { None }
     }
@@ -128,15 +134,15 @@ impl Sphere {
     }
 
     /// A point of the cap that sees some of a ball, denser toward the cap's middle as much as it sends more there.
-    pub(super) fn sample_emission(&self, own: Ball, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
-        let cap = own.cap_toward(toward);
+    pub(super) fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
+        let cap = self.ball().cap_toward(toward);
         let u = if cap.is_all() { u } else { [1.0 - u[0].sqrt(), u[1]] };
         self.point(self.over(cap.sample_uniform(u)))
     }
 
     /// Density per unit of area with which `sample_emission` draws a point.
-    pub(super) fn pdf_emission(&self, own: Ball, toward: &Ball, point: &SurfacePoint) -> f64 {
-        let Cone { axis, one_minus_cos } = own.cap_toward(toward);
+    pub(super) fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
+        let Cone { axis, one_minus_cos } = self.ball().cap_toward(toward);
         // 1 - cos of the angle from the middle; a far ball gets light by the cosine, which is 0 at the rim.
         let here = 0.5 * (point.normal - axis).length_squared();
         let share = if one_minus_cos < 2.0 { 2.0 * (1.0 - here / one_minus_cos).max(0.0) } else { 1.0 };
@@ -144,17 +150,17 @@ impl Sphere {
     }
 
     /// A point as `sample_emission` draws it, or most often of a cap, uniform by area.
-    pub(super) fn sample_cap_emission(&self, cap: &Cone, own: Ball, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
+    pub(super) fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
         if u < ELSEWHERE {
-            return self.sample_emission(own, toward, [u / ELSEWHERE, v]);
+            return self.sample_emission(toward, [u / ELSEWHERE, v]);
         }
         self.point(self.over(cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])))
     }
 
     /// Density per unit of area with which `sample_cap_emission` draws a point.
-    pub(super) fn pdf_cap_emission(&self, cap: &Cone, own: Ball, toward: &Ball, point: &SurfacePoint) -> f64 {
+    pub(super) fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
         let of_cap = if cap.contains(point.normal) { 2.0 / (cap.one_minus_cos * self.area()) } else { 0.0 };
-        ELSEWHERE * self.pdf_emission(own, toward, point) + (1.0 - ELSEWHERE) * of_cap
+        ELSEWHERE * self.pdf_emission(toward, point) + (1.0 - ELSEWHERE) * of_cap
     }
 
     pub(super) fn is_outside(&self, point: DVec3) -> bool {

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::mem::discriminant;
 use std::sync::Arc;
 
-use super::{Coordinates, Crossing, Shape, SurfacePoint};
+use super::{Coordinates, Crossing, Disc, Quad, Shape, SurfacePoint};
 use crate::math::{DVec3, Ray, disk_in_square, square_around_disk, triangle_coordinates, triangle_square};
 
 /// A place of the unit square on a part of a shape.
@@ -78,8 +78,7 @@ impl TexturedShape<'_> {
     /// Area of a part for one of the square at a place, which is a point of the world; none of a plane.
     pub fn area(&self, part: u32, place: [f64; 2], position: DVec3) -> Option<f64> {
         Some(match self.shape {
-            Shape::Quad(quad) => quad.area(),
-            Shape::Disc(disc) => disc.plane().area(),
+            Shape::Disc(Disc { plane }) | Shape::Quad(Quad { plane }) => plane.area(),
             Shape::Cube(_) | Shape::Mesh(_) | Shape::Instance(_) => self.shape.part(part)?.area(),
             Shape::Triangle(triangle) => triangle.area(),
             Shape::Sphere(sphere) => sphere.area() * self.growth(place),
@@ -123,11 +122,7 @@ impl TexturedShape<'_> {
 
     /// Whether an image lies on two shapes alike, however they are placed.
     pub fn is_like(&self, other: &TexturedShape) -> bool {
-        let mesh = |shape: &Shape| match shape {
-            Shape::Mesh(mesh) => Some(Arc::as_ptr(mesh)),
-            Shape::Instance(instance) => Some(Arc::as_ptr(instance.mesh())),
-            _ => None,
-        };
+        let mesh = |shape: &Shape| shape.mesh().map(Arc::as_ptr);
         match (self.coordinates, other.coordinates) {
             (Coordinates::Square, Coordinates::Square) => discriminant(self.shape) == discriminant(other.shape),
             (Coordinates::Mesh, Coordinates::Mesh) => mesh(self.shape) == mesh(other.shape),

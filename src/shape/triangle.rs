@@ -63,9 +63,7 @@ impl Triangle {
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        let [p1, p2, p3] = self.points.map(|p| map.point(p));
-        // A mirror image runs the other way around; swapping two points keeps the front in front.
-        Self { points: if map.mirrors() { [p1, p3, p2] } else { [p1, p2, p3] } }
+        Self { points: map.wound(self.points.map(|p| map.point(p))) }
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -115,10 +113,10 @@ pub struct Facet {
 }
 
 impl Facet {
-    pub(super) fn new(triangle: &Triangle) -> Self {
-        let error = triangle.error();
+    pub(super) fn new(triangle: Triangle) -> Self {
+        let (normal, area, error) = (triangle.normal(), triangle.area(), triangle.error());
         let (middle, squared) = (triangle.middle(), triangle.squared());
-        Self { triangle: triangle.clone(), normal: triangle.normal(), area: triangle.area(), error, middle, squared }
+        Self { triangle, normal, area, error, middle, squared }
     }
 
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {

@@ -31,4 +31,17 @@ impl Vertices {
             Self::Double(points) => points[index as usize],
         }
     }
+
+    /// For each vertex, one vertex at the same place.
+    pub(super) fn merged(&self) -> Vec<u32> {
+        // Adding 0 makes -0 and 0 the same place.
+        let place = |index: u32| self.at(index).to_array().map(|x| (x + 0.0).to_bits());
+        let mut order: Vec<u32> = (0..self.count() as u32).collect();
+        order.sort_unstable_by_key(|&index| place(index));
+        let mut merged = vec![0; order.len()];
+        for same in order.chunk_by(|&a, &b| place(a) == place(b)) {
+            same.iter().for_each(|&index| merged[index as usize] = same[0]);
+        }
+        merged
+    }
 }

@@ -161,7 +161,7 @@ fn t5_triangles_without_area_are_dropped_and_reported() {
     fs::write(&path, points + &faces).expect("the folder can be written");
     let file = read_mesh(&path).expect("the file is sound");
     let (mesh, report) = Mesh::new(file.vertices, file.faces).expect("one triangle has an area");
-    assert_eq!((mesh.len(), report.degenerate), (1, 3));
+    assert_eq!((mesh.count(), report.degenerate), (1, 3));
     let only_flat = Mesh::new(Vertices::Single(POINTS.to_vec()), FACES[1..].to_vec());
     assert!(only_flat.is_none());
 }

@@ -68,15 +68,31 @@ impl<'a> Builder<'a> {
 
     /// A tree whose upper part splits the items into clusters where that costs the fewest tests.
     fn clusters(&mut self) -> Child {
+        let split = |built: &mut Self, range, depth| if depth < DEEP { built.split(range) } else { built.halve(range) };
+        self.tree(CLUSTER, split, Self::by_surface_area)
+    }
+
+    /// A tree whose depth is the logarithm of the number of items, whatever the boxes.
+    fn by_halves(&mut self) -> Child {
+        self.tree(self.group, |built, range, _| built.halve(range), |_, _, _, _| ())
+    }
+
+    /// A tree that is split from above into leaves of at most so many items, which are then finished.
+    fn tree(
+        &mut self,
+        most: usize,
+        split: impl Fn(&mut Self, Range<usize>, u32) -> usize,
+        finish: impl Fn(&mut Self, Range<usize>, usize, &mut Vec<Pair>),
+    ) -> Child {
         let whole = 0..self.order.len();
         let mut pairs = vec![Pair::leaf(&whole)];
         let mut open = vec![(0, whole, 0)];
         while let Some((index, range, depth)) = open.pop() {
-            if range.len() <= CLUSTER {
-                self.by_surface_area(range, index, &mut pairs);
+            if range.len() <= most {
+                finish(self, range, index, &mut pairs);
                 continue;
             }
-            let middle = range.start + if depth < DEEP { self.split(range.clone()) } else { self.halve(range.clone()) };
+            let middle = range.start + split(self, range.clone(), depth);
             let first = pairs.len();
             pairs[index] = Pair::two(first);
             for (child, half) in [range.start..middle, middle..range.end].into_iter().enumerate() {
@@ -201,27 +217,6 @@ impl<'a> Builder<'a> {
             Scaled(Aabb::new(low - below, high + above))
         };
         self.order[range].iter().map(|&item| uneven(item)).collect()
-    }
-
-    /// A tree whose depth is the logarithm of the number of items, whatever the boxes.
-    fn by_halves(&mut self) -> Child {
-        let whole = 0..self.order.len();
-        let mut pairs = vec![Pair::leaf(&whole)];
-        let mut open = vec![(0, whole)];
-        while let Some((index, range)) = open.pop() {
-            if range.len() <= self.group {
-                continue;
-            }
-            let middle = range.start + self.halve(range.clone());
-            let first = pairs.len();
-            pairs[index] = Pair::two(first);
-            for (child, half) in [range.start..middle, middle..range.end].into_iter().enumerate() {
-                pairs.push(Pair::leaf(&half));
-                open.push((first + child, half));
-            }
-        }
-        self.fit(&mut pairs);
-        self.collapse(&pairs)
     }
 
     /// Gives every node of a binary tree the box of its items.
