@@ -107,5 +107,5 @@ pub fn near(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
     let strongest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, f64::max);
     println!("{what}: {off:.1e}");
-    assert!(off <= share, "{what}: {found:?} for {expected:?}");
+    assert!(found.iter().all(|x| x.is_finite()) && off <= share, "{what}: {found:?} for {expected:?}");
 }

@@ -318,7 +318,7 @@ fn assert_same(
     claims: usize,
 ) -> f64 {
     let [plain, resampled] = [None, Some(with)].map(|with| films(text, change, with, SEEDS));
-    assert_ne!(plain[0], resampled[0], "{what}: light vertices are looked at");
+    assert!(plain[0] != resampled[0], "{what}: no light vertices are looked at");
     let mut worst = 0.0_f64;
     for (quarter, band) in (0..4).flat_map(|quarter| (0..3).map(move |band| (quarter, band))) {
         let [(a, of_a), (b, of_b)] = [&plain, &resampled].map(|films| of_quarter(films, quarter, band));
@@ -435,7 +435,7 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
         let world = prepare(&scene, Method { samples: 4, ..method(&scene, SPLITTING) });
         assert!(with_light_vertices(&world).is_none(), "{what}");
         let forced = world.with_light_vertices(Vec::new());
-        assert_eq!(render(&forced, &|_| ()).0, render(&world, &|_| ()).0, "{what}");
+        assert!(render(&forced, &|_| ()).0 == render(&world, &|_| ()).0, "{what}: it is another film");
     }
 }
 

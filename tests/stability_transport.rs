@@ -265,7 +265,7 @@ fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same
     assert!(rays < 20_000.0, "{rays} rays");
     mean.assert_near([1.0 - REFLECTED; 3], 1, "ten panes");
     assert!(mean.error[0] < 0.005, "{mean:?}");
-    assert_eq!(rendered(3).0.pixels, film.pixels, "the same bits for any number of threads");
+    assert!(rendered(3).0.pixels == film.pixels, "another number of threads makes other bits");
 }
 
 fn mean_of_pixels(film: &Film) -> f64 {

@@ -120,6 +120,7 @@ fn plates_between_polarizers_have_their_colors_in_the_lanes_that_the_plan_choose
         let strongest = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let off = (0..3).map(|c| (found[c] - expected[c]).abs()).fold(0.0, f64::max) / strongest;
         println!("{retardation} nm, {}: {off:.1e}", chosen.method.basis.name());
+        assert!(found.iter().all(|x| x.is_finite()), "{retardation} nm: {found:?}");
         assert!(off <= chosen.model_error.max(1e-5), "{retardation} nm: {found:?} for {expected:?}, {chosen:?}");
         assert!(chosen.model_error < 0.011, "{retardation} nm: {}", chosen.model_error);
     }

@@ -28,6 +28,7 @@ fn worst_component(image: &Image) -> (f64, f64) {
                 (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / luminous);
             }
             let color = apply(&film_of_xyz, xyz);
+            assert!(color.iter().all(|x| x.is_finite()), "{color:?}");
             let off = (0..3).map(|i| (color[i] - f64::from(layers[i][number])).abs()).fold(0.0, f64::max);
             worst = worst.max(off / strongest(pixel.rgb).max(0.01 * mean));
             polarized += f64::from(layers[1][number]).abs() / (mean * film.pixels.len() as f64);
