@@ -8,3 +8,4 @@ pub mod exact;
 pub mod pictures;
 pub mod random;
 pub mod scenes;
+pub mod texts;
