@@ -7,5 +7,6 @@ pub mod chi_squared;
 pub mod exact;
 pub mod pictures;
 pub mod random;
+pub mod run;
 pub mod scenes;
 pub mod texts;

@@ -1,5 +1,6 @@
 //! Scenes written as text in a test, rendered, and their means judged.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use abbe::film::Film;
@@ -79,6 +80,16 @@ pub fn images_from(text: &str, transport: Transport, first: u64, seeds: u64) -> 
     let scene = scene(text);
     let seeded = |seed| Method { seed, ..method(&scene, transport) };
     (first..first + seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ())).collect()
+}
+
+/// The film of a scene by a method.
+pub fn film_of(scene: &Scene<Curve>, method: Method) -> Film {
+    render(&prepare(scene, method), &|_| ()).0
+}
+
+/// Films of a scene by a method, under other seeds.
+pub fn films_of(scene: &Scene<Curve>, method: &Method, seeds: Range<u64>) -> Vec<Film> {
+    seeds.map(|seed| film_of(scene, Method { seed, ..method.clone() })).collect()
 }
 
 /// A mean of each band with its standard error.
