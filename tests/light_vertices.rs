@@ -13,14 +13,12 @@ use abbe::film::{Film, Layer};
 use abbe::plan::plan;
 use abbe::trace::{Method, World, pilot_noise, prepare, render, with_light_vertices};
 
-use crate::support::scenes::{SPLITTING, body, environment, method, moments, scene, standard_errors, view};
+use crate::support::scenes::{
+    SPLITTING, body, environment, film_of, method, moments, quad, scene, standard_errors, view,
+};
 
 const WHITE: &str = "diffuse = { reflectance = 0.7 }";
 const LAMP: &str = "emissive = { radiance = { rgb = [9, 8, 6] } }";
-
-fn quad(center: [f64; 3], u: [f64; 3], v: [f64; 3]) -> String {
-    format!("quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}")
-}
 
 /// The six walls of a closed box, 4 x 3 x 5, on the floor.
 fn walls() -> [String; 6] {
@@ -450,7 +448,7 @@ fn parts_of_an_image_are_the_same_as_the_whole() {
         (part.film.crop, part.film.overscan) = (crop, abbe::film::Overscan::even(overscan));
         let asked = Method { light_vertices: true, ..method(&part, SPLITTING) };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let part = pool.install(|| render(&prepare(&part, asked), &|_| ()).0);
+        let part = pool.install(|| film_of(&part, asked));
         let mut compared = 0;
         for (i, pixel) in (0_i32..).zip(&part.pixels) {
             let [x, y] = [part.corner[0] + i % part.width as i32, part.corner[1] + i / part.width as i32];

@@ -7,6 +7,7 @@ use abbe::{Options, Scene};
 use exr::prelude::{AttributeValue, FlatSamples, ReadChannels, ReadLayers, read};
 
 use super::ROOM;
+use crate::support::scenes::rendered;
 
 /// A part's name, and its channels with their bits and values.
 type Parts = Vec<(Option<String>, BTreeMap<String, (u32, Vec<f32>)>)>;
@@ -176,8 +177,7 @@ fn o1_what_is_too_bright_for_half_precision_is_its_largest_number_and_is_counted
              film = {{ width = 4, height = 4, precision = \"half\" }}\nrender.samples = 1\n\
              light = [{{ environment = {{ radiance = {radiance} }} }}]\n"
         );
-        let scene = Scene::parse(&text, "").expect("the scene is valid");
-        let image = abbe::render(&scene, &Options::default()).expect("it renders");
+        let image = rendered(&text);
         assert_eq!(image.write_exr(&path).expect("it can be written"), clamped, "{radiance}");
         let file = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
         let file = file.from_file(&path).expect("it can be read");

@@ -1,27 +1,18 @@
 //! Row G6: in an even environment, what reflects all light cannot be told from it.
 
-use abbe::material::{Arrival, Index, Material, Roughness, Scatter};
+use abbe::material::{Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
-use abbe::trace::prepare;
 
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, view};
+use crate::support::arrivals::{self, LOSSLESS, arrival, material, points, toward};
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
 const ROUGHNESSES: [f64; 9] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const COSINES: [f64; 14] = [0.001, 0.003, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.0];
-/// Reflects all but 4e-10 of the light at right angles.
-const LOSSLESS: &str = "n = 1e-6, k = 100";
 const DRAWS: u32 = 1 << 16;
 
-/// The points of Hammersley in the unit square.
-fn points() -> impl Iterator<Item = [f64; 2]> {
-    (0..DRAWS).map(|i| [(f64::from(i) + 0.5) / f64::from(DRAWS), f64::from(i.reverse_bits()) / 4_294_967_296.0])
-}
-
 fn conductor(metal: &str, roughness: f64) -> Material<Table> {
-    let text = body("metal", &format!("conductor = {{ {metal}, roughness = {roughness:?} }}"), &[BALL]);
-    let scene = scene(&(view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + &text));
-    prepare(&scene, method(&scene, SINGLE_PATH)).scene().material_of(0).clone()
+    material(&format!("conductor = {{ {metal}, roughness = {roughness:?} }}"))
 }
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
@@ -29,32 +20,7 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 /// What a metal shows of an even environment of radiance 1, under a medium of an index.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    let normal = DVec3::new(0.6, -0.48, 0.64);
-    let along = DVec3::new(0.8, 0.36, -0.48);
-    let wo = (normal * cos + along * (1.0 - cos * cos).max(0.0).sqrt()).normalize();
-    let arrival = Arrival {
-        wo,
-        normal,
-        uv: [0.0; 2],
-        draw: &draw,
-        present: draw.start(),
-        from_inside: false,
-        is_alone: false,
-        incident: Index::Same(index),
-        beyond: Index::Same(index),
-        direction_indices: [None; 2],
-        together: 0.0,
-    };
-    let (mut sum, mut branches) = ([0.0; 3], Vec::new());
-    for u in points() {
-        material.scatter(&arrival, u, &mut branches);
-        for branch in branches.drain(..) {
-            for (lane, sum) in sum.iter_mut().enumerate() {
-                *sum += f64::from(branch.share[lane]) / f64::from(DRAWS);
-            }
-        }
-    }
-    sum
+    arrivals::furnace(material, &arrival(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -79,7 +45,7 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
             let cos = libm::pow(f64::from(step) / 59.0, 3.0);
             let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
             // Places dense toward upright facets, which block most.
-            let blocked: f64 = points()
+            let blocked: f64 = points(DRAWS)
                 .map(|[v, around]| {
                     let h = surface.facets().visible_normal(wo, [around, 1.0 - v * v]);
                     2.0 * v * surface.facets().left_and_blocked(wo, h * (2.0 * wo.dot(h)) - wo)[1]
@@ -96,14 +62,15 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
 #[test]
 fn no_metal_reflects_more_than_comes_and_the_rougher_the_deeper_its_color() {
     for metal in ["metal = \"Au\"", "metal = \"Cu\"", "metal = \"Al\"", "n = 2.9, k = 3.1"] {
+        let surfaces = [0.0, 0.3, 0.6, 1.0].map(|roughness| conductor(metal, roughness));
         for index in [1.0, 1.5] {
             for cos in [0.02, 0.3, 1.0] {
-                let shown = [0.0, 0.3, 0.6, 1.0].map(|roughness| furnace(&conductor(metal, roughness), cos, index));
+                let shown = surfaces.each_ref().map(|surface| furnace(surface, cos, index));
                 println!("{metal} under {index}, cos {cos}: {shown:.4?}");
                 assert!(shown.as_flattened().iter().all(|x| (0.0..1.0).contains(x)), "{metal}: {shown:?}");
             }
-            let [smooth, rough] =
-                [0.0, 1.0].map(|roughness| furnace(&conductor(metal, roughness), 1.0, index)).map(|x| x[2] / x[0]);
+            let [smooth, .., rough] =
+                surfaces.each_ref().map(|surface| furnace(surface, 1.0, index)).map(|x| x[2] / x[0]);
             if metal.contains("Au") || metal.contains("Cu") {
                 assert!(rough < smooth, "{metal}: blue over red {rough}, smooth {smooth}");
             }

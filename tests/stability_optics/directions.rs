@@ -6,6 +6,7 @@ use abbe::shape::SurfacePoint;
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
 
+use crate::support::arrivals::arrival;
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};
@@ -73,20 +74,7 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
         for _ in 0..20_000 {
             let wo = random.direction().normalize();
             let normal = normal_toward(wo, &mut random);
-            let (incident, beyond) = (Index::Own(&inside), Index::Same(1.0));
-            let arrival = Arrival {
-                wo,
-                normal,
-                uv: [0.0; 2],
-                draw: &draw,
-                present: draw.start(),
-                from_inside: false,
-                is_alone: false,
-                incident,
-                beyond,
-                direction_indices: [None; 2],
-                together: 0.0,
-            };
+            let arrival = Arrival { normal, incident: Index::Own(&inside), ..arrival(&draw, wo, 1.0) };
             material.scatter(&arrival, random.pair(), &mut branches);
             assert!(!branches.is_empty());
             worst = branches.drain(..).map(|branch| off_unit(branch.wi)).fold(worst, f64::max);
