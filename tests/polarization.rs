@@ -9,9 +9,9 @@ mod degrees;
 mod furnaces;
 mod plates;
 
-use abbe::film::Layer;
+use abbe::Options;
+use abbe::film::{Film, Layer};
 use abbe::math::DVec3;
-use abbe::{Image, Options};
 
 use crate::support::fresnel::reflectances;
 use crate::support::scenes::{assert_near, body, moments, one_pixel, quad, rendered, rendered_with};
@@ -21,16 +21,15 @@ const ROUNDING: f64 = 2e-6;
 
 /// One pixel of a narrow view of some objects and lights, with a key of the camera; S0, S1, S2 and S3.
 fn stokes(camera: &str, rest: &str) -> [f64; 4] {
-    in_green(&rendered(&(one_pixel(camera, ", stokes = true") + rest)))
+    in_green(rendered(&(one_pixel(camera, ", stokes = true") + rest)).film())
 }
 
-fn in_green(image: &Image) -> [f64; 4] {
-    stokes_vectors(image).map(|component| component[1])
+fn in_green(film: &Film) -> [f64; 4] {
+    stokes_vectors(film).map(|component| component[1])
 }
 
 /// S0, S1, S2 and S3 of the first pixel, each in red, green and blue.
-pub fn stokes_vectors(image: &Image) -> [[f64; 3]; 4] {
-    let film = image.film();
+pub fn stokes_vectors(film: &Film) -> [[f64; 3]; 4] {
     let of = |layer: Layer| {
         let image = film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
         [0, 1, 2].map(|channel| f64::from(image.values[channel]))

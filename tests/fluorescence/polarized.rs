@@ -11,7 +11,7 @@ fn stokes(material: &str, camera: &str, more: &str) -> [[f64; 3]; 4] {
             "render.samples = 8\n[material.paper]\n{material}\n[[light]]\n\
              point = {{ position = [2, 0, 1], intensity = {{ illuminant = \"D65\", scale = 20 }} }}\n{more}"
         );
-    stokes_vectors(&rendered(&text))
+    stokes_vectors(rendered(&text).film())
 }
 
 const STRAIGHT: &str =
