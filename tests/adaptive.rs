@@ -8,13 +8,15 @@ use abbe::film::{Film, Window};
 use abbe::plan::{Plan, plan};
 use abbe::trace::{LightPass, Method, SampleDensity, Stop, World, adaptive, prepare, render};
 
-use crate::support::scenes::{SPLITTING, body, method, moments, scene, standard_errors, view};
+use crate::support::scenes::{
+    GROUND, SPLITTING, body, film_of, films_of, method, moments, scene, standard_errors, view,
+};
 
 /// A floor under a point, without noise, and a ball before a lamp, which is noisy.
 fn lit(size: [u32; 2], samples: u32, render: &str) -> String {
     large_view(size)
         + &format!("[render]\nmodel = \"rgb\"\nsamples = {samples}\ndiffuse_bounces = 0\n{render}\n")
-        + &body("floor", "diffuse = { reflectance = 0.6 }", &[FLOOR])
+        + &body("floor", "diffuse = { reflectance = 0.6 }", &[GROUND])
         + &body("ball", "conductor = { n = 1, k = 5, roughness = 0.5 }", &[BALL])
         + &body("lamp", LAMP, &["quad = { center = [0, 1, 1.5], u = [0.3, 0, 0], v = [0, -0.3, 0] }"])
         + "[[light]]\npoint = { position = [1, 5, 4], intensity = 60 }\n"
@@ -25,7 +27,6 @@ fn large_view([width, height]: [u32; 2]) -> String {
     small.replace("width = 12\nheight = 12", &format!("width = {width}\nheight = {height}"))
 }
 
-const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
 const BALL: &str = "sphere = { center = [0, 0.6, 0], radius = 0.6 }";
 const LAMP: &str = "emissive = { radiance = 5, sides = \"front\" }";
 
@@ -45,7 +46,7 @@ fn the_plan_asks_for_more_samples_where_the_noise_is() {
     assert!(!is_adaptive(&lit([64, 64], 64, "")).0, "too small");
     let furnace = large_view(large)
         + "[render]\nsamples = 64\n[[light]]\nenvironment = { radiance = 1 }\n"
-        + &body("floor", "diffuse = { reflectance = 1 }", &[FLOOR]);
+        + &body("floor", "diffuse = { reflectance = 1 }", &[GROUND]);
     assert!(!is_adaptive(&furnace).0, "a furnace");
     // As many samples as an image has do not change where they are taken.
     let of = |samples| plan(&scene(&lit(large, samples, ""))).method.density;
@@ -88,7 +89,7 @@ fn density() -> SampleDensity {
 fn films(text: &str, density: Option<&SampleDensity>, change: impl Fn(Method) -> Method, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let asked = change(Method { density: density.cloned(), ..method(&scene, SPLITTING) });
-    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+    films_of(&scene, &asked, 0..seeds)
 }
 
 /// Every pixel takes the samples of its cell, also where each replicate takes some.
@@ -169,7 +170,7 @@ fn parts_of_an_image_take_the_samples_of_the_whole() {
         let mut part = scene(&text);
         (part.film.crop, part.film.overscan) = (crop, abbe::film::Overscan::even(overscan));
         let asked = Method { density: Some(density.clone()), ..method(&part, SPLITTING) };
-        let part = render(&prepare(&part, asked), &|_| ()).0;
+        let part = film_of(&part, asked);
         for (i, pixel) in (0_i32..).zip(&part.pixels) {
             let [x, y] = [part.corner[0] + i % part.width as i32, part.corner[1] + i / part.width as i32];
             let inside = (0..12).contains(&x) && (0..12).contains(&y);

@@ -2,11 +2,10 @@
 
 use std::process::Stdio;
 
-use crate::messages::run::{Answer, Folder, render};
+use crate::support::run::{Answer, Folder, render};
 
 fn catalog(arguments: &[&str]) -> Answer {
-    let folder = Folder::new();
-    folder.write("unused.toml", "");
+    let folder = Folder::with("unused.toml", "");
     let answer = render(&folder, &[&["catalog"], arguments].concat());
     assert_eq!(folder.listing(), ["unused.toml"]);
     answer

@@ -8,10 +8,10 @@
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, apply, visible};
-use abbe::trace::{Method, Transport, prepare, render};
+use abbe::trace::{Method, Transport};
 
 use crate::support::random::Random;
-use crate::support::scenes::scene;
+use crate::support::scenes::{assert_near, film_of, scene};
 
 const SPACES: [ColorSpace; 6] = [
     ColorSpace::Rec709,
@@ -46,7 +46,7 @@ fn films<const S: usize>(body: &str, spaces: [ColorSpace; S], model: &str) -> [F
     let light_pass = &methods[0].light_pass;
     std::array::from_fn(|i| {
         let method = Method { transport: ALL_LIGHTS, light_pass: light_pass.clone(), ..methods[i].clone() };
-        render(&prepare(&scenes[i], method), &|_| ()).0
+        film_of(&scenes[i], method)
     })
 }
 
@@ -144,12 +144,6 @@ fn xy([x, y, z]: [f64; 3]) -> [f64; 2] {
 
 fn xy_of_blackbody(kelvin: f64) -> [f64; 2] {
     xy(Emission::new(&CurveKind::Blackbody(kelvin).into(), ColorSpace::Xyz).xyz())
-}
-
-fn assert_near<const N: usize>(found: [f64; N], expected: [f64; N], tolerance: f64, what: &str) {
-    for i in 0..N {
-        assert!((found[i] - expected[i]).abs() <= tolerance, "{what}: {found:?} for {expected:?}");
-    }
 }
 
 #[test]

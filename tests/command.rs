@@ -3,13 +3,14 @@
 #[allow(dead_code)]
 #[path = "support/pictures.rs"]
 mod pictures;
-#[path = "messages/run.rs"]
+#[allow(dead_code)]
+#[path = "support/run.rs"]
 mod run;
 
 use std::fs;
 
 use pictures::read_png;
-use run::{Answer, Folder, render};
+use run::{Folder, render};
 
 const SCENE: &str = r#"
 [camera]
@@ -41,20 +42,13 @@ environment = { radiance = 1 }
 
 /// A folder that holds `ball.toml`, a scene of two white balls under an even sky.
 fn folder() -> Folder {
-    let folder = Folder::new();
-    folder.write("ball.toml", SCENE);
-    folder
-}
-
-fn assert_refused(answer: &Answer, code: i32, stderr: &str) {
-    assert_eq!(answer.stderr, stderr);
-    assert_eq!((answer.code, &*answer.stdout), (Some(code), ""));
+    Folder::with("ball.toml", SCENE)
 }
 
 /// Refused with this text, and nothing is left behind.
 fn assert_refuses(arguments: &[&str], code: i32, stderr: &str) {
     let folder = folder();
-    assert_refused(&render(&folder, arguments), code, stderr);
+    render(&folder, arguments).assert_refused(code, stderr);
     assert_eq!(folder.listing(), ["ball.toml"]);
 }
 
@@ -73,7 +67,7 @@ fn the_image_is_named_after_its_scene_and_stands_in_the_current_folder() {
     assert_leaves(&["ball.toml", "--exr"], &made);
     assert_leaves(&["ball.toml"], &made);
     let folder = Folder::new();
-    fs::create_dir(folder.path().join("scenes")).expect("folders can be made");
+    fs::create_dir(folder.path_of("scenes")).expect("folders can be made");
     folder.write("scenes/ball.v2.toml", SCENE);
     assert_eq!(render(&folder, &["--exr", "scenes/ball.v2.toml"]).code, Some(0));
     assert_eq!(folder.listing(), ["ball.v2.exr", "scenes"]);
@@ -93,8 +87,8 @@ fn a_missing_output_folder_is_created() {
     let folder = folder();
     let arguments = ["ball.toml", "--exr", "out/today/frame.exr", "--png", "out/look/frame.png"];
     assert_eq!(render(&folder, &arguments).code, Some(0));
-    assert!(folder.path().join("out/today/frame.exr").is_file());
-    assert!(folder.path().join("out/look/frame.png").is_file());
+    assert!(folder.path_of("out/today/frame.exr").is_file());
+    assert!(folder.path_of("out/look/frame.png").is_file());
 }
 
 #[test]
@@ -164,16 +158,16 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     assert_refuses(&["ball.toml/x.toml"], 2, &format!("error: there is no scene file ball.toml/x.toml\n{example}"));
     assert_refuses(&["."], 2, &format!("error: . is a folder, not a scene\n{example}"));
     let folder = folder();
-    fs::write(folder.path().join("latin.toml"), b"# caf\xe9\n").expect("files can be written");
+    folder.write("latin.toml", b"# caf\xe9\n");
     let answer = render(&folder, &["latin.toml"]);
     let byte = "line 1 has the byte 0xE9 in column 6\nhelp: save it as UTF-8\n";
-    assert_refused(&answer, 2, &format!("error: latin.toml is not text in UTF-8: {byte}"));
-    fs::write(folder.path().join("wide.toml"), b"\xff\xfe[\0").expect("files can be written");
+    answer.assert_refused(2, &format!("error: latin.toml is not text in UTF-8: {byte}"));
+    folder.write("wide.toml", b"\xff\xfe[\0");
     let byte = "line 1 has the byte 0xFF in column 1\nhelp: it begins as UTF-16 does: save it as UTF-8\n";
-    assert_refused(&render(&folder, &["wide.toml"]), 2, &format!("error: wide.toml is not text in UTF-8: {byte}"));
-    fs::write(folder.path().join("image.toml"), b"\x89PNG\r\n\x1a\n\0").expect("files can be written");
+    render(&folder, &["wide.toml"]).assert_refused(2, &format!("error: wide.toml is not text in UTF-8: {byte}"));
+    folder.write("image.toml", b"\x89PNG\r\n\x1a\n\0");
     let byte = format!("line 1 has the byte 0x89 in column 1\n{example}");
-    assert_refused(&render(&folder, &["image.toml"]), 2, &format!("error: image.toml is not text in UTF-8: {byte}"));
+    render(&folder, &["image.toml"]).assert_refused(2, &format!("error: image.toml is not text in UTF-8: {byte}"));
 }
 
 #[test]
@@ -184,8 +178,8 @@ fn an_image_that_cannot_be_written_is_refused_before_anything_is_rendered() {
     assert_refuses(&["ball.toml", "--exr", "ball.toml/b/a.exr"], 1, &cannot("ball.toml/b/a.exr", file));
     assert_refuses(&["ball.toml", "--png", "ball.toml/a.png"], 1, &cannot("ball.toml/a.png", file));
     let folder = folder();
-    fs::create_dir(folder.path().join("a.exr")).expect("folders can be made");
-    assert_refused(&render(&folder, &["ball.toml", "--exr", "a.exr"]), 1, &cannot("a.exr", "it is a folder"));
+    fs::create_dir(folder.path_of("a.exr")).expect("folders can be made");
+    render(&folder, &["ball.toml", "--exr", "a.exr"]).assert_refused(1, &cannot("a.exr", "it is a folder"));
     assert_eq!(folder.listing(), ["a.exr", "ball.toml"]);
 }
 
@@ -275,7 +269,7 @@ fn a_plan_goes_to_stdout_and_writes_nothing() {
 fn a_check_says_that_the_scene_is_valid_and_writes_nothing() {
     let folder = folder();
     let answer = render(&folder, &["--check", "ball.toml"]);
-    assert_refused(&answer, 0, "ball.toml is a valid scene: 2 objects\n");
+    answer.assert_refused(0, "ball.toml is a valid scene: 2 objects\n");
     assert_eq!(folder.listing(), ["ball.toml"]);
 }
 
@@ -296,7 +290,7 @@ fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
     let folder = folder();
     assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
     assert_eq!(folder.listing(), ["ball.toml", "look.png"]);
-    let picture = read_png(&folder.path().join("look.png"));
+    let picture = read_png(&folder.path_of("look.png"));
     assert_eq!((picture.width, picture.pixels.len()), (6, 6 * 4));
     // The sky of radiance 1 in the corner is full white.
     assert_eq!(picture.pixels[0], [255; 3]);
@@ -306,10 +300,10 @@ fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
 fn an_exposure_of_minus_one_halves_the_light_of_the_picture_alone() {
     let folder = folder();
     assert_eq!(render(&folder, &["ball.toml", "--exr", "--png", "a.png"]).code, Some(0));
-    let image = fs::read(folder.path().join("ball.exr")).expect("the image is there");
+    let image = folder.read("ball.exr");
     assert_eq!(render(&folder, &["--exr", "ball.toml", "--png", "b.png", "--exposure", "-1"]).code, Some(0));
-    assert!(fs::read(folder.path().join("ball.exr")).expect("the image is there") == image);
-    let picture = read_png(&folder.path().join("b.png"));
+    assert!(folder.read("ball.exr") == image);
+    let picture = read_png(&folder.path_of("b.png"));
     // sRGB of 0.5: 255 (1.055 * 0.5^(1/2.4) - 0.055) = 187.5 (IEC 61966-2-1).
     assert_eq!(picture.pixels[0], [188; 3]);
 }
@@ -322,7 +316,7 @@ fn a_picture_alone_leaves_an_image_of_the_same_scene_as_it_is() {
     let folder = folder();
     folder.write("ball.exr", "an older image");
     assert_eq!(render(&folder, &["ball.toml", "--png", "look.png"]).code, Some(0));
-    assert_eq!(fs::read(folder.path().join("ball.exr")).expect("it is there"), b"an older image");
+    assert_eq!(folder.read("ball.exr"), b"an older image");
 }
 
 #[test]
@@ -338,8 +332,8 @@ fn an_exposure_without_a_picture_is_refused() {
 fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
     let folder = folder();
     folder.write("ball.exr", "an older image");
-    let older = || fs::read(folder.path().join("ball.exr")).expect("the image is there") == b"an older image";
-    folder.write("bad.toml", &SCENE.replace("radius = 1 ", "radius = -1 "));
+    let older = || folder.read("ball.exr") == b"an older image";
+    folder.write("bad.toml", SCENE.replace("radius = 1 ", "radius = -1 "));
     assert_eq!(render(&folder, &["bad.toml", "--exr", "ball.exr"]).code, Some(2));
     assert!(older());
     assert_eq!(render(&folder, &["--exr", "ball.toml", "--png", "ball.toml/a.png"]).code, Some(1));
@@ -347,7 +341,7 @@ fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
     assert_eq!(render(&folder, &["ball.toml", "--samples", "0"]).code, Some(2));
     assert!(older());
     assert_eq!(render(&folder, &["ball.toml"]).code, Some(0));
-    let image = fs::read(folder.path().join("ball.exr")).expect("the image is there");
+    let image = folder.read("ball.exr");
     assert_eq!(image[..4], [0x76, 0x2f, 0x31, 0x01], "the magic number of OpenEXR");
     assert_eq!(folder.listing(), ["bad.toml", "ball.exr", "ball.toml"]);
 }
@@ -355,7 +349,7 @@ fn an_existing_image_survives_a_failing_run_and_is_replaced_by_a_good_one() {
 #[test]
 fn flags_replace_what_the_scene_says_but_a_mistake_in_it_stays_one() {
     let folder = folder();
-    folder.write("none.toml", &SCENE.replace("samples = 1", "samples = 0"));
+    folder.write("none.toml", SCENE.replace("samples = 1", "samples = 0"));
     assert_eq!(render(&folder, &["--check", "none.toml"]).code, Some(2));
     assert_eq!(render(&folder, &["--check", "none.toml", "--samples", "3"]).code, Some(2));
     let plan = render(&folder, &["--plan", "ball.toml", "--samples", "3"]).stdout;

@@ -4,10 +4,9 @@
 //! cargo test --test all determinism::
 //! ```
 
-use std::path::Path;
-use std::process::Command;
-
 use exr::prelude::{AttributeValue, LayerAttributes, Text, read_first_flat_layer_from_file};
+
+use crate::support::run::{Folder, render};
 
 /// Chance everywhere: a glass ball, mirror and metal on a diffuse floor under two lamps and a sky. The film is no
 /// multiple of any tile.
@@ -44,30 +43,24 @@ environment.radiance = 0.2
 "#;
 
 /// Renders a scene with the command and answers the bytes of the EXR and the PNG.
-fn rendered(folder: &Path, scene: &str, flags: &[&str]) -> (Vec<u8>, Vec<u8>) {
-    std::fs::write(folder.join("scene.toml"), scene).expect("the scene can be written");
-    let output = Command::new(env!("CARGO_BIN_EXE_render"))
-        .args(["scene.toml", "--exr", "image.exr", "--png", "image.png"])
-        .args(flags)
-        .current_dir(folder)
-        .output()
-        .expect("the command runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let read = |name: &str| std::fs::read(folder.join(name)).expect("the image was written");
-    (read("image.exr"), read("image.png"))
+fn rendered(folder: &Folder, scene: &str, flags: &[&str]) -> (Vec<u8>, Vec<u8>) {
+    folder.write("scene.toml", scene);
+    let answer = render(folder, &[&["scene.toml", "--exr", "image.exr", "--png", "image.png"], flags].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+    (folder.read("image.exr"), folder.read("image.png"))
 }
 
 #[test]
 fn any_number_of_threads_and_any_run_write_the_same_bytes() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let deterministic = RANDOM
         .replace("height = 43", "height = 43, filter = \"center\"")
         .replace("[material]", "[material]\nplain.diffuse.reflectance = 0")
         .replace("material = \"floor\"", "material = \"silver\"");
     for scene in [RANDOM, deterministic.as_str()] {
-        let first = rendered(folder.path(), scene, &["--layers", "all", "--threads", "1"]);
+        let first = rendered(&folder, scene, &["--layers", "all", "--threads", "1"]);
         for threads in ["1", "2", "3", "7"] {
-            let again = rendered(folder.path(), scene, &["--layers", "all", "--threads", threads]);
+            let again = rendered(&folder, scene, &["--layers", "all", "--threads", threads]);
             assert!(again == first, "{threads} threads write other bytes");
         }
     }
@@ -75,10 +68,10 @@ fn any_number_of_threads_and_any_run_write_the_same_bytes() {
 
 #[test]
 fn another_seed_gives_another_image_of_the_same_scene() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let red = |flags: &[&str]| {
-        rendered(folder.path(), RANDOM, flags);
-        let image = read_first_flat_layer_from_file(folder.path().join("image.exr")).expect("an EXR");
+        rendered(&folder, RANDOM, flags);
+        let image = read_first_flat_layer_from_file(folder.path_of("image.exr")).expect("an EXR");
         let channels = image.layer_data.channel_data.list;
         let red = channels.iter().find(|channel| channel.name.eq("R")).expect("a red channel");
         red.sample_data.values_as_f32().collect::<Vec<f32>>()
@@ -93,10 +86,10 @@ fn another_seed_gives_another_image_of_the_same_scene() {
 
 #[test]
 fn only_a_stamp_says_when_and_how_an_image_was_made() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::new();
     let header = |flags: &[&str]| {
-        rendered(folder.path(), RANDOM, flags);
-        let image = read_first_flat_layer_from_file(folder.path().join("image.exr")).expect("an EXR");
+        rendered(&folder, RANDOM, flags);
+        let image = read_first_flat_layer_from_file(folder.path_of("image.exr")).expect("an EXR");
         image.layer_data.attributes
     };
     let value = |header: &LayerAttributes, name: &str| header.other.get(&Text::from(name)).cloned();

@@ -13,9 +13,9 @@ use std::fmt::Write;
 
 use abbe::scene::Scene;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Emission, apply, visible};
-use abbe::trace::{Method, prepare, render};
+use abbe::trace::Method;
 
-use crate::support::scenes::{EVERY_BRANCH, method, scene};
+use crate::support::scenes::{EVERY_BRANCH, assert_near, film_of, method, scene};
 
 /// A dye that absorbs a bell of light and shines another, in photons, over white paper.
 #[derive(Clone, Copy)]
@@ -99,7 +99,7 @@ pub fn lanes(scene: &Scene<Curve>, basis: Basis) -> Method {
 pub fn pixel(text: &str) -> [f64; 3] {
     let scene = scene(text);
     let method = lanes(&scene, Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]));
-    render(&prepare(&scene, method), &|_| ()).0.pixels[0].rgb.map(f64::from)
+    film_of(&scene, method).pixels[0].rgb.map(f64::from)
 }
 
 /// Each channel within a share of the strongest.
@@ -107,5 +107,5 @@ pub fn near(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
     let strongest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, f64::max);
     println!("{what}: {off:.1e}");
-    assert!(off <= share, "{what}: {found:?} for {expected:?}");
+    assert_near(found, expected, share * strongest, what);
 }

@@ -4,7 +4,6 @@
 //! cargo test --test all layers::
 //! ```
 
-pub mod arrivals;
 mod densities;
 mod furnaces;
 mod lamps;

@@ -11,13 +11,7 @@ mod info;
 mod mattes;
 mod view;
 
-use crate::messages::run::{Answer, Folder, render};
-
-/// Refused with this text and nothing on stdout.
-fn assert_refused(answer: &Answer, code: i32, stderr: &str) {
-    assert_eq!(answer.stderr, stderr);
-    assert_eq!((answer.code, &*answer.stdout), (Some(code), ""));
-}
+use crate::support::run::{Folder, render};
 
 #[test]
 fn each_has_help_with_examples_and_exit_codes() {

@@ -5,7 +5,7 @@
 //! cargo test --test all meshes::
 //! ```
 
-mod files;
+pub mod files;
 mod gltf;
 mod instances;
 mod nearest;

@@ -15,12 +15,10 @@
 //! ..
 //! ```
 
-pub mod run;
-
 use std::fs;
 use std::path::Path;
 
-use run::{Folder, render};
+use crate::support::run::{Folder, render};
 
 const BASE: &str = include_str!("messages/base.toml");
 
@@ -58,9 +56,7 @@ impl<'a> Case<'a> {
     fn folder(&self) -> Folder {
         let folder = Folder::new();
         for (name, text) in &self.files {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().expect("a file stands in a folder")).expect("folders can be made");
-            fs::write(path, text).expect("files can be written");
+            folder.write(name, text);
         }
         folder.write("scene.toml", &self.scene);
         folder
@@ -129,8 +125,7 @@ fn check_with(table: &str, at_least: usize, failure: fn(&Case) -> Option<String>
 
 #[test]
 fn the_base_scene_itself_is_valid() {
-    let folder = Folder::new();
-    folder.write("scene.toml", BASE);
+    let folder = Folder::with("scene.toml", BASE);
     let answer = render(&folder, &["--check", "scene.toml"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(0), "scene.toml is a valid scene: 7 objects\n"));
 }
@@ -207,9 +202,8 @@ fn warnings_are_told_once_and_stop_nothing() {
 
 #[test]
 fn a_file_of_a_spectrum_that_is_not_text_is_refused() {
-    let folder = Folder::new();
-    fs::write(folder.path().join("paint.csv"), b"\xff\xfe4\x000\x000\x00").expect("written");
-    folder.write("scene.toml", &BASE.replace("reflectance = 0.7", "reflectance = { file = \"paint.csv\" }"));
+    let folder = Folder::with("paint.csv", b"\xff\xfe4\x000\x000\x00");
+    folder.write("scene.toml", BASE.replace("reflectance = 0.7", "reflectance = { file = \"paint.csv\" }"));
     let expected = "\
 error: paint.csv is not text in UTF-8: line 1 has the byte 0xFF in column 1
   --> scene.toml:14:36
@@ -257,7 +251,7 @@ fn several_mistakes_are_told_at_once_in_the_order_of_the_file_and_counted() {
 fn of_many_mistakes_the_first_twenty_are_shown_and_all_are_counted() {
     let folder = Folder::new();
     let ball = "[[object]]\nshape.sphere = { center = [0, 1, 0], radius = 0 }\nmaterial = \"white\"\n";
-    folder.write("scene.toml", &format!("{BASE}{}", ball.repeat(27)));
+    folder.write("scene.toml", format!("{BASE}{}", ball.repeat(27)));
     let answer = render(&folder, &["--check", "scene.toml"]);
     let told = answer.stderr.matches("error: a radius is a length above 0, not 0\n").count();
     assert_eq!((answer.code, told), (Some(2), 20), "{}", answer.stderr);
@@ -281,22 +275,19 @@ fn materials_that_are_made_of_too_many_others_are_refused() {
             "error: material \"x0\" is made of others that lie more than 64 deep in one another\n",
         ),
     ] {
-        let folder = Folder::new();
-        folder.write("scene.toml", &text);
+        let folder = Folder::with("scene.toml", &text);
         let answer = render(&folder, &["--check", "scene.toml"]);
         assert_eq!(answer.code, Some(2), "{}", answer.stderr);
         assert!(answer.stderr.starts_with(expected), "{}", answer.stderr);
         assert_eq!(answer.stderr.matches("error: ").count(), 1, "{}", answer.stderr);
     }
-    let folder = Folder::new();
-    folder.write("scene.toml", &made(8, &|i| format!("x{}", i + 1)));
+    let folder = Folder::with("scene.toml", made(8, &|i| format!("x{}", i + 1)));
     assert_eq!(render(&folder, &["--check", "scene.toml"]).code, Some(0));
 }
 
 #[test]
 fn an_empty_scene_asks_for_a_camera_and_a_film() {
-    let folder = Folder::new();
-    folder.write("scene.toml", "");
+    let folder = Folder::with("scene.toml", "");
     let expected = "\
 error: the scene has no [camera] and no [film]
  --> scene.toml:1:1
@@ -312,8 +303,7 @@ error: the scene has no [camera] and no [film]
 
 #[test]
 fn lines_that_end_as_on_windows_are_counted_and_shown_alike() {
-    let folder = Folder::new();
-    folder.write("scene.toml", &BASE.replacen("radius = 1 }", "radius = 0 }", 1).replace('\n', "\r\n"));
+    let folder = Folder::with("scene.toml", BASE.replacen("radius = 1 }", "radius = 0 }", 1).replace('\n', "\r\n"));
     let expected = "\
 error: a radius is a length above 0, not 0
   --> scene.toml:31:47
@@ -327,8 +317,7 @@ error: a radius is a length above 0, not 0
 
 #[test]
 fn a_byte_order_mark_does_not_move_the_column() {
-    let folder = Folder::new();
-    folder.write("scene.toml", &format!("\u{feff}{}", BASE.replace("[camera]", "[kamera]")));
+    let folder = Folder::with("scene.toml", format!("\u{feff}{}", BASE.replace("[camera]", "[kamera]")));
     let answer = render(&folder, &["--check", "scene.toml"]);
     assert!(answer.stderr.contains("--> scene.toml:1:2\n"), "{}", answer.stderr);
 }
@@ -355,19 +344,16 @@ fn mistakes_in_a_table_that_a_program_has_built_are_told_by_their_keys() {
 
 #[test]
 fn a_mesh_file_may_have_comments_in_any_encoding() {
-    let folder = Folder::new();
-    fs::write(folder.path().join("cup.obj"), b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let folder = Folder::with("cup.obj", b"# caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let inline = "{ points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }";
-    folder.write("scene.toml", &BASE.replace(inline, "{ file = \"cup.obj\" }"));
+    folder.write("scene.toml", BASE.replace(inline, "{ file = \"cup.obj\" }"));
     assert_eq!(render(&folder, &["--check", "scene.toml"]).code, Some(0));
 }
 
 #[test]
 fn a_mesh_is_looked_for_beside_its_scene() {
-    let folder = Folder::new();
     let inline = "{ points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], faces = [[0, 1, 2]] }";
-    fs::create_dir(folder.path().join("scenes")).expect("folders can be made");
-    folder.write("scenes/scene.toml", &BASE.replace(inline, "{ file = \"cup.obj\" }"));
+    let folder = Folder::with("scenes/scene.toml", BASE.replace(inline, "{ file = \"cup.obj\" }"));
     folder.write("scenes/cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     assert_eq!(render(&folder, &["--check", "scenes/scene.toml"]).code, Some(0));
 }
@@ -379,8 +365,7 @@ fn a_device_in_place_of_a_file_is_refused() {
         ("reflectance = 0.7", "reflectance = { file = \"/dev/zero\" }"),
         ("environment = { radiance = 1 }", "environment = { radiance = { image = \"/dev/zero\" } }"),
     ] {
-        let folder = Folder::new();
-        folder.write("scene.toml", &BASE.replace(whole, device));
+        let folder = Folder::with("scene.toml", BASE.replace(whole, device));
         let answer = render(&folder, &["--check", "scene.toml"]);
         assert_eq!(answer.code, Some(2));
         assert!(answer.stderr.starts_with("error: /dev/zero is no file but a device\n"), "{}", answer.stderr);

@@ -7,8 +7,8 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
-use crate::messages::run::{Folder, render};
 use crate::support::pictures::read_png;
+use crate::support::run::{Folder, render};
 
 const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
@@ -25,9 +25,7 @@ environment = { radiance = 1 }
 "#;
 
 fn folder() -> Folder {
-    let folder = Folder::new();
-    folder.write("ball.toml", SCENE);
-    folder
+    Folder::with("ball.toml", SCENE)
 }
 
 /// Runs a line of the shell in which `$RENDER` is the command; its exit code, stdout and stderr.
@@ -69,9 +67,9 @@ fn an_image_is_made_though_stderr_cannot_be_written() {
         let (code, out, told) = shell(&folder, &format!("$RENDER --exr ball.toml --png look.png {lost}"));
         assert_eq!((code, &*out, &*told), (Some(0), "", ""), "{lost}");
         assert_eq!(folder.listing(), ["ball.exr", "ball.toml", "look.png"], "{lost}");
-        assert!(is_image(&folder.path().join("ball.exr")), "{lost}");
+        assert!(is_image(&folder.path_of("ball.exr")), "{lost}");
         // No message strayed into the picture.
-        assert_eq!(read_png(&folder.path().join("look.png")).pixels.len(), 6 * 4, "{lost}");
+        assert_eq!(read_png(&folder.path_of("look.png")).pixels.len(), 6 * 4, "{lost}");
     }
 }
 
@@ -81,8 +79,8 @@ fn a_reader_of_stderr_that_has_gone_loses_no_image() {
     let line = "{ sleep 0.3; $RENDER --exr ball.toml; echo $? >code; } 2>&1 | true; sleep 0.3; \
                 while [ ! -s code ]; do sleep 0.1; done";
     shell(&folder, line);
-    assert_eq!(fs::read_to_string(folder.path().join("code")).expect("it ended"), "0\n");
-    assert!(is_image(&folder.path().join("ball.exr")));
+    assert_eq!(fs::read_to_string(folder.path_of("code")).expect("it ended"), "0\n");
+    assert!(is_image(&folder.path_of("ball.exr")));
 }
 
 #[test]
@@ -109,9 +107,9 @@ fn an_answer_that_nobody_reads_to_the_end_is_no_failure() {
         // The reader is gone before the first word.
         let line = format!("{{ sleep 0.2; $RENDER {question}; echo $? >code; }} | true");
         let (_, _, told) = shell(&folder, &format!("{line}; while [ ! -s code ]; do sleep 0.1; done"));
-        let code = fs::read_to_string(folder.path().join("code")).expect("it ended");
+        let code = fs::read_to_string(folder.path_of("code")).expect("it ended");
         assert_eq!((&*code, &*told), ("0\n", ""), "{question}");
-        fs::remove_file(folder.path().join("code")).expect("it can be removed");
+        fs::remove_file(folder.path_of("code")).expect("it can be removed");
         assert_eq!(shell(&folder, &format!("$RENDER {question} >&-")).0, Some(0), "{question}");
     }
 }
@@ -131,8 +129,8 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
         let (code, _, told) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
         let reason = "error: cannot write all there is to say to stdout: the disk is full\n";
         assert!(code == Some(1) && told.ends_with(reason), "{protocol}: {told}");
-        assert!(is_image(&folder.path().join("ball.exr")), "{protocol}");
-        fs::remove_file(folder.path().join("ball.exr")).expect("it is there");
+        assert!(is_image(&folder.path_of("ball.exr")), "{protocol}");
+        fs::remove_file(folder.path_of("ball.exr")).expect("it is there");
     }
     // A program that listens there cannot be told why.
     for question in ["--json --plan ball.toml", "--json --check ball.toml"] {
@@ -144,26 +142,26 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
 fn an_output_that_is_a_link_is_written_through() {
     for (before, target) in [(Some("an older image"), "store/a.exr"), (None, "store/new.exr"), (None, "new/a.exr")] {
         let folder = folder();
-        fs::create_dir(folder.path().join("store")).expect("folders can be made");
+        fs::create_dir(folder.path_of("store")).expect("folders can be made");
         before.inspect(|text| folder.write(target, text));
         // A link to a link, both relative to where they stand.
-        symlink("links/second.exr", folder.path().join("first.exr")).expect("links can be made");
-        fs::create_dir(folder.path().join("links")).expect("folders can be made");
-        symlink(Path::new("..").join(target), folder.path().join("links/second.exr")).expect("links can be made");
+        symlink("links/second.exr", folder.path_of("first.exr")).expect("links can be made");
+        fs::create_dir(folder.path_of("links")).expect("folders can be made");
+        symlink(Path::new("..").join(target), folder.path_of("links/second.exr")).expect("links can be made");
         let answer = render(&folder, &["ball.toml", "--exr", "first.exr"]);
         assert_eq!(answer.code, Some(0), "{}", answer.stderr);
-        assert!(folder.path().join("first.exr").is_symlink() && folder.path().join("links/second.exr").is_symlink());
-        assert!(is_image(&folder.path().join(target)), "{target}");
+        assert!(folder.path_of("first.exr").is_symlink() && folder.path_of("links/second.exr").is_symlink());
+        assert!(is_image(&folder.path_of(target)), "{target}");
     }
 }
 
 #[test]
 fn a_link_that_leads_nowhere_is_refused_before_anything_is_rendered() {
     let folder = folder();
-    symlink("b.exr", folder.path().join("a.exr")).expect("links can be made");
-    symlink("a.exr", folder.path().join("b.exr")).expect("links can be made");
-    symlink(".", folder.path().join("here.exr")).expect("links can be made");
-    symlink("ball.toml", folder.path().join("scene.exr")).expect("links can be made");
+    symlink("b.exr", folder.path_of("a.exr")).expect("links can be made");
+    symlink("a.exr", folder.path_of("b.exr")).expect("links can be made");
+    symlink(".", folder.path_of("here.exr")).expect("links can be made");
+    symlink("ball.toml", folder.path_of("scene.exr")).expect("links can be made");
     for (output, code, told) in [
         ("a.exr", 1, "error: cannot write a.exr: it is a link that leads back to itself\n"),
         ("here.exr", 1, "error: cannot write here.exr: it is a folder\n"),
@@ -175,13 +173,13 @@ fn a_link_that_leads_nowhere_is_refused_before_anything_is_rendered() {
     assert_eq!(answer.code, Some(2));
     assert!(answer.stderr.ends_with("scene.exr is the scene itself\nhelp: name another file\n"), "{}", answer.stderr);
     assert_eq!(folder.listing(), ["a.exr", "b.exr", "ball.toml", "here.exr", "scene.exr"]);
-    assert_eq!(fs::read_to_string(folder.path().join("ball.toml")).expect("the scene is there"), SCENE);
+    assert_eq!(fs::read_to_string(folder.path_of("ball.toml")).expect("the scene is there"), SCENE);
 }
 
 #[test]
 fn permissions_of_an_image_survive_and_a_protected_one_is_left_alone() {
     let folder = folder();
-    let path = folder.path().join("ball.exr");
+    let path = folder.path_of("ball.exr");
     folder.write("ball.exr", "an older image");
     let mode = |mode| fs::set_permissions(&path, Permissions::from_mode(mode)).expect("permissions can be set");
     mode(0o640);
@@ -200,10 +198,10 @@ fn permissions_of_an_image_survive_and_a_protected_one_is_left_alone() {
 fn another_name_of_the_same_file_keeps_the_older_image() {
     let folder = folder();
     folder.write("ball.exr", "an older image");
-    fs::hard_link(folder.path().join("ball.exr"), folder.path().join("kept.exr")).expect("links can be made");
+    fs::hard_link(folder.path_of("ball.exr"), folder.path_of("kept.exr")).expect("links can be made");
     assert_eq!(render(&folder, &["ball.toml"]).code, Some(0));
-    assert!(is_image(&folder.path().join("ball.exr")));
-    assert_eq!(fs::read(folder.path().join("kept.exr")).expect("it is there"), b"an older image");
+    assert!(is_image(&folder.path_of("ball.exr")));
+    assert_eq!(folder.read("kept.exr"), b"an older image");
 }
 
 #[test]
@@ -220,7 +218,7 @@ fn the_longest_names_can_be_written() {
 fn what_is_no_file_is_written_to_as_it_is() {
     let folder = folder();
     for (link, device) in [("null.exr", "/dev/null"), ("stdout.exr", "/dev/stdout")] {
-        symlink(device, folder.path().join(link)).expect("links can be made");
+        symlink(device, folder.path_of(link)).expect("links can be made");
     }
     let (code, out, told) = shell(&folder, "$RENDER ball.toml --exr null.exr | cat");
     assert_eq!((code, &*out), (Some(0), ""), "{told}");
@@ -236,7 +234,7 @@ fn what_is_no_file_is_written_to_as_it_is() {
 #[test]
 fn a_device_that_takes_no_more_is_a_failure() {
     let folder = folder();
-    symlink("/dev/full", folder.path().join("full.exr")).expect("links can be made");
+    symlink("/dev/full", folder.path_of("full.exr")).expect("links can be made");
     let answer = render(&folder, &["ball.toml", "--exr", "full.exr"]);
     assert_eq!(answer.code, Some(1));
     assert!(answer.stderr.ends_with("error: cannot write full.exr: the disk is full\n"), "{}", answer.stderr);
@@ -250,28 +248,27 @@ fn what_can_be_written_is_written() {
     for failing in 0..3 {
         let folder = folder();
         for name in &files[..3] {
-            symlink("/dev/full", folder.path().join(name)).expect("links can be made");
+            symlink("/dev/full", folder.path_of(name)).expect("links can be made");
         }
         let [exr, png, report] = [0, 1, 2].map(|i| files[if i == failing { i } else { 3 + i }]);
         let words = ["ball.toml", "--exr", exr, "--png", png, "--report", report, "--checkpoint", "60s"];
         let answer = render(&folder, &words);
         assert!(answer.stderr.ends_with(&format!("error: cannot write {}: the disk is full\n", files[failing])));
         assert_eq!(answer.code, Some(1), "{}", answer.stderr);
-        let written: Vec<&str> = files[3..].iter().copied().filter(|name| folder.path().join(name).is_file()).collect();
+        let written: Vec<&str> = files[3..].iter().copied().filter(|name| folder.path_of(name).is_file()).collect();
         let told: Vec<&str> = answer.stderr.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
         assert_eq!((written.len(), &told), (2, &written), "{}", answer.stderr);
         // What is missing is all that is left to be done.
-        fs::remove_file(folder.path().join(files[failing])).expect("it is there");
+        fs::remove_file(folder.path_of(files[failing])).expect("it is there");
         let resumed = render(&folder, &[&words[..], &["--resume"]].concat());
         assert!(resumed.code == Some(0) && !resumed.stderr.contains("going on from"), "{}", resumed.stderr);
-        assert!(folder.path().join(files[failing]).is_file());
+        assert!(folder.path_of(files[failing]).is_file());
     }
 }
 
 /// A scene that includes a file, reads a mesh and an image, and is lit by another one.
 fn folder_of_a_whole_scene() -> Folder {
-    let folder = Folder::new();
-    folder.write("light.toml", "[[light]]\nenvironment = { radiance = { image = \"sky.hdr\" } }\n");
+    let folder = Folder::with("light.toml", "[[light]]\nenvironment = { radiance = { image = \"sky.hdr\" } }\n");
     folder.write("cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
     folder.write("gray.csv", "400, 0.5\n700, 0.5\n");
     folder.write("main.toml", "include = [\"light.toml\"]\ncamera = { position = [0, 0, 6], look_at = [0, 0, 0], vertical_fov = 35 }\n\
@@ -279,16 +276,16 @@ fn folder_of_a_whole_scene() -> Folder {
         [[object]]\nshape.mesh = { file = \"cup.obj\" }\nmaterial = \"gray\"\n");
     let mut sky = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
     sky.extend([[128, 128, 128, 129]; 8].concat());
-    fs::write(folder.path().join("sky.hdr"), sky).expect("the folder takes files");
+    folder.write("sky.hdr", sky);
     folder
 }
 
 #[test]
 fn no_output_takes_the_place_of_what_the_scene_is_read_from() {
     let folder = folder_of_a_whole_scene();
-    fs::create_dir(folder.path().join("other")).expect("the folder takes folders");
-    symlink("../cup.obj", folder.path().join("other/link.png")).expect("the folder takes links");
-    let before = |name: &str| fs::read(folder.path().join(name)).expect("it is there");
+    fs::create_dir(folder.path_of("other")).expect("the folder takes folders");
+    symlink("../cup.obj", folder.path_of("other/link.png")).expect("the folder takes links");
+    let before = |name: &str| folder.read(name);
     let names = ["cup.obj", "gray.csv", "light.toml", "main.toml", "sky.hdr"];
     let files = names.map(before);
     for (arguments, name) in [
@@ -314,7 +311,7 @@ fn no_output_takes_the_place_of_what_the_scene_is_read_from() {
 #[test]
 fn no_words_take_the_place_of_an_image() {
     let folder = folder();
-    fs::write(folder.path().join("old.exr"), "an image of last week").expect("the folder takes files");
+    folder.write("old.exr", "an image of last week");
     for (arguments, message, help) in [
         ("--report old.exr", "--report writes no image, and old.exr is called one", "--report frame.json"),
         ("--report a.PNG", "--report writes no image, and a.PNG is called one", "--report frame.json"),
@@ -332,13 +329,13 @@ fn no_words_take_the_place_of_an_image() {
         assert_eq!((answer.code, answer.stderr), (Some(2), message), "{arguments}");
         assert_eq!(folder.listing(), ["ball.toml", "old.exr"], "{arguments}");
     }
-    assert_eq!(fs::read(folder.path().join("old.exr")).expect("it is there"), b"an image of last week");
+    assert_eq!(folder.read("old.exr"), b"an image of last week");
 }
 
 #[test]
 fn no_two_outputs_are_one_file() {
     let folder = folder();
-    fs::create_dir(folder.path().join("other")).expect("the folder takes folders");
+    fs::create_dir(folder.path_of("other")).expect("the folder takes folders");
     for (arguments, name) in [
         ("--exr a.exr --report a.exr", "a.exr"),
         ("--exr a.exr --report other/../a.exr", "other/../a.exr"),

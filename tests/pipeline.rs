@@ -5,14 +5,12 @@ use std::{fs, io::Write, thread};
 
 use serde_json::Value;
 
-use crate::messages::run::{Answer, Folder, render};
+use crate::support::run::{Answer, Folder, render};
 
 const SCENE: &str = include_str!("messages/base.toml");
 
 fn folder() -> Folder {
-    let folder = Folder::new();
-    folder.write("scene.toml", SCENE);
-    folder
+    Folder::with("scene.toml", SCENE)
 }
 
 /// Runs `render` with a text on standard input.
@@ -44,10 +42,10 @@ fn told(stdout: &str, kind: &str) -> Vec<Value> {
 fn a_scene_may_come_from_standard_input_and_an_image_go_to_standard_output() {
     let folder = folder();
     assert_eq!(render(&folder, &["scene.toml", "--exr", "file.exr"]).code, Some(0));
-    let file = fs::read(folder.path().join("file.exr")).expect("the image was written");
+    let file = folder.read("file.exr");
     let to_file = fed(&folder, &["-", "--exr", "fed.exr"], SCENE.as_bytes());
     assert_eq!((to_file.status.code(), text(&to_file.stdout)), (Some(0), ""), "{}", text(&to_file.stderr));
-    assert_eq!(fs::read(folder.path().join("fed.exr")).expect("the image was written"), file);
+    assert!(folder.read("fed.exr") == file);
     let sent = fed(&folder, &["-", "--exr", "-", "--png", "look.png"], SCENE.as_bytes());
     assert_eq!(sent.status.code(), Some(0), "{}", text(&sent.stderr));
     assert_eq!(sent.stdout, file);
@@ -216,7 +214,7 @@ fn what_is_no_checkpoint_of_a_part_is_not_deleted_with_it() {
     for part in ["1/2", "2/2"] {
         for_farm(&folder, &format!("scene.toml --exr a.exr --shard {part}"), 0);
     }
-    std::fs::create_dir(folder.path().join("a.1-of-2.checkpoint")).unwrap();
+    std::fs::create_dir(folder.path_of("a.1-of-2.checkpoint")).unwrap();
     let merged = for_farm(&folder, "merge a.exr a.1-of-2.part a.2-of-2.part --delete", 0);
     assert_eq!(merged.stderr, "");
     assert_eq!(folder.listing(), ["a.1-of-2.checkpoint", "a.exr", "scene.toml"]);
@@ -267,7 +265,7 @@ fn a_farm_is_told_in_one_line_why_a_task_fails() {
 #[test]
 fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
     let folder = folder();
-    folder.write("turn.toml", &SCENE.replace("degrees = 30", "degrees = \"$frame\""));
+    folder.write("turn.toml", SCENE.replace("degrees = 30", "degrees = \"$frame\""));
     let frame = |arguments: &[&str]| {
         let answer =
             render(&folder, &["turn.toml", "--quiet"].into_iter().chain(arguments.iter().copied()).collect::<Vec<_>>());
@@ -277,8 +275,8 @@ fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
     frame(&["--frame", "7"]);
     frame(&["--set", "set.frame=7", "--exr", "seven.exr"]);
     assert_eq!(folder.listing(), ["12%.png", "out", "scene.toml", "seven.exr", "turn.0007.exr", "turn.toml"]);
-    assert!(folder.path().join("out/12/turn.0012.exr").is_file());
-    let bytes = |name: &str| fs::read(folder.path().join(name)).expect("the image was written");
+    assert!(folder.path_of("out/12/turn.0012.exr").is_file());
+    let bytes = |name: &str| folder.read(name);
     assert_eq!(bytes("seven.exr"), bytes("turn.0007.exr"));
     assert_ne!(bytes("seven.exr"), bytes("out/12/turn.0012.exr"));
     let nameless = render(&folder, &["scene.toml", "--exr", "turn.%04d.exr"]);
@@ -307,11 +305,11 @@ fn settings_in_any_language_stand_in_the_file() {
 #[test]
 fn frames_are_rendered_one_after_another() {
     let folder = folder();
-    folder.write("turn.toml", &SCENE.replace("degrees = 30", "degrees = \"$frame\""));
+    folder.write("turn.toml", SCENE.replace("degrees = 30", "degrees = \"$frame\""));
     let frames = |arguments: &[&str]| {
         render(&folder, &["turn.toml"].into_iter().chain(arguments.iter().copied()).collect::<Vec<_>>())
     };
-    let bytes = |name: &str| fs::read(folder.path().join(name)).expect("the image was written");
+    let bytes = |name: &str| folder.read(name);
     assert_eq!(frames(&["--quiet", "--frame", "2", "--exr", "two.exr"]).code, Some(0));
     let several = ["--frame", "1-4x1", "--exr", "t.%d.exr", "--report", "t.%d.json", "--checkpoint", "60s"];
     let rendered = frames(&several);
@@ -322,7 +320,7 @@ fn frames_are_rendered_one_after_another() {
     assert!(bytes("t.3.json").starts_with(b"{"));
     // What is done is not done again.
     let fourth = bytes("t.4.exr");
-    fs::remove_file(folder.path().join("t.4.exr")).expect("it was written");
+    fs::remove_file(folder.path_of("t.4.exr")).expect("it was written");
     let done = frames(&[&several[..], &["--resume"]].concat());
     assert!(done.code == Some(0) && done.stderr.matches("nothing is left to be done").count() == 3, "{}", done.stderr);
     assert!(bytes("t.4.exr") == fourth);

@@ -9,38 +9,32 @@ mod degrees;
 mod furnaces;
 mod plates;
 
-use abbe::film::Layer;
+use abbe::Options;
+use abbe::film::{Film, Layer};
 use abbe::math::DVec3;
-use abbe::{Image, Options, Scene};
 
-use crate::support::scenes::moments;
+use crate::support::fresnel::reflectances;
+use crate::support::scenes::{assert_near, body, moments, one_pixel, quad, rendered, rendered_with};
 
 /// Lanes are f32 and are rounded at each of a few surfaces.
 const ROUNDING: f64 = 2e-6;
 
 /// One pixel of a narrow view of some objects and lights, with a key of the camera; S0, S1, S2 and S3.
 fn stokes(camera: &str, rest: &str) -> [f64; 4] {
-    let text = format!(
-        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6{camera} }}\n\
-         film = {{ width = 1, height = 1, filter = \"center\", stokes = true }}\n{rest}"
-    );
-    let scene = Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let image = abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders");
-    components(&image)
+    in_green(rendered(&(one_pixel(camera, ", stokes = true") + rest)).film())
 }
 
-fn components(image: &Image) -> [f64; 4] {
-    let film = image.film();
+fn in_green(film: &Film) -> [f64; 4] {
+    stokes_vectors(film).map(|component| component[1])
+}
+
+/// S0, S1, S2 and S3 of the first pixel, each in red, green and blue.
+pub fn stokes_vectors(film: &Film) -> [[f64; 3]; 4] {
     let of = |layer: Layer| {
         let image = film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
-        f64::from(image.values[1])
+        [0, 1, 2].map(|channel| f64::from(image.values[channel]))
     };
-    [f64::from(film.pixels[0].rgb[1]), of(Layer::S1), of(Layer::S2), of(Layer::S3)]
-}
-
-fn assert_near(got: [f64; 4], expected: [f64; 4], within: f64, what: &str) {
-    let off = (0..4).map(|i| (got[i] - expected[i]).abs()).fold(0.0, f64::max);
-    assert!(off <= within, "{what}: {got:?} for {expected:?}, off by {off:.1e}");
+    [film.pixels[0].rgb.map(f64::from), of(Layer::S1), of(Layer::S2), of(Layer::S3)]
 }
 
 const SKY: &str = "[[light]]\nenvironment.radiance = 1\n";
@@ -233,11 +227,7 @@ fn glass_turns_the_plane_of_polarization() {
         let p = DVec3::Y.cross(direction);
         let [u, v, place, axis] = [0.2 * p, 0.2 * DVec3::Y, direction, DVec3::Y + p];
         let scene = mirrors(BLACK_GLASS, &[normal])
-            + &format!(
-                "[material.sheet]\npolarizer.axis = [{}, {}, {}]\n[[object]]\nmaterial = \"sheet\"\n\
-                 shape.quad = {{ center = [{}, {}, {}], u = [{}, {}, {}], v = [{}, {}, {}] }}\n",
-                axis.x, axis.y, axis.z, place.x, place.y, place.z, u.x, u.y, u.z, v.x, v.y, v.z
-            );
+            + &body("sheet", &format!("polarizer.axis = {:?}", axis.to_array()), &[&quad(place, u, v)]);
         // s is vertical.
         let expected = [0.5 * a, -0.5 * a * d, -0.5 * a * c, 0.0];
         assert_near(stokes("", &scene), expected, ROUNDING, &format!("{degrees} degrees"));
@@ -276,10 +266,8 @@ fn pile(plates: usize, index: f64, degrees: f64) -> String {
 /// What goes through it, and S1 where s is vertical: of each polarization (1 - R) / (1 + (2 m - 1) R) (Stokes 1862, *On
 /// the Intensity of the Light Reflected from or Transmitted through a Pile of Plates*).
 fn through_pile(plates: usize, index: f64, degrees: f64) -> [f64; 2] {
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    let within = (1.0 - (sin / index).powi(2)).sqrt();
-    let amplitudes = [(cos - index * within) / (cos + index * within), (index * cos - within) / (index * cos + within)];
-    let [s, p] = amplitudes.map(|r| (1.0 - r * r) / (1.0 + (2.0 * plates as f64 - 1.0) * r * r));
+    let through = |r: f64| (1.0 - r) / (1.0 + (2.0 * plates as f64 - 1.0) * r);
+    let [s, p] = reflectances(index, degrees.to_radians().cos()).map(through);
     [0.5 * (s + p), 0.5 * (p - s)]
 }
 
@@ -307,8 +295,7 @@ fn a_pile_of_many_plates_polarizes_on_average() {
              film = {{ width = 24, height = 24, stokes = true }}\nrender = {{ samples = 16 }}\n{}",
             pile(plates, 1.5168, 56.603838)
         );
-        let scene = Scene::parse(&text, "").expect("the scene is valid");
-        let image = abbe::render(&scene, &Options::default()).expect("it renders");
+        let image = rendered_with(&text, &Options::default());
         let film = image.film();
         let s1 = film.layers.iter().find(|image| image.layer == Layer::S1).expect("the layer is there");
         let seen = [
@@ -330,9 +317,7 @@ fn total_reflection_shifts_the_phase() {
     let angle = 54.6_f64.to_radians();
     let rhomb = |reflections: usize| {
         // In glass all around, a slab of air mirrors totally: its face is met at the angle.
-        let mut text = format!(
-            "{SKY}[material]\nglass.dielectric.index = 1.51\nsheet.polarizer.axis = [1, 1, 0]\nair.thin.index = 1\n"
-        );
+        let mut text = format!("{SKY}[material]\nglass.dielectric.index = 1.51\nair.thin.index = 1\n");
         let (mut place, mut direction) = (DVec3::ZERO, DVec3::NEG_Z);
         for number in 0..reflections {
             let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
@@ -348,11 +333,7 @@ fn total_reflection_shifts_the_phase() {
         let across = direction.cross(DVec3::Y);
         let (u, v) = (0.2 * across, 0.2 * DVec3::Y);
         let axis = across + DVec3::Y;
-        text = text.replace("axis = [1, 1, 0]", &format!("axis = [{}, {}, {}]", axis.x, axis.y, axis.z));
-        text += &format!(
-            "[[object]]\nmaterial = \"sheet\"\nshape.quad = {{ center = [{}, {}, {}], u = [{}, {}, {}], v = [{}, {}, {}] }}\n",
-            place.x, place.y, place.z, u.x, u.y, u.z, v.x, v.y, v.z
-        );
+        text += &body("sheet", &format!("polarizer.axis = {:?}", axis.to_array()), &[&quad(place, u, v)]);
         text + "[[object]]\nmaterial = \"glass\"\nshape.sphere = { center = [0, 0, 0], radius = 100 }\n"
     };
     for (reflections, expected) in [(1, [0.706958, 0.707256]), (2, [0.000422, 1.0])] {
@@ -465,12 +446,9 @@ material = "lamp"
 [[light]]
 environment = { radiance = 0.3, polarization = { sun = [0.3, 1, 0.2], degree = 0.7 } }
 "#;
-    let scene = Scene::parse(text, "").expect("the scene is valid");
-    let by =
-        |threads| abbe::render(&scene, &Options { threads: Some(threads), ..Options::default() }).expect("it renders");
-    let [one, three] = [1, 3].map(by);
-    assert_eq!(one.film().pixels, three.film().pixels);
-    assert_eq!(one.film().layers, three.film().layers);
+    let [one, three] =
+        [1, 3].map(|threads| rendered_with(text, &Options { threads: Some(threads), ..Options::default() }));
+    assert!(one.film() == three.film(), "three threads make another film");
     let film = one.film();
     let of = |layer: Layer| film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
     let parts = Layer::STOKES.map(of);

@@ -9,9 +9,10 @@ use std::fmt::Write;
 
 use abbe::math::DVec3;
 use abbe::spectrum::{Basis, ColorSpace, Quantity, data, visible};
-use abbe::trace::{Method, prepare, render};
+use abbe::trace::Method;
 
-use crate::support::scenes::{EVERY_BRANCH, method, scene, view};
+use crate::support::fresnel::reflectance_by_angles;
+use crate::support::scenes::{EVERY_BRANCH, film_of, method, scene, view};
 
 /// Fraunhofer's lines and their neighbors, h F d C r, in nm.
 const LINES_NM: [f64; 5] = [404.66, 486.13, 587.56, 656.27, 706.52];
@@ -91,7 +92,8 @@ impl Passage {
     fn new(nm: f64, index: f64, apex: f64, incidence: f64) -> Self {
         let inside = (incidence.sin() / index).asin();
         let leaving = (index * (apex - inside).sin()).asin();
-        let transmittance = crossing(incidence, inside) * crossing(leaving, apex - inside);
+        let reflected = [(incidence, inside), (leaving, apex - inside)].map(|(a, b)| reflectance_by_angles(a, b));
+        let transmittance = (1.0 - reflected[0]) * (1.0 - reflected[1]);
         Self { nm, apex, incidence, deviation: incidence + leaving - apex, transmittance }
     }
 
@@ -151,12 +153,6 @@ impl Passage {
     }
 }
 
-/// Unpolarized transmittance of a boundary by both angles (Fresnel 1823), sine and tangent law.
-fn crossing(incidence: f64, refraction: f64) -> f64 {
-    let (difference, sum) = (incidence - refraction, incidence + refraction);
-    1.0 - 0.5 * ((difference.sin() / sum.sin()).powi(2) + (difference.tan() / sum.tan()).powi(2))
-}
-
 /// What is wrong with a glass whose index is expected to be `more` than its formula says, and how many passages were
 /// judged.
 fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
@@ -180,7 +176,7 @@ fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
     let scene = scene(&text);
     let basis = Basis::wavelengths(ColorSpace::Xyz, vec![550.0], &glass.lines().collect::<Vec<_>>());
     let method = Method { basis, ..method(&scene, EVERY_BRANCH) };
-    let (film, _) = render(&prepare(&scene, method), &|_| ());
+    let film = film_of(&scene, method);
     let wrong = views.iter().zip(&film.pixels).filter_map(|((passage, off), pixel)| {
         let found = f64::from(pixel.rgb[0]);
         let expected = if *off == 0.0 { passage.expected() } else { 0.0 };

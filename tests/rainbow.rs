@@ -5,9 +5,10 @@
 //! ```
 
 use abbe::spectrum::{Basis, ColorSpace, data, visible};
-use abbe::trace::{Method, Transport, prepare, render};
+use abbe::trace::{Method, Transport};
 
-use crate::support::scenes::{method, scene};
+use crate::support::fresnel::reflectance_by_angles;
+use crate::support::scenes::{film_of, method, scene};
 
 const CAMERA: f64 = 1e6;
 const SUN_DEGREES: f64 = 0.2;
@@ -44,8 +45,7 @@ impl Bow {
     fn share(&self, index: f64) -> f64 {
         let [incidence, _] = self.descartes(index);
         let refraction = (incidence.sin() / index).asin();
-        let (difference, sum) = (incidence - refraction, incidence + refraction);
-        let reflectance = 0.5 * ((difference.sin() / sum.sin()).powi(2) + (difference.tan() / sum.tan()).powi(2));
+        let reflectance = reflectance_by_angles(incidence, refraction);
         (1.0 - reflectance).powi(2) * reflectance.powi(self.reflections)
     }
 
@@ -70,7 +70,7 @@ impl Bow {
         );
         let scene = scene(&text);
         let basis = Basis::wavelengths(ColorSpace::Xyz, vec![550.0], &[nm]);
-        let (film, _) = render(&prepare(&scene, Method { basis, ..method(&scene, FAINT) }), &|_| ());
+        let film = film_of(&scene, Method { basis, ..method(&scene, FAINT) });
         let half = (0.5 * SUN_DEGREES).to_radians();
         let disc = visible::color_matching(nm)[0] / visible::luminous() / (std::f64::consts::PI * half.sin().powi(2));
         // Higher orders that pass here are fainter by a hundred times and more.

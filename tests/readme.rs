@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use abbe::Error;
 use abbe::scene::Source;
 
+use crate::support::texts::texts;
+
 /// The pages that show pieces of scenes.
 const PAGES: [&str; 2] = ["README.md", "scenes/REFERENCE.md"];
 /// What begins the tables whose pieces are TOML.
@@ -218,27 +220,17 @@ fn every_link_of_a_page_leads_to_a_file_and_to_a_heading_of_it() {
     assert!(count > 100, "only {count} links were found");
 }
 
-/// The text of every Rust file below a folder, and where it is.
-fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
-    let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
-    paths
-        .flat_map(|path| {
-            if path.is_dir() { sources(&path) } else { vec![(path.clone(), fs::read_to_string(path).expect("text"))] }
-        })
-        .collect()
-}
-
 #[test]
 fn every_block_of_toml_in_the_documentation_of_a_type_parses() {
     let mut count = 0;
-    for (path, text) in sources(Path::new("src")) {
+    for (path, text) in texts(Path::new("src")) {
         for block in text.split("/// ```toml\n").skip(1).filter_map(|rest| rest.split("/// ```").next()) {
             let lines: Vec<&str> =
                 block.lines().map(|line| line.trim_start().trim_start_matches("///").trim()).collect();
             let parses = |text: &str| text.parse::<toml::Table>().is_ok();
             // Lines that give one key in several ways stand for one each.
             let is_toml = parses(&lines.join("\n")) || lines.iter().all(|line| parses(line));
-            assert!(is_toml, "{}:\n{block}", path.display());
+            assert!(is_toml, "src/{path}:\n{block}");
             count += 1;
         }
     }

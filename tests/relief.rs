@@ -9,24 +9,9 @@ use std::path::Path;
 
 use crate::support::pictures::{L8, RGB8, RGB16, write_png};
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, method, view};
-use abbe::film::Film;
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image_in, scene_in, view};
 use abbe::math::{DVec3, Ray};
-use abbe::scene::{Scene, Source};
-use abbe::spectrum::Curve;
-use abbe::trace::{Report, Transport, prepare, render};
-
-/// The scene of a text in a folder.
-fn scene(folder: &Path, text: &str) -> Scene<Curve> {
-    let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
-    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
-fn film(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
-    let scene = scene(folder, text);
-    let method = method(&scene, transport);
-    render(&prepare(&scene, method), &|_| ())
-}
+use abbe::scene::Source;
 
 /// Writes an OpenEXR image of the colors at the middles of its texels, u to the right and v up.
 fn write_exr(folder: &Path, name: &str, [width, height]: [usize; 2], color: impl Fn(f64, f64) -> [f32; 3] + Sync) {
@@ -75,7 +60,7 @@ fn a_flat_map_changes_no_bit() {
         ["diffuse.reflectance = 0.7", "conductor = { metal = \"Au\", roughness = 0.3 }", "mirror.reflectance = 0.5"]
     {
         let bits = |map: &str| -> Vec<_> {
-            let (film, _) = film(folder, &room(material, map), SPLITTING);
+            let (film, _) = image_in(folder, &room(material, map), SPLITTING);
             film.pixels.iter().map(|pixel| pixel.rgb.map(f32::to_bits)).collect()
         };
         let bare = bits("");
@@ -132,7 +117,7 @@ fn white_surfaces_with_dents_are_as_bright_as_the_sky_around_them() {
                         view(from, [0.0; 3], 20.0, 40),
                         environment(1.0)
                     );
-                    let (film, report) = film(folder.path(), &text, transport);
+                    let (film, report) = image_in(folder.path(), &text, transport);
                     assert_eq!((report.non_finite, report.unmatched), (0, 0));
                     let mean = Mean::of(&film);
                     println!("{material}, {map}: {:?} +- {:?}", mean.value[1], mean.error[1]);
@@ -152,7 +137,7 @@ fn sunlit(folder: &Path, object: &str, toward: DVec3) -> f64 {
         view([0.1, 5.0, 0.2], [0.0; 3], 1.0, 2),
         toward.to_array()
     );
-    let (film, _) = film(folder, &text, EVERY_BRANCH);
+    let (film, _) = image_in(folder, &text, EVERY_BRANCH);
     let first = film.pixels[0].rgb[1];
     assert!(film.pixels.iter().all(|pixel| (pixel.rgb[1] - first).abs() < 1e-5));
     f64::from(first)
@@ -236,7 +221,7 @@ fn normals_under_heights_are_those_of_a_displaced_sphere() {
         view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4),
         environment(1.0)
     );
-    let scene = scene(folder.path(), &text);
+    let scene = scene_in(folder.path(), &text);
     let (object, center) = (&scene.objects[0], DVec3::new(1.0, 2.0, 3.0));
     let displaced = |u: f64, v: f64| {
         let ((sin, cos), (up, across)) = (libm::sincos(TAU * (u - 0.5)), libm::sincos(PI * (v - 0.5)));
@@ -272,7 +257,7 @@ fn no_normal_is_lost_at_the_poles_of_a_sphere() {
             view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4),
             environment(1.0)
         );
-        let scene = scene(folder.path(), &text);
+        let scene = scene_in(folder.path(), &text);
         let object = &scene.objects[0];
         let aside = [0.0, -0.0, 1e-300, -1e-300, 1e-160, 1e-17, -1e-17, 1e-12, 1e-8, -1e-4];
         for pole in [1.0, -1.0] {
@@ -307,7 +292,7 @@ fn maps_of_any_numbers_give_unit_normals() {
         "bump_map = { image = \"huge.exr\", depth = 1e30, repeat = 1e6 }",
         "bump_map = { image = \"huge.exr\", depth = -1e-300 }",
     ] {
-        let scene = scene(folder, &room("diffuse.reflectance = 1", map));
+        let scene = scene_in(folder, &room("diffuse.reflectance = 1", map));
         let mut random = Random::new(9);
         for object in scene.objects.iter() {
             for _ in 0..300 {

@@ -10,14 +10,6 @@ mod sides;
 mod weights;
 
 use abbe::material::{RoughInterface, Sides};
-use abbe::math::DVec3;
-
-/// A unit vector at a cosine to the normal.
-fn at(cos: f64, azimuth: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    let (y, x) = libm::sincos(azimuth);
-    DVec3::new(sin * x, sin * y, cos)
-}
 
 /// Each index from outside and from inside, at each roughness and cosine.
 fn each(roughnesses: &[f64], indices: &[f64], cosines: &[f64], mut check: impl FnMut(&Sides, [f64; 2], f64, &str)) {

@@ -1,12 +1,13 @@
 //! No text makes the scene reader panic, and what it accepts can be rendered.
 //!
 //! The cases are the same in every run. For a longer hunt: `PROPTEST_CASES=100000 PROPTEST_RNG_SEED=5 cargo test --test
-//! scene_fuzz`.
+//! all scene_fuzz::`.
 
 mod edits;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use abbe::Error;
 use abbe::film::Window;
@@ -17,6 +18,7 @@ use abbe::trace::{prepare, render};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+use crate::support::texts::scenes;
 use edits::{change, edit, edited};
 
 fn cases(cases: u32) -> ProptestConfig {
@@ -31,13 +33,10 @@ fn cases(cases: u32) -> ProptestConfig {
 }
 
 /// Every scene that comes with Abbe, and one that uses every feature.
-fn scenes() -> Vec<(PathBuf, String)> {
-    let shipped = fs::read_dir("scenes").expect("there are scenes").map(|entry| entry.expect("readable").path());
-    let mut paths: Vec<PathBuf> = shipped.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
-    paths.push(Path::new("tests/messages/everything.toml").into());
-    paths.sort();
-    paths.into_iter().map(|path| (path.clone(), fs::read_to_string(path).expect("a scene is text"))).collect()
-}
+static SCENES: LazyLock<Vec<(PathBuf, String)>> = LazyLock::new(|| {
+    let paths = scenes().into_iter().chain(["tests/messages/everything.toml".into()]);
+    paths.map(|path| (path.clone(), fs::read_to_string(path).expect("a scene is text"))).collect()
+});
 
 /// The scene, if the text is one; checks that a refusal can be shown.
 fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
@@ -71,8 +70,8 @@ fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
 
 #[test]
 fn the_scenes_themselves_are_valid() {
-    for (path, text) in scenes() {
-        assert!(read(&path, text).is_some(), "{}", path.display());
+    for (path, text) in &*SCENES {
+        assert!(read(path, text.clone()).is_some(), "{}", path.display());
     }
 }
 
@@ -151,8 +150,7 @@ proptest! {
         scene in any::<prop::sample::Index>(),
         edits in prop::collection::vec(edit(), 1..8),
     ) {
-        let scenes = scenes();
-        let (path, text) = scene.get(&scenes);
+        let (path, text) = scene.get(&SCENES);
         read(path, edits.iter().fold(text.clone(), |text, edit| edited(&text, edit)));
     }
 }
@@ -165,8 +163,7 @@ proptest! {
         scene in any::<prop::sample::Index>(),
         changes in prop::collection::vec(change(), 1..3),
     ) {
-        let scenes = scenes();
-        let (path, text) = scene.get(&scenes);
+        let (path, text) = scene.get(&SCENES);
         if let Some(scene) = read(path, changes.iter().fold(text.clone(), |text, change| edited(&text, change))) {
             let (_, report) = render(&prepare(&scene, plan(&scene).method), &|_| {});
             prop_assert_eq!(report.non_finite, 0);

@@ -5,24 +5,14 @@
 //! ```
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use abbe::plan::{Plan, plan};
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
 use abbe::trace::{Transport, prepare, render};
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
-}
-
-fn paths() -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder()).expect("a folder of scenes");
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    paths.sort();
-    paths
-}
+use crate::support::texts::scenes;
 
 /// A scene at its own size, or no wider than `width`.
 fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {
@@ -38,7 +28,7 @@ fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {
 }
 
 fn planned(name: &str) -> (Plan, String) {
-    let plan = plan(&compiled(&folder().join(name).with_extension("toml"), None));
+    let plan = plan(&compiled(&Path::new("scenes").join(name).with_extension("toml"), None));
     let because = plan.because.join("\n");
     (plan, because)
 }
@@ -49,7 +39,7 @@ fn assert_says(because: &str, what: &str) {
 
 #[test]
 fn every_scene_compiles_without_a_warning_and_says_what_to_look_for() {
-    let paths = paths();
+    let paths = scenes();
     assert!(paths.len() >= 4, "only {} scenes", paths.len());
     for path in paths {
         let warnings = compiled(&path, None).warnings;
@@ -61,7 +51,7 @@ fn every_scene_compiles_without_a_warning_and_says_what_to_look_for() {
 
 #[test]
 fn a5_every_scene_renders_without_a_number_that_is_not_finite() {
-    for path in paths() {
+    for path in scenes() {
         let scene = compiled(&path, Some(96));
         let (film, report) = render(&prepare(&scene, plan(&scene).method), &|_| ());
         assert_eq!((report.non_finite, report.unmatched), (0, 0), "{}", path.display());

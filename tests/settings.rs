@@ -1,9 +1,10 @@
 //! Values that replace those of a scene, its variables, and the files that it includes.
 
 use std::fs;
-use std::path::Path;
 
 use abbe::scene::{Scene, Source};
+
+use crate::support::run::Folder;
 
 const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
@@ -140,18 +141,14 @@ fn a_doubled_dollar_is_a_dollar_and_unused_variables_are_told() {
     assert!(!scene.warnings.iter().any(|warning| warning.contains("frame")), "{:?}", scene.warnings);
 }
 
-fn folder_with(files: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().expect("a folder can be made");
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        fs::create_dir_all(path.parent().unwrap_or(Path::new(""))).expect("folders can be made");
-        fs::write(path, text).expect("files can be written");
-    }
+fn folder_with(files: &[(&str, &str)]) -> Folder {
+    let folder = Folder::new();
+    files.iter().for_each(|(name, text)| folder.write(name, text));
     folder
 }
 
-fn read(folder: &tempfile::TempDir) -> Scene {
-    Scene::read(folder.path().join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
+fn read(folder: &Folder) -> Scene {
+    Scene::read(folder.path_of("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
@@ -175,7 +172,7 @@ fn included_files_stand_in_the_scene_as_if_they_were_written_there() {
     assert_eq!(files, ["scene.toml", "parts/all.toml", "parts/ball.toml", "gold.toml"]);
     let hash = whole.hash.clone();
     assert_eq!(shown(whole), shown(with(SCENE, &[])));
-    fs::write(folder.path().join("gold.toml"), format!("{gold}# other\n")).expect("files can be written");
+    folder.write("gold.toml", format!("{gold}# other\n"));
     assert_ne!(read(&folder).hash, hash);
 }
 
@@ -202,7 +199,7 @@ fn files_are_named_from_the_folder_of_the_file_that_names_them() {
         ("parts/paint.csv", "400, 0.75\n700, 0.75\n"),
     ]);
     let set = |settings: &[&str]| {
-        let source = Source::read(&folder.path().join("scene.toml")).expect("the scene can be read");
+        let source = Source::read(&folder.path_of("scene.toml")).expect("the scene can be read");
         let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
         format!("{:?}", source.compile_with(&settings).expect("the scene is right").materials)
     };

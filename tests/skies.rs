@@ -7,16 +7,14 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use abbe::film::Film;
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::scene::{Scene, Source};
-use abbe::spectrum::Curve;
-use abbe::trace::{Method, prepare, render};
+use abbe::scene::Source;
 use exr::prelude::write_rgb_file;
 
 use crate::support::pictures::radiance;
-use crate::support::scenes::{Mean, view};
+use crate::support::random::Random;
+use crate::support::scenes::{Mean, film_of, films_of, scene_in, view};
 
 /// Dim ground, a brighter sky with a little of every color, and a sun of a few texels near the zenith of +x.
 const WIDTH: usize = 32;
@@ -55,29 +53,20 @@ fn write_sky(folder: &Path) {
     .unwrap();
 }
 
-fn read(folder: &Path, text: &str) -> Scene<Curve> {
-    let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
-    source.compile().unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// Images of a small white floor that faces the zenith, seen from above.
-fn films(model: &str, turn: f64, seeds: u64) -> Vec<Film> {
+/// What is seen of a small white floor that faces the zenith, from above.
+fn mean(model: &str, turn: f64) -> Mean {
     let folder = tempfile::tempdir().unwrap();
     write_sky(folder.path());
+    // The view looks straight down, so it needs another up.
     let text = format!(
-        "{}up = [0, 0, -1]\n[render]\nmodel = {model}\nsamples = 64\n[material.white]\ndiffuse = {{ reflectance = 0.5 }}\n\
+        "{}[render]\nmodel = {model}\nsamples = 64\n[material.white]\ndiffuse = {{ reflectance = 0.5 }}\n\
          [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [0, 0, 2], v = [2, 0, 0] }}\nmaterial = \"white\"\n\
          [[light]]\nenvironment = {{ radiance = {{ image = \"sky.exr\", scale = 2 }}, \
          transform = [{{ rotate = {{ axis = [1, 0, 0], degrees = {turn} }} }}] }}\n",
-        view([0.0, 4.0, 0.0], [0.0, 0.0, 0.0], 20.0, 8).replace("[film]", "CAMERA\n[film]")
+        view([0.0, 4.0, 0.0], [0.0; 3], 20.0, 8).replace("[film]", "up = [0, 0, -1]\n[film]")
     );
-    // The view looks straight down, so it needs another up.
-    let (camera, film) = text.split_once("CAMERA\n").unwrap();
-    let text = format!("{camera}up = [0, 0, -1]\n{}", film.replacen("up = [0, 0, -1]\n", "", 1));
-    let scene = read(folder.path(), &text);
-    let method = plan(&scene).method;
-    let seeded = |seed| Method { seed, ..method.clone() };
-    (0..seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ()).0).collect()
+    let scene = scene_in(folder.path(), &text);
+    Mean::over_seeds(&films_of(&scene, &plan(&scene).method, 0..16))
 }
 
 /// Irradiance over pi of the floor when the image is turned about +x.
@@ -104,7 +93,7 @@ fn an_image_lights_a_floor_as_its_pixels_say() {
     for turn in [0.0, 70.0] {
         let expected = expected(turn).map(|x| 0.5 * 2.0 * x);
         for model in ["\"rgb\"", "{ bands = 16 }"] {
-            let mean = Mean::over_seeds(films(model, turn, 16).iter());
+            let mean = mean(model, turn);
             let error = mean.worst_error(expected);
             assert!(error < 0.01, "{model}: noise {error}");
             // Sixteen wavelengths miss an rgb color by half a percent at most.
@@ -129,8 +118,8 @@ fn an_image_is_seen_where_the_convention_says() {
             "{}filter = \"center\"\n[render]\nmodel = {right_model}\n[[light]]\nenvironment = {{ radiance = {{ image = \"sky.exr\" }} }}\n",
             view([0.0; 3], toward, 1.0, 1)
         );
-        let scene = read(folder.path(), &text);
-        let found = render(&prepare(&scene, plan(&scene).method), &|_| ()).0.pixels[0].rgb;
+        let scene = scene_in(folder.path(), &text);
+        let found = film_of(&scene, plan(&scene).method).pixels[0].rgb;
         let expected = color(DVec3::from(toward).normalize());
         for c in 0..3 {
             assert!(
@@ -160,8 +149,8 @@ fn an_even_image_is_the_sky_of_its_color() {
                      [[light]]\nenvironment = {{ radiance = {radiance} }}\n",
                     view([0.0, 0.0, 6.0], [0.0; 3], 25.0, 8)
                 );
-                let scene = read(folder.path(), &text);
-                let film = render(&prepare(&scene, plan(&scene).method), &|_| ()).0;
+                let scene = scene_in(folder.path(), &text);
+                let film = film_of(&scene, plan(&scene).method);
                 // A corner shows the sky, the middle its mirror image. Colored ones would show that spectra of one
                 // color differ.
                 [film.pixels[0].rgb, film.pixels[36].rgb].map(|rgb| rgb.map(f64::from))
@@ -186,7 +175,7 @@ fn a_damaged_image_never_stops_the_program() {
     let texels: Vec<[f32; 3]> = (0..WIDTH * WIDTH / 2).map(|i| texel(i % WIDTH, i / WIDTH)).collect();
     let radiance = radiance(WIDTH, &texels);
     let openexr = std::fs::read(folder.path().join("sky.exr")).unwrap();
-    let mut random = crate::support::random::Random::new(5);
+    let mut random = Random::new(5);
     for (name, whole) in [("sky.exr", openexr), ("sky.hdr", radiance)] {
         let text = format!(
             "{}[[light]]\nenvironment = {{ radiance = {{ image = \"{name}\" }} }}\n",
@@ -195,21 +184,7 @@ fn a_damaged_image_never_stops_the_program() {
         let source = Source { path: folder.path().join("scene.toml"), text };
         let mut readable = 0;
         for round in 0..1500 {
-            let mut bytes = whole.clone();
-            let within =
-                |random: &mut crate::support::random::Random, most: usize| (random.number() * most as f64) as usize;
-            match round % 3 {
-                0 => bytes.truncate(within(&mut random, whole.len())),
-                1 => {
-                    let at = within(&mut random, whole.len().min(600));
-                    bytes[at] = within(&mut random, 256) as u8;
-                }
-                _ => (0..4).for_each(|_| {
-                    let at = within(&mut random, whole.len());
-                    bytes[at] ^= 1 << within(&mut random, 8);
-                }),
-            }
-            std::fs::write(folder.path().join(name), &bytes).unwrap();
+            std::fs::write(folder.path().join(name), random.damaged(&whole, round)).unwrap();
             readable += usize::from(source.compile().is_ok());
         }
         assert!((1..1500).contains(&readable), "{name}: {readable} of 1500 damaged files were read");

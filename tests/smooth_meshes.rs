@@ -9,7 +9,10 @@ use std::f64::consts::{PI, TAU};
 use abbe::math::{DVec3, Ray, Transform};
 use abbe::shape::{Attributes, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
+use crate::meshes::files::file;
+use crate::support::bodies::ball_faces;
 use crate::support::random::Random;
+use crate::support::run::Folder;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, view};
 
 /// A ball of radius 1 cut by `around` meridians and `rings` - 1 circles of latitude.
@@ -22,17 +25,7 @@ fn ball(around: u32, rings: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
             points.push(DVec3::new(sin * y, cos, sin * x));
         }
     }
-    let vertex = |ring: u32, step: u32| 2 + (ring - 1) * around + step % around;
-    let mut faces = Vec::new();
-    for step in 0..around {
-        faces.push([0, vertex(1, step), vertex(1, step + 1)]);
-        for ring in 1..rings - 1 {
-            faces.push([vertex(ring, step), vertex(ring + 1, step), vertex(ring + 1, step + 1)]);
-            faces.push([vertex(ring, step), vertex(ring + 1, step + 1), vertex(ring, step + 1)]);
-        }
-        faces.push([1, vertex(rings - 1, step + 1), vertex(rings - 1, step)]);
-    }
-    (points, faces)
+    (points, ball_faces(around, rings - 1))
 }
 
 /// An object of the ball of 16 x 8 with the normals of the ball.
@@ -107,7 +100,7 @@ fn x8_smooth_surfaces_take_the_same_light_from_lamps_aimed_at_and_met_by_chance(
         let text = furnace(material, 64) + &lamp.replace("RADIANCE", "1");
         let with = Mean::of(&image(&text, SPLITTING).0);
         let without = Mean::of(&image(&furnace(material, 64), SPLITTING).0);
-        let error = with.error[1].hypot(without.error[1]);
+        let error = with.beside(&without).error[1];
         let off = with.value[1] - without.value[1];
         assert!(off.abs() <= 3.5 * error + 1e-6, "{material}: {off} +- {error}");
     }
@@ -222,11 +215,9 @@ fn files_with(normal: [f32; 3], coordinates: [f32; 2]) -> [(&'static str, Vec<u8
 
 #[test]
 fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
-    let folder = tempfile::tempdir().expect("a folder");
     let refusals = |normal, coordinates, smooth: bool| {
         files_with(normal, coordinates).map(|(name, bytes)| {
-            let path = folder.path().join(name);
-            std::fs::write(&path, bytes).expect("the file can be written");
+            let (_folder, path) = file(name, bytes);
             let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
             mesh.err().unwrap_or_default()
         })
@@ -248,9 +239,7 @@ fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
 
 /// What a file's vertices carry, read with and without normals.
 fn attributes(name: &str, text: &str) -> [Attributes; 2] {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join(name);
-    std::fs::write(&path, text).expect("the file can be written");
+    let (_folder, path) = file(name, text);
     [read_mesh(&path), read_smooth_mesh(&path)]
         .map(|mesh| mesh.unwrap_or_else(|message| panic!("{message}")).attributes)
 }
@@ -269,9 +258,7 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
         )
     };
     let read = |faces: &str, of_vertices: bool| {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.ply");
-        std::fs::write(&path, ply(faces, of_vertices)).expect("the file can be written");
+        let (_folder, path) = file("a.ply", ply(faces, of_vertices));
         let mesh = read_smooth_mesh(&path)?;
         let place = |corner: &u32| mesh.vertices.at(*corner).to_array().map(|x| x as u32);
         let places: Vec<_> = mesh.faces.iter().flatten().map(place).collect();
@@ -297,9 +284,7 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
     // None has them.
     let none = "3 0 1 2 0 0\n3 0 2 3 0 0\n";
     assert_eq!(read(none, true).expect("two faces").2, [[7.0, 8.0]; 6]);
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a.ply");
-    std::fs::write(&path, ply(none, false)).expect("the file can be written");
+    let (_folder, path) = file("a.ply", ply(none, false));
     let mesh = read_smooth_mesh(&path).expect("two faces");
     assert!(mesh.attributes.coordinates.is_empty() && mesh.attributes.bare == 0 && mesh.vertices.count() == 4);
     for (faces, message) in [
@@ -356,17 +341,15 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
         .chain(expected.normals.iter().flatten().copied())
         .chain(expected.coordinates.iter().flat_map(|[u, v]| [*u, 1.0 - v]))
         .collect();
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("a.gltf");
-    std::fs::write(folder.path().join("a.bin"), numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>())
-        .expect("the file can be written");
+    let folder = Folder::with("a.bin", numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>());
     let text = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}}]}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
 {"bufferView":0,"byteOffset":36,"componentType":5126,"count":3,"type":"VEC3"},
 {"bufferView":0,"byteOffset":72,"componentType":5126,"count":3,"type":"VEC2"}],
 "bufferViews":[{"buffer":0,"byteLength":96}],"buffers":[{"uri":"a.bin","byteLength":96}]}"#;
-    std::fs::write(&path, text).expect("the file can be written");
+    folder.write("a.gltf", text);
+    let path = folder.path_of("a.gltf");
     let found = read_smooth_mesh(&path).expect("a glTF file").attributes;
     assert_eq!(found.coordinates, expected.coordinates);
     for (found, expected) in found.normals.iter().flatten().zip(expected.normals.iter().flatten()) {

@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use crate::support::texts::texts;
 
 /// The rows that there must be, by letter: how many of each.
 const ROWS: [(&str, u32); 16] = [
@@ -41,17 +43,6 @@ fn table() -> BTreeMap<String, (String, Vec<String>)> {
         assert!(before.is_none(), "{id} stands there twice");
     }
     rows
-}
-
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
-            found.push(path);
-        }
-    }
 }
 
 /// The names of the tests in a file.
@@ -104,12 +95,11 @@ fn no_row_of_the_stability_catalog_is_missing() {
 #[test]
 fn every_test_that_is_named_after_a_row_stands_in_the_stability_catalog() {
     let table = table();
-    let mut files = Vec::new();
-    sources(&home().join("tests"), &mut files);
-    sources(&home().join("src"), &mut files);
+    let of =
+        |folder: &'static str| texts(&home().join(folder)).into_iter().map(move |(path, text)| (folder, path, text));
     let mut count = 0;
-    for path in files {
-        let text = fs::read_to_string(&path).expect("a source");
+    for (folder, path, text) in ["tests", "src"].into_iter().flat_map(of) {
+        let path = home().join(folder).join(path);
         for name in tests_in(&text) {
             for row in rows_of(name) {
                 let listed = table.get(&row).map_or(&[][..], |(_, tests)| tests);

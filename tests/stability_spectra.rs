@@ -8,18 +8,17 @@ use abbe::film::Film;
 use abbe::math::{BranchKey, Sampler};
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Lanes, Quantity, Upsampler, data, visible};
-use abbe::trace::{Method, prepare, render};
+use abbe::trace::Method;
 
 use crate::support::pictures::read_png;
-use crate::support::scenes::{Mean, SPLITTING, method, scene, standard_errors, view};
+use crate::support::scenes::{Mean, SPLITTING, film_of, films_of, method, scene, standard_errors, view};
 
 const SPACE: ColorSpace = ColorSpace::Rec709;
 
 /// Images of a scene under different seeds.
 fn films(text: &str, basis: &Basis, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
-    let seeded = |seed| Method { basis: basis.clone(), seed, ..method(&scene, SPLITTING) };
-    (0..seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ()).0).collect()
+    films_of(&scene, &Method { basis: basis.clone(), ..method(&scene, SPLITTING) }, 0..seeds)
 }
 
 fn heroes(light: &Curve) -> Basis {
@@ -40,7 +39,7 @@ fn plate(index: &str, samples: u32) -> String {
 #[test]
 fn d10_white_through_a_plate_stays_white() {
     let films = films(&plate("\"N-SF11\"", 64), &heroes(&1.0.into()), 16);
-    Mean::over_seeds(films.iter()).assert_near([1.0; 3], 3, "plate");
+    Mean::over_seeds(&films).assert_near([1.0; 3], 3, "plate");
 }
 
 #[test]
@@ -73,17 +72,14 @@ fn d11_vanishing_dispersion_is_neither_tinted_nor_noisier_than_none() {
             view([0.0, 1.2, 6.0], [0.0, 0.9, 0.0], 25.0, 24)
         )
     };
-    let images = |index: &str, model: &str, first: u64| -> Vec<Film> {
+    let mean = |index: &str, model: &str, first: u64| {
         let scene = scene(&text(index, model));
-        let method = plan(&scene).method;
-        let seeded = |seed| Method { seed, ..method.clone() };
-        (first..first + 24).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ()).0).collect()
+        Mean::over_seeds(&films_of(&scene, &plan(&scene).method, first..first + 24))
     };
-    let vanishing = Mean::over_seeds(images("{ cauchy = [1.5168, 1e-6] }", "\"hero\"", 0).iter());
-    let none = Mean::over_seeds(images("1.5168", "{ bands = 12 }", 100).iter());
+    let vanishing = mean("{ cauchy = [1.5168, 1e-6] }", "\"hero\"", 0);
+    let none = mean("1.5168", "{ bands = 12 }", 100);
     for band in 0..3 {
-        let (off, error) =
-            ((vanishing.value[band] - none.value[band]).abs(), vanishing.error[band].hypot(none.error[band]));
+        let (off, error) = ((vanishing.value[band] - none.value[band]).abs(), vanishing.beside(&none).error[band]);
         assert!(off <= standard_errors(3) * error, "band {band}: {} and {}", vanishing.value[band], none.value[band]);
         let ratio = (vanishing.error[band] / none.error[band]).powi(2);
         assert!((0.9..1.1).contains(&ratio), "band {band}: {ratio} times the variance");
@@ -164,7 +160,7 @@ fn d14_pure_colors_keep_their_negative_numbers_in_the_film_and_make_a_picture() 
         view([0.0, 0.0, 1.0], [0.0, 0.0, 0.0], 30.0, 4)
     );
     let scene = scene(&text);
-    let film = render(&prepare(&scene, plan(&scene).method), &|_| ()).0;
+    let film = film_of(&scene, plan(&scene).method);
     assert!(film.pixels[0].rgb[0] < -0.1, "{:?}", film.pixels[0]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pure.png");

@@ -135,8 +135,7 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
     let (whole, report) = image(&text, Transport::Deterministic { cutoff, most: u64::MAX });
     let whole = mean_of_pixels(&whole);
     for transport in [SPLITTING, SINGLE_PATH] {
-        let seeds = images(&text, transport, 100);
-        let mean = Mean::over_seeds(seeds.iter().map(|(film, _)| film));
+        let mean = Mean::rendered(&text, transport, 100);
         // Nothing is brighter than the sun, so this much may be missing from the tree.
         let missing = radiance * report.dropped;
         println!("W5: {} +- {:.1e} for {whole}, missing at most {missing:.1e}", mean.value[0], mean.error[0]);
@@ -149,13 +148,10 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
 fn w5_splitting_is_at_least_3_times_as_efficient_as_a_single_path() {
     let text = glass_balls(40, "box", SUN_RADIUS, 30.0);
     let [splitting, single] = [planned(&text), SINGLE_PATH].map(|transport| {
-        let seeds = images(&text, transport, 64);
-        let rays = seeds.iter().map(|(_, report)| report.rays as f64 / report.samples as f64).sum::<f64>();
-        let films: Vec<&Film> = seeds.iter().map(|(film, _)| film).collect();
-        let variance: f64 = (0..films[0].pixels.len())
-            .map(|at| moments(films.iter().map(|film| f64::from(film.pixels[at].rgb[0]))).1)
-            .sum();
-        1.0 / (variance * rays)
+        let (films, reports): (Vec<_>, Vec<_>) = images(&text, transport, 64).into_iter().unzip();
+        let rays = reports.iter().map(|report| report.rays as f64 / report.samples as f64).sum::<f64>();
+        let of_pixel = |at: usize| moments(films.iter().map(move |film| f64::from(film.pixels[at].rgb[0]))).1;
+        1.0 / ((0..films[0].pixels.len()).map(of_pixel).sum::<f64>() * rays)
     });
     println!("W5: {:.2} times as efficient", splitting / single);
     assert!(splitting / single >= 3.0, "{} times as efficient", splitting / single);
@@ -175,9 +171,9 @@ fn w6_light_in_a_closed_white_box_dies_out_at_the_right_radiance() {
     ];
     for (room, expected) in rooms {
         let text = view([0.0; 3], [0.0, 0.0, -1.0], 90.0, 60) + &body("white", &white, &[room]) + lit;
-        let seeds = images(&text, SPLITTING, 3);
-        let mean = Mean::over_seeds(seeds.iter().map(|(film, _)| film));
-        let rays = seeds[0].1.rays as f64 / seeds[0].1.samples as f64;
+        let (films, reports): (Vec<_>, Vec<_>) = images(&text, SPLITTING, 3).into_iter().unzip();
+        let mean = Mean::over_seeds(&films);
+        let rays = reports[0].rays as f64 / reports[0].samples as f64;
         println!("W6: {} +- {:.1e} for {expected}, {rays:.0} rays", mean.value[0], mean.error[0]);
         mean.assert_near([expected; 3], 1, room);
         assert!(mean.worst_error([expected; 3]) <= 0.02, "{mean:?}");
@@ -265,7 +261,7 @@ fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same
     assert!(rays < 20_000.0, "{rays} rays");
     mean.assert_near([1.0 - REFLECTED; 3], 1, "ten panes");
     assert!(mean.error[0] < 0.005, "{mean:?}");
-    assert_eq!(rendered(3).0.pixels, film.pixels, "the same bits for any number of threads");
+    assert!(rendered(3).0.pixels == film.pixels, "another number of threads makes other bits");
 }
 
 fn mean_of_pixels(film: &Film) -> f64 {

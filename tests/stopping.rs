@@ -57,7 +57,7 @@ fn any_threads_and_stops_on_the_way_make_the_same_bytes() {
                 let mut next = rendering(&scene, &options, 9 - threads);
                 next.resume(&path).expect("a checkpoint can be read");
                 assert_eq!(next.done(), first.done(), "{kind}");
-                assert_eq!(next.image().film(), first.image().film(), "{kind}");
+                assert!(next.image().film() == first.image().film(), "{kind}");
                 first = next;
             }
             let image = first.run(&|_| ());
@@ -77,11 +77,11 @@ fn a_smaller_error_can_be_asked_for_later() {
     advance(&mut rough, u64::MAX);
     rough.save(&path).expect("a checkpoint can be written");
     assert_eq!(same.resume(&path).expect("it can be read"), Resumed::Finished);
-    assert_eq!(same.image().film(), rough.image().film());
+    assert!(same.image().film() == rough.image().film(), "the same error makes another film");
     assert_eq!(fine.resume(&path).expect("it can be read"), Resumed::Continues);
     let fine = fine.run(&|_| ());
     assert!(fine.report().samples > rough.image().report().samples);
-    assert_eq!(fine.film(), whole.run(&|_| ()).film());
+    assert!(fine.film() == whole.run(&|_| ()).film(), "an error that is asked for later makes another film");
     // And a render that may not take as many is good enough.
     let mut few = rendering(&scene, &asks(0.02, 64), 2);
     let mut more = rendering(&scene, &asks(1e-6, 128), 2);

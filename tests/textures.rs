@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::support::pictures::{RGB8, write_png};
 use crate::support::random::Random;
-use crate::support::scenes::view;
+use crate::support::scenes::{assert_near, film_of, refusal_in, scene_in, view};
 use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source};
@@ -18,17 +18,10 @@ use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Emission, Image, Lanes, MAX_LANES, Placement, Quantity, TexelFilter,
     Texture,
 };
-use abbe::trace::{prepare, render};
-
-/// The scene of a text in a folder.
-fn scene(folder: &Path, text: &str) -> Scene<Curve> {
-    let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
-    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
 
 /// The scene's image as the plan would make it.
 fn film(scene: &Scene<Curve>) -> Film {
-    render(&prepare(scene, plan(scene).method), &|_| ()).0
+    film_of(scene, plan(scene).method)
 }
 
 /// Objects of every kind with coordinates, of a material `even`, under an even sky.
@@ -66,7 +59,7 @@ fn an_even_gray_image_is_the_plain_reflectance_to_the_last_bit() {
         for (texture, value) in pairs {
             let bits = |reflectance: &str| {
                 let text = room(&format!("diffuse = {{ reflectance = {reflectance} }}"), model);
-                let film = film(&scene(folder.path(), &text));
+                let film = film(&scene_in(folder.path(), &text));
                 film.pixels.iter().map(|pixel| pixel.rgb.map(f32::to_bits)).collect::<Vec<_>>()
             };
             assert!(bits(texture) == bits(&format!("{value:?}")), "{model}: {texture}");
@@ -93,11 +86,11 @@ fn a_film_is_as_thick_as_its_image_says() {
                 + "[[object]]\nshape.quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }\nmaterial = \"m\"\n\
                    [material.lamp]\nemissive = { radiance = 1 }\n[[object]]\nmaterial = \"lamp\"\n\
                    shape.quad = { center = [0, 0, 10], u = [9, 0, 0], v = [0, -9, 0] }\n";
-            scene(folder.path(), &text)
+            scene_in(folder.path(), &text)
         };
         let image = |x: f64| of(x, "{ image = \"grays.exr\", scale = 400 }");
         let method = plan(&image(-0.5)).method;
-        let seen = |scene: &Scene<Curve>| render(&prepare(scene, method.clone()), &|_| ()).0.pixels[0].rgb;
+        let seen = |scene: &Scene<Curve>| film_of(scene, method.clone()).pixels[0].rgb;
         let found = [-0.5, 0.5].map(|x| seen(&image(x)));
         let expected = [(-0.5, "100"), (0.5, "300")].map(|(x, nm)| seen(&of(x, nm)));
         for (found, expected) in found.iter().zip(&expected) {
@@ -183,7 +176,7 @@ fn images_are_colors_that_three_lanes_hold_and_a_measured_square_is_none() {
     let model = |reflectance: &str| {
         let text = room(&format!("diffuse = {{ reflectance = {reflectance} }}"), "\"auto\"")
             .replace("{ illuminant = \"A\", scale = 9 }", "9");
-        plan(&scene(folder.path(), &text)).method.basis.name()
+        plan(&scene_in(folder.path(), &text)).method.basis.name()
     };
     assert_eq!(model("{ image = \"red.png\" }"), "rgb");
     assert_eq!(model("{ checker = [0.5, { rgb = [0.5, 0.2, 0.1] }] }"), "rgb");
@@ -198,13 +191,13 @@ fn squares_of_a_checkerboard_are_their_curves() {
     let cells = ["\"dark skin\"", "{ image = \"dots.png\" }", "{ samples = [[400, 0.1], [700, 0.8]] }", "0.25"];
     let see = |reflectance: &str, x: f64| {
         let text = format!(
-            "{}up = [0, 0, -1]\n[film]\nwidth = 6\nheight = 6\n[render]\nmodel = {{ bands = 16 }}\nsamples = 2\n\
+            "{}[render]\nmodel = {{ bands = 16 }}\nsamples = 2\n\
              [material.even]\ndiffuse = {{ reflectance = {reflectance} }}\n\
              [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"even\"\n\
              [[light]]\nsun = {{ toward = [0, 1, 0], irradiance = 3 }}\n",
-            view([x, 3.0, -0.5], [x, 0.0, -0.5], 10.0, 6).split_once("[film]").unwrap().0
+            view([x, 3.0, -0.5], [x, 0.0, -0.5], 10.0, 6).replace("[film]", "up = [0, 0, -1]\n[film]")
         );
-        let film = film(&scene(folder.path(), &text));
+        let film = film(&scene_in(folder.path(), &text));
         film.pixels.iter().map(|pixel| pixel.rgb.map(f32::to_bits)).collect::<Vec<_>>()
     };
     for [first, second] in [[cells[0], cells[1]], [cells[2], cells[3]]] {

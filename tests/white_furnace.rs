@@ -5,37 +5,26 @@
 //! cargo test --release --test all white_furnace:: -- --nocapture
 //! ```
 
-use crate::layers::arrivals::{arrival, material, points, toward};
-use abbe::material::{Arrival, Index, Lobes, Material, Scatter};
+use abbe::material::{Arrival, Index, Lobes, Material};
 use abbe::spectrum::{Draw, Table};
+
+use crate::support::arrivals::{self, LOSSLESS, arrival, material, toward};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
 const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
 const DRAWS: u32 = 1 << 14;
-/// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its
-/// spread.
-const DRAWS_OF_GLASS: u32 = 1 << 14;
-/// A metal that takes less than 1e-9 of the light at right angles.
-const LOSSLESS: &str = "n = 1e-6, k = 100";
 
 /// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere; and, for glass, how
 /// far chance may put it off.
+///
+/// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its
+/// spread.
 fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
     let arrival = Arrival { beyond: Index::Same(indices[1]), ..arrival(&draw, toward(cos, 0.4), indices[0]) };
-    let (mut sum, mut squares, mut branches) = (0.0, 0.0, Vec::new());
-    let glass = material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION);
-    let draws = if glass { DRAWS_OF_GLASS } else { DRAWS };
-    for u in points(draws) {
-        material.scatter(&arrival, u, &mut branches);
-        let shown: f64 = branches.drain(..).map(|branch| f64::from(branch.share[0]) / branch.eta_scale).sum();
-        sum += shown / f64::from(draws);
-        squares += shown * shown / f64::from(draws);
-    }
-    let error = if glass { ((squares - sum * sum).max(0.0) / f64::from(draws)).sqrt() } else { 0.0 };
-    let straight = material.straight(&arrival).map_or(0.0, |straight| f64::from(straight.share()[0]));
-    [sum + straight, 3.0 * error]
+    let [[shown, error], ..] = arrivals::furnace(material, &arrival, DRAWS);
+    [shown, if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 3.0 * error } else { 0.0 }]
 }
 
 /// A material of one roughness, the indices it is met between, and its name in the table.

@@ -11,7 +11,6 @@ its table an illuminant is 0 and a reflectance is flat.
 
 import argparse
 import math
-import subprocess
 import sys
 import warnings
 from typing import NamedTuple
@@ -69,9 +68,7 @@ def lines(name, *pairs):
 
 def catalog():
     """The names of all illuminants, as the renderer lists them."""
-    command = [str(render.binary()), "catalog", "illuminant"]
-    listed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    return [line.split()[0] for line in listed.splitlines()]
+    return [line.split()[0] for line in render.said("catalog", "illuminant").splitlines()]
 
 
 def rec709():

@@ -8,11 +8,8 @@ one render, byte by byte. The system counts the memory of this script as the lea
 """
 
 import argparse
-import os
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import OpenEXR
@@ -43,17 +40,6 @@ light = [
 MOST = 2
 
 
-def run(*words):
-    """Seconds and peak bytes of a command of the renderer."""
-    start = time.monotonic()
-    child = subprocess.Popen([str(render.binary()), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode:
-        raise SystemExit(f"{words} ended with exit code {child.returncode}")
-    return time.monotonic() - start, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-
-
 def image_bytes(path):
     """What the numbers of a file take in memory."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
@@ -76,16 +62,16 @@ def main():
         rendered = [scene, "--layers", "all", "--exr"]
         numbers = range(1, arguments.parts + 1)
         for number in numbers:
-            run(*rendered, Path(folder) / "part.exr", "--shard", f"{number}/{arguments.parts}")
+            render.spent(*rendered, Path(folder) / "part.exr", "--shard", f"{number}/{arguments.parts}")
         parts = [Path(folder) / f"part.{number}-of-{arguments.parts}.part" for number in numbers]
-        seconds, peak = run("merge", merged, *parts)
-        run(*rendered, whole)
-        _, least = run("--version")
+        merging = render.spent("merge", merged, *parts)
+        render.spent(*rendered, whole)
+        peak, least = merging.peak, render.spent("--version").peak
         same = whole.read_bytes() == merged.read_bytes()
         part, image = max(path.stat().st_size for path in parts), image_bytes(whole)
         rows = image * min(64 / arguments.height, 1) + 2 * part
         print(f"{arguments.parts} parts of {arguments.width} x {arguments.height} pixels, all layers, {arguments.precision}")
-        print(f"image {image / 1e6:.0f} MB, part {part / 1e6:.1f} MB, merged in {seconds:.1f} s")
+        print(f"image {image / 1e6:.0f} MB, part {part / 1e6:.1f} MB, merged in {merging.wall:.1f} s")
         print(f"peak {peak / 1e6:.0f} MB, {(peak - least) / rows:.2f} times as much as 64 rows and two parts")
         print("the bytes of one render" if same else "OTHER BYTES than of one render")
     return 0 if same and peak - least <= MOST * rows else 1

@@ -7,7 +7,9 @@
 
 import os
 import subprocess
+import sys
 import tempfile
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,6 +35,33 @@ def binary():
     if not path.is_file():
         raise SystemExit(f"{path} does not exist: run `cargo build --release`, or set RENDER to a built binary")
     return path
+
+
+def said(*words):
+    """What a command of the renderer prints."""
+    return subprocess.run([binary(), *map(str, words)], capture_output=True, text=True, check=True).stdout
+
+
+class Spent(NamedTuple):
+    """What a process took."""
+
+    processor: float  # seconds, of all threads
+    wall: float  # seconds
+    peak: int  # bytes of memory
+
+
+def spent(*words):
+    """What a command of the renderer takes; one that fails ends this script with its words."""
+    command = [str(binary()), *map(str, words)]
+    start = time.monotonic()
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+        complaint = process.stderr.read().decode()
+        _, status, used = os.wait4(process.pid, 0)
+        wall = time.monotonic() - start
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise SystemExit(f"{' '.join(command)}: exit code {process.returncode}\n{complaint}")
+    return Spent(used.ru_utime + used.ru_stime, wall, used.ru_maxrss * (1 if sys.platform == "darwin" else 1024))
 
 
 def read(path):

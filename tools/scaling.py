@@ -11,11 +11,7 @@ The system counts the memory of this script as the least of its children's, some
 
 import argparse
 import math
-import os
-import subprocess
-import sys
 import tempfile
-import time
 from pathlib import Path
 from statistics import median
 
@@ -106,14 +102,8 @@ def measure(folder: Path, text: str, flags: dict):
     scene = folder / "scene.toml"
     scene.write_text(text, "utf-8")
     words = [word for name, value in ({"threads": 1} | flags).items() for word in (f"--{name}", str(value))]
-    command = [render.binary(), scene, "--exr", folder / "scene.exr", *words]
-    start = time.monotonic()
-    with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
-        said = process.stderr.read().decode()
-        _, status, used = os.wait4(process.pid, 0)
-    if status:
-        sys.exit(f"the renderer failed:\n{said}")
-    return used.ru_utime + used.ru_stime, time.monotonic() - start, used.ru_maxrss / 1024
+    spent = render.spent(scene, "--exr", folder / "scene.exr", *words)
+    return spent.processor, spent.wall, spent.peak / 2**20
 
 
 def main():

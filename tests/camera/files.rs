@@ -4,7 +4,7 @@ use exr::image::{AnyChannels, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, EnvironmentMap, Text};
 use exr::prelude::{IntegerBounds, Vec2, read_first_flat_layer_from_file};
 
-use crate::messages::run::{Folder, render};
+use crate::support::run::{Folder, render};
 
 const SCENE: &str = r#"
 [camera]
@@ -24,7 +24,7 @@ fn written(folder: &Folder, scene: &str, flags: &[&str]) -> Image<Layer<AnyChann
     folder.write("scene.toml", scene);
     let answer = render(folder, &[&["scene.toml", "--exr", "image.exr", "--png", "image.png"], flags].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
-    read_first_flat_layer_from_file(folder.path().join("image.exr")).expect("an EXR")
+    read_first_flat_layer_from_file(folder.path_of("image.exr")).expect("an EXR")
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn a_crop_is_the_data_window_of_the_full_display_window() {
         assert_eq!(image.layer_data.attributes.layer_position, Vec2(3, 1));
         assert_eq!(image.layer_data.size, Vec2(4, 2));
         assert_eq!(image.layer_data.attributes.screen_window_width, 4.0);
-        let picture = std::fs::read(folder.path().join("image.png")).expect("a picture");
+        let picture = folder.read("image.png");
         // The size of a PNG stands in its first chunk.
         assert_eq!(picture[16..24], [0, 0, 0, 4, 0, 0, 0, 2]);
     }
@@ -62,15 +62,14 @@ fn overscan_begins_before_the_display_window() {
         assert_eq!((image.layer_data.attributes.layer_position, image.layer_data.size), (corner, size), "{flags:?}");
         // The screen window is that of the display window.
         assert_eq!(image.layer_data.attributes.screen_window_width, 4.0);
-        let picture = std::fs::read(folder.path().join("image.png")).expect("a picture");
+        let picture = folder.read("image.png");
         assert_eq!(picture[16..24], [0, 0, 0, size.x() as u8, 0, 0, 0, size.y() as u8]);
     }
 }
 
 #[test]
 fn overscan_that_cannot_be_is_refused() {
-    let folder = Folder::new();
-    folder.write("scene.toml", SCENE);
+    let folder = Folder::with("scene.toml", SCENE);
     let refused = |flags: &[&str]| {
         let answer = render(&folder, &[&["scene.toml"], flags].concat());
         (answer.code, answer.stderr)
@@ -91,8 +90,7 @@ fn overscan_that_cannot_be_is_refused() {
 
 #[test]
 fn a_crop_that_cannot_be_is_refused() {
-    let folder = Folder::new();
-    folder.write("scene.toml", SCENE);
+    let folder = Folder::with("scene.toml", SCENE);
     let beyond = render(&folder, &["scene.toml", "--crop", "5,0,4,4"]);
     let told = "error: this crop ends at column 9, row 4, but the image has 8 x 4 pixels\n\
                 help: --crop takes first column, first row, width and height\n";

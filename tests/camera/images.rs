@@ -4,7 +4,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::trace::{Transport, prepare, render};
 
-use crate::support::scenes::{EVERY_BRANCH, SPLITTING, environment, image, scene};
+use crate::support::scenes::{EVERY_BRANCH, SPLITTING, environment, film_of, image, scene};
 
 fn view(camera: &str, film: &str, samples: u32) -> String {
     format!(
@@ -176,7 +176,7 @@ fn a_crop_has_the_bits_of_the_full_image() {
     let whole = scene(ROOM);
     let planned = plan(&whole).method;
     assert!(matches!(planned.transport, Transport::Random { .. }));
-    let (full, _) = render(&prepare(&whole, planned.clone()), &|_| ());
+    let full = film_of(&whole, planned.clone());
     for crop in crops {
         let part = scene(&ROOM.replace("height = 43", &format!("height = 43\ncrop = {crop}")));
         let method = plan(&part).method;

@@ -4,9 +4,9 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method};
 
-use crate::support::scenes::{SPLITTING, moments, scene, standard_errors};
+use crate::support::scenes::{SPLITTING, films_of, moments, object, scene, standard_errors};
 
 /// Pixels along each side of the images, and blocks that are compared.
 const SIDE: usize = 24;
@@ -22,10 +22,6 @@ pub const ABOVE: &str = "position = [2.5, 3.5, 2.5]\nlook_at = [0, 0, 0]\nvertic
 pub const FLOOR: &str = "[material.floor]\ndiffuse = { reflectance = 0.8 }\n[[object]]\nmaterial = \"floor\"\n\
                      shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }\n";
 pub const LAMP: &str = "[material.lamp]\nemissive = { radiance = 5 }\n";
-
-pub fn object(material: &str, shape: &str) -> String {
-    format!("[[object]]\nmaterial = \"{material}\"\nshape.{shape}\n")
-}
 
 pub fn glass(text: &str) -> String {
     format!("[material.glass]\ndielectric = {{ {text} }}\n")
@@ -48,8 +44,7 @@ pub fn blocks(
     let lights = (0..scene.lights.len()).collect();
     let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, map });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
-    let films: Vec<Film> =
-        (0..SEEDS).map(|seed| render(&prepare(scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect();
+    let films = films_of(scene, &asked, 0..SEEDS);
     let mut found = Vec::new();
     for (block, band) in (0..BLOCKS * BLOCKS).flat_map(|block| (0..3).map(move |band| (block, band))) {
         let wide = SIDE / BLOCKS;

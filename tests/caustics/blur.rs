@@ -6,9 +6,9 @@ use abbe::film::Film;
 use abbe::trace::{Blur, LightPass, MapPasses, Method, Report, Stop, Stopped, prepare, render};
 use rayon::prelude::*;
 
-use super::agreement::{glass, object, seen_by, with_method};
+use super::agreement::{glass, seen_by, with_method};
 use super::gathered::mirror;
-use crate::support::scenes::SPLITTING;
+use crate::support::scenes::{SPLITTING, moments, object};
 
 /// Pixels along each side of the images.
 const SIDE: usize = 24;
@@ -61,10 +61,8 @@ fn all_of(most: u32) -> Stop {
 
 /// Mean and standard error.
 fn mean(values: &[f64]) -> [f64; 2] {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (count - 1.0);
-    [mean, (variance / count).sqrt()]
+    let (mean, variance) = moments(values.iter().copied());
+    [mean, (variance / values.len() as f64).sqrt()]
 }
 
 /// The mean of a function of a place over a pixel of that width around it.

@@ -2,10 +2,10 @@
 
 use abbe::film::{Film, Window};
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method};
 
-use super::agreement::{blocks, object, seen_by, with_method};
-use crate::support::scenes::{SPLITTING, scene, standard_errors};
+use super::agreement::{blocks, seen_by, with_method};
+use crate::support::scenes::{SPLITTING, film_of, object, scene, standard_errors};
 
 /// What a mirror before the camera shows, which looks the other way.
 const VIEW: &str = "position = [0, 6, 6]\nlook_at = [0, 6, 5]\nvertical_fov = 25";
@@ -99,7 +99,7 @@ fn planned(text: &str) -> [f64; 3] {
     let scene = scene(text);
     let method = plan(&scene).method;
     assert!(method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some()), "nothing is gathered");
-    mean(&render(&prepare(&scene, method), &|_| ()).0)
+    mean(&film_of(&scene, method))
 }
 
 fn mean(film: &Film) -> [f64; 3] {
@@ -142,7 +142,7 @@ fn k5_a_thin_table_that_is_lit_from_below_does_not_glow_above() {
         let scene = scene(&by_mirror(&table, height));
         let light_pass = Some(LightPass { photons: 32_768, lights: vec![0], map: Some(WIDE) });
         let method = Method { samples: 4, transport: SPLITTING, light_pass, ..plan(&scene).method };
-        mean(&render(&prepare(&scene, method), &|_| ()).0)[1]
+        mean(&film_of(&scene, method))[1]
     };
     let (above, below) = (seen(3.0), seen(-3.0));
     assert!(above > 0.0 && below == 0.0, "{above} lit from above, {below} from below");
@@ -156,7 +156,7 @@ fn what_is_gathered_is_the_same_on_any_number_of_threads_and_in_any_part_of_the_
         let mut part = whole.clone();
         part.film.crop = crop;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-        pool.install(|| render(&prepare(&part, method.clone()), &|_| ()).0)
+        pool.install(|| film_of(&part, method.clone()))
     };
     let (film, crop) = (on(1, None), Window { left: 5, top: 9, width: 11, height: 7 });
     assert!(on(3, None) == film, "3 threads make another image");

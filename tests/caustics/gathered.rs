@@ -3,8 +3,8 @@
 
 use abbe::trace::MapPasses;
 
-use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, object, seen_by, with_method};
-use crate::support::scenes::standard_errors;
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, seen_by, with_method};
+use crate::support::scenes::{object, standard_errors};
 
 /// A radius so small that blurring moves nothing between blocks that these samples could tell.
 const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };

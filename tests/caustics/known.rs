@@ -1,21 +1,19 @@
 //! Caustics whose light is known: by other programs, by hand, or because nothing may change it.
 
-use std::path::Path;
-use std::process::Command;
-
 use abbe::film::Film;
 use abbe::plan::{Plan, plan};
-use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method};
 
-use super::agreement::{LAMP, agree, object, seen_by};
-use crate::support::scenes::{SPLITTING, scene};
+use super::agreement::{LAMP, agree, seen_by};
+use crate::support::run::{Answer, Folder, render};
+use crate::support::scenes::{SPLITTING, film_of, object, scene};
 
 /// The method of a scene's plan with all lights and so many photons.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
     let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), map: None });
     let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
-    render(&prepare(&scene, method), &|_| ()).0
+    film_of(&scene, method)
 }
 
 /// The caustic A of the light tracing lab: a ball of index 1.5 and radius 1, its center 1.5 above the floor, a lamp of
@@ -54,7 +52,7 @@ fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
         // Straight light, past the ball, is no part of the caustic; the camera's samples are the same.
         let straight = scene(&patch(&light));
         let method = Method { samples: 16, light_pass: None, diffuse_bounces: 0, ..plan(&straight).method };
-        let straight = mean(&render(&prepare(&straight, Method { transport: SPLITTING, ..method }), &|_| ()).0);
+        let straight = mean(&film_of(&straight, Method { transport: SPLITTING, ..method }));
         // The floor is so dark that none of its light comes back from the ball: what is seen is irradiance / 1000 pi.
         let irradiance = (mean(&with_photons(&patch(&light), 400_000, 16)) - straight) * 1e3 * std::f64::consts::PI;
         println!("T1, radius {what}: {irradiance:.6}");
@@ -204,14 +202,13 @@ fn a_part_of_an_image_has_the_bits_that_it_has_in_the_whole() {
         assert!(map.is_some(), "a caustic in a mirror");
         let few = LightPass { photons: 16_384, map, ..pass };
         let method = Method { samples: 8, light_pass: Some(few), ..planned.clone() };
-        let render = |scene: &abbe::Scene| render(&prepare(scene, method.clone()), &|_| ()).0;
-        let full = render(&whole);
+        let full = film_of(&whole, method.clone());
         for window in ["crop = [7, 11, 22, 19]", "overscan = [40, 5, 3, 60]", "overscan = 9\ncrop = [-9, 3, 13, 17]"] {
             let part = scene(&crowd(&format!("{filter}{window}")));
             if filter.is_empty() {
                 assert_eq!(plan(&part).method.light_pass, planned.light_pass);
             }
-            let part = render(&part);
+            let part = film_of(&part, method.clone());
             let mut same = 0;
             for (x, y) in (0..part.width).flat_map(|x| (0..part.height).map(move |y| (x, y))) {
                 let [column, row] = [part.corner[0] + x as i32, part.corner[1] + y as i32];
@@ -227,18 +224,12 @@ fn a_part_of_an_image_has_the_bits_that_it_has_in_the_whole() {
 
 #[test]
 fn any_number_of_threads_writes_the_same_bytes_of_a_caustic() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = Folder::with("scene.toml", crowd("filter = \"gaussian\""));
     let rendered = |threads: &str| {
-        std::fs::write(folder.path().join("scene.toml"), crowd("filter = \"gaussian\""))
-            .expect("the scene can be written");
-        let output = Command::new(env!("CARGO_BIN_EXE_render"))
-            .args(["scene.toml", "--exr", "image.exr", "--samples", "24", "--threads", threads])
-            .current_dir(folder.path())
-            .output()
-            .expect("the command runs");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success() && said.contains("photon tracing:") && said.contains("photon map:"), "{said}");
-        std::fs::read(Path::new(folder.path()).join("image.exr")).expect("the image was written")
+        let Answer { code, stderr, .. } =
+            render(&folder, &["scene.toml", "--exr", "image.exr", "--samples", "24", "--threads", threads]);
+        assert!(code == Some(0) && stderr.contains("photon tracing:") && stderr.contains("photon map:"), "{stderr}");
+        folder.read("image.exr")
     };
     let first = rendered("1");
     for threads in ["2", "3"] {

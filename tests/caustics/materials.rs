@@ -1,6 +1,7 @@
 //! Photons and camera rays agree on surfaces of every kind: layers, holes, images, bent normals, rough glass.
 
-use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, glass, object, seen_by};
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, glass, seen_by};
+use crate::support::scenes::{GROUND, object};
 
 const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
 
@@ -8,7 +9,7 @@ const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
 fn a_caustic_on_plastic_that_mirrors_it_onto_a_wall() {
     let text = seen_by(ABOVE, "")
         + "[material.coated]\nplastic = { reflectance = { checker = [0.9, { rgb = [0.2, 0.4, 0.6] }], repeat = 2 } }\n"
-        + &object("coated", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        + &object("coated", GROUND)
         + "[material.wall]\ndiffuse = { reflectance = 0.8 }\n"
         + &object("wall", "quad = { center = [-0.9, 0.5, 0], u = [0, 0, 1], v = [0, 0.5, 0] }")
         + LAMP

@@ -5,13 +5,12 @@ use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, Polarizing, polarization_error, prepare, render};
 
-use crate::support::scenes::{SPLITTING, body, moments, scene};
+use crate::support::fresnel::reflectances;
+use crate::support::scenes::{SPLITTING, body, moments, quad, scene, view};
 
-fn quad(center: DVec3, normal: DVec3, half: f64) -> String {
-    let show = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
+fn square(center: DVec3, normal: DVec3, half: f64) -> String {
     let up = DVec3::new(0.0, 0.0, half);
-    let across = normal.cross(up);
-    format!("quad = {{ center = {}, u = {}, v = {} }}", show(center), show(up), show(across))
+    quad(center, up, normal.cross(up))
 }
 
 /// Light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a floor, and a
@@ -31,15 +30,11 @@ fn two_plates(in_a_mirror: bool) -> String {
     let along = way(2.0).cross(DVec3::new(0.0, 0.0, 1.0));
     let (seen_at, camera) = (floor + aside * 3.0, floor + aside * 3.0 - along * 2.0);
     let (position, look_at) = if in_a_mirror { (camera, seen_at) } else { (seen_at, floor) };
-    let mut text = format!(
-        "[camera]\nposition = [{:?}, {:?}, {:?}]\nlook_at = [{:?}, {:?}, {:?}]\nvertical_fov = 6\n\
-         [film]\nwidth = 8\nheight = 8\n",
-        position.x, position.y, position.z, look_at.x, look_at.y, look_at.z
-    );
-    let plates = [quad(first, normal(0.0), 0.2), quad(second, normal(1.0), 0.3)];
+    let mut text = view(position.into(), look_at.into(), 6.0, 8);
+    let plates = [square(first, normal(0.0), 0.2), square(second, normal(1.0), 0.3)];
     text += &body("plate", "dielectric = { index = 1.5, absorption = 1000 }", &[&plates[0], &plates[1]]);
-    text += &body("floor", "diffuse = { reflectance = 0.5 }", &[&quad(floor, -way(2.0), 0.4)]);
-    let screen = quad(floor + (lamp - floor) * 0.5, (lamp - floor).try_normalize().expect("apart"), 0.7);
+    text += &body("floor", "diffuse = { reflectance = 0.5 }", &[&square(floor, -way(2.0), 0.4)]);
+    let screen = square(floor + (lamp - floor) * 0.5, (lamp - floor).try_normalize().expect("apart"), 0.7);
     text += &body("screen", "diffuse = { reflectance = 0 }", &[&screen]);
     let lamp = format!("sphere = {{ center = [{:?}, {:?}, {:?}], radius = 0.02 }}", lamp.x, lamp.y, lamp.z);
     text += &body("lamp", "emissive = { radiance = 1000 }", &[&lamp]);
@@ -48,9 +43,7 @@ fn two_plates(in_a_mirror: bool) -> String {
         let normal = (-along - aside).try_normalize().expect("not straight on");
         let u = normal.cross(DVec3::new(0.0, 0.0, 1.0)).try_normalize().expect("not upright");
         let v = normal.cross(u);
-        let show = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
-        let mirror = format!("quad = {{ center = {}, u = {}, v = {} }}", show(seen_at), show(u * 0.3), show(v * 0.3));
-        text += &body("mirror", "mirror = {}", &[&mirror]);
+        text += &body("mirror", "mirror = {}", &[&quad(seen_at, u * 0.3, v * 0.3)]);
     }
     text
 }
@@ -104,11 +97,7 @@ const INDICES: [f64; 3] = [1.333, 1.52, 2.42];
 /// Of light that crosses a plate at 60 degrees: of unpolarized light, each polarization by itself (Stokes 1862), and of
 /// light that is taken for unpolarized at every surface.
 fn through_a_plate(index: f64) -> [f64; 2] {
-    let cos = 0.5;
-    let inside = (1.0 - (1.0 - cos * cos) / (index * index)).sqrt();
-    let square = |x: f64| x * x;
-    let reflected =
-        [(cos - index * inside) / (cos + index * inside), (index * cos - inside) / (index * cos + inside)].map(square);
+    let reflected = reflectances(index, 0.5);
     let through = |r: f64| (1.0 - r) / (1.0 + r);
     [reflected.map(through).iter().sum::<f64>() / 2.0, through(reflected.iter().sum::<f64>() / 2.0)]
 }

@@ -1,10 +1,10 @@
 //! A map of photons leaves every camera sample the wavelengths that it has without one.
 
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method};
 
-use super::agreement::{ABOVE, FLOOR, agree_with, glass, object, seen_by};
-use crate::support::scenes::{SPLITTING, scene};
+use super::agreement::{ABOVE, FLOOR, agree_with, glass, seen_by};
+use crate::support::scenes::{SPLITTING, film_of, object, scene};
 
 /// All that is seen through dispersive glass had one wrong color while paths of a pass shared their wavelengths.
 #[test]
@@ -19,7 +19,7 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
         let image = |map: Option<MapPasses>| {
             let light_pass = map.map(|map| LightPass { photons: 4096, lights: vec![1], map: Some(map) });
             let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
-            render(&prepare(&scene, method), &|_| ()).0.pixels
+            film_of(&scene, method).pixels
         };
         let map = MapPasses { count: samples.div_ceil(4), photons: 4096, radius: 1.0, chance: 1.0 };
         assert!(image(Some(map)) == image(None), "{samples} samples differ");

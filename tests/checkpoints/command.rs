@@ -2,16 +2,14 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
 
 use super::GLASS;
-use crate::messages::run::{Answer, Folder, render};
+use crate::support::run::{Answer, Folder, render};
 
 fn folder() -> Folder {
-    let folder = Folder::new();
-    folder.write("s.toml", GLASS);
-    folder
+    Folder::with("s.toml", GLASS)
 }
 
 /// Runs words that are separated by blanks.
@@ -35,12 +33,8 @@ fn done(folder: &Folder, words: &str) -> Answer {
     answer
 }
 
-fn bytes(folder: &Folder, name: &str) -> Vec<u8> {
-    fs::read(folder.path().join(name)).expect("it was written")
-}
-
 fn modified(folder: &Folder, name: &str) -> SystemTime {
-    fs::metadata(folder.path().join(name)).and_then(|found| found.modified()).expect("it was written")
+    fs::metadata(folder.path_of(name)).and_then(|found| found.modified()).expect("it was written")
 }
 
 #[test]
@@ -64,22 +58,22 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     }
     assert_eq!(["s.checkpoint", "s.exr"].map(|name| modified(&folder, name)), times);
     // An image that is not the one that was written is made again, and so are other files that are asked for now.
-    let image = bytes(&folder, "s.exr");
+    let image = folder.read("s.exr");
     folder.write("s.exr", "another image");
     done(&folder, "s.toml --resume");
-    assert!(bytes(&folder, "s.exr") == image);
+    assert!(folder.read("s.exr") == image);
     done(&folder, "s.toml --resume --exr s.exr --png s.png --report s.json");
     assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.json", "s.png", "s.toml"]);
     // A picture of another exposure is another picture.
-    let picture = bytes(&folder, "s.png");
+    let picture = folder.read("s.png");
     done(&folder, "s.toml --resume --exr s.exr --png s.png --exposure 2");
-    assert!(bytes(&folder, "s.png") != picture && bytes(&folder, "s.exr") == image);
+    assert!(folder.read("s.png") != picture && folder.read("s.exr") == image);
     let asked = "s.toml --resume --exr s.exr --png s.png --exposure 2";
     assert!(done(&folder, asked).stderr.contains("nothing is left to be done"));
     // An image that was lost is written again.
-    fs::remove_file(folder.path().join("s.exr")).expect("it is there");
+    fs::remove_file(folder.path_of("s.exr")).expect("it is there");
     done(&folder, "s.toml --resume");
-    assert!(bytes(&folder, "s.exr") == image);
+    assert!(folder.read("s.exr") == image);
     refused(
         &folder,
         "s.toml --checkpoint 1h",
@@ -102,14 +96,14 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
         refused(&folder, &format!("s.toml --resume --samples 4 {flags}"), &message);
     }
-    folder.write("s.toml", &GLASS.replace("index = 1.5", "index = 1.6"));
+    folder.write("s.toml", GLASS.replace("index = 1.5", "index = 1.6"));
     let difference = "it was made of another scene, or of this one before it was changed";
     let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
     refused(&folder, "s.toml --resume --samples 4", &message);
     #[cfg(unix)]
     {
         // Nobody writes to it.
-        let pipe = folder.path().join("s.checkpoint");
+        let pipe = folder.path_of("s.checkpoint");
         fs::remove_file(&pipe).expect("it is there");
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("there is mkfifo").success());
         let message = "error: cannot go on from s.checkpoint: it is no checkpoint\nhelp: name another image, or move that file away";
@@ -128,7 +122,7 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         "error: s.checkpoint would be overwritten, and is no checkpoint\n\
          help: name another image, or move that file away",
     );
-    assert_eq!(bytes(&folder, "s.checkpoint"), b"something else");
+    assert_eq!(folder.read("s.checkpoint"), b"something else");
 }
 
 #[test]
@@ -180,12 +174,12 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
     let missing =
         "error: there is no part new.part\nhelp: parts are made by --shard, as in render --shard 1/4 scene.toml";
     refused(&folder, &format!("merge fresh/old.exr {one} new.part"), missing);
-    assert!(!folder.path().join("fresh").exists());
+    assert!(!folder.path_of("fresh").exists());
     assert_eq!(run(&folder, &format!("merge old.exr {one} samples.2-of-2.part")).code, Some(2));
-    assert_eq!(bytes(&folder, "old.exr"), b"an image of last week");
+    assert_eq!(folder.read("old.exr"), b"an image of last week");
     assert_eq!(done(&folder, &format!("merge old.exr {two} {one}")).stderr, "wrote old.exr\n");
     done(&folder, "s.toml --samples 4");
-    assert!(bytes(&folder, "s.exr") == bytes(&folder, "old.exr"));
+    assert!(folder.read("s.exr") == folder.read("old.exr"));
 }
 
 #[test]
@@ -196,13 +190,13 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
     assert_eq!(planned.stderr, "wrote new/folder/s.plan\n");
     done(&folder, &format!("{asked} --exr without.exr"));
     done(&folder, &format!("{asked} --plan-file new/folder/s.plan --exr with.exr"));
-    assert!(bytes(&folder, "with.exr") == bytes(&folder, "without.exr"));
+    assert!(folder.read("with.exr") == folder.read("without.exr"));
     for part in ["1/2", "2/2"] {
         done(&folder, &format!("{asked} --plan-file new/folder/s.plan --exr part.exr --shard {part}"));
     }
     done(&folder, "merge merged.exr part.1-of-2.part part.2-of-2.part");
-    assert!(bytes(&folder, "merged.exr") == bytes(&folder, "without.exr"));
-    folder.write("other.toml", &GLASS.replace("index = 1.5", "index = 1.6"));
+    assert!(folder.read("merged.exr") == folder.read("without.exr"));
+    folder.write("other.toml", GLASS.replace("index = 1.5", "index = 1.6"));
     let help = "help: make it with the same options: render --plan scene.toml --plan-file frame.plan";
     let cannot = "cannot follow new/folder/s.plan: ";
     for (words, message) in [
@@ -219,7 +213,7 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
     refused(&folder, "s.toml --plan-file s.plan", &format!("error: there is no plan s.plan\n{help}"));
     refused(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is no plan\n{help}"));
     refused(&folder, "s.toml --plan --plan-file s.toml", "error: s.toml is the scene itself\nhelp: name another file");
-    assert_eq!(bytes(&folder, "s.toml"), GLASS.as_bytes());
+    assert_eq!(folder.read("s.toml"), GLASS.as_bytes());
 }
 
 /// A plan of a scene that asks for spectra is followed for a picture alone as well, which has none.
@@ -239,11 +233,11 @@ fn merging_deletes_the_checkpoints_of_parts_alone() {
     for part in ["1/2", "2/2"] {
         done(&folder, &format!("s.toml --samples 4 --resume --shard {part}"));
     }
-    fs::rename(folder.path().join("s.1-of-2.part"), folder.path().join("s.part")).expect("any name will do");
+    fs::rename(folder.path_of("s.1-of-2.part"), folder.path_of("s.part")).expect("any name will do");
     for other in ["s.checkpoint", "notes-of-today.checkpoint"] {
         folder.write(other, "something else");
     }
-    fs::rename(folder.path().join("s.2-of-2.part"), folder.path().join("notes-of-today.part")).expect("it is there");
+    fs::rename(folder.path_of("s.2-of-2.part"), folder.path_of("notes-of-today.part")).expect("it is there");
     done(&folder, "merge --delete out.exr s.part notes-of-today.part");
     let left = "notes-of-today.checkpoint out.exr s.1-of-2.checkpoint s.2-of-2.checkpoint s.checkpoint s.toml";
     assert_eq!(folder.listing(), left.split(' ').collect::<Vec<_>>());
@@ -267,7 +261,7 @@ fn parts_of_a_scene_that_asks_for_an_error_follow_a_plan_for_parts() {
     }
     done(&folder, "merge merged.exr out.1-of-2.part out.2-of-2.part");
     done(&folder, "s.toml --samples 64 --exr whole.exr");
-    assert!(bytes(&folder, "merged.exr") == bytes(&folder, "whole.exr"));
+    assert!(folder.read("merged.exr") == folder.read("whole.exr"));
 }
 
 #[test]
@@ -303,6 +297,20 @@ fn flags_that_have_no_place_are_refused() {
     assert_eq!(folder.listing(), ["s.toml"]);
 }
 
+/// Sends a signal to commands, one after the other.
+#[cfg(unix)]
+fn send(signal: &str, to: &[&Child]) {
+    let sent = Command::new("kill").arg(signal).args(to.iter().map(|child| child.id().to_string())).status();
+    assert!(sent.expect("there is kill").success());
+}
+
+#[cfg(unix)]
+fn wait_for(folder: &Folder, file: &str) {
+    while !folder.path_of(file).exists() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
 /// Starts a render, sends a signal twice, as `timeout` does, when a file is there, and answers what was said and the
 /// exit code.
 #[cfg(unix)]
@@ -310,12 +318,8 @@ fn stopped(folder: &Folder, words: &str, signal: &str, file: &str) -> (String, O
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     command.current_dir(folder.path()).args(words.split(' ')).stderr(Stdio::piped());
     let child = command.spawn().expect("the command can be started");
-    while !folder.path().join(file).exists() {
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    let child_twice = [child.id().to_string(), child.id().to_string()];
-    let sent = Command::new("kill").arg(signal).args(child_twice).status().expect("there is kill");
-    assert!(sent.success());
+    wait_for(folder, file);
+    send(signal, &[&child, &child]);
     let output = child.wait_with_output().expect("it ends");
     (String::from_utf8(output.stderr).expect("messages are UTF-8"), output.status.code())
 }
@@ -336,8 +340,8 @@ fn a_render_that_is_told_to_stop_says_how_to_go_on_and_goes_on_to_the_same_bytes
         assert!(code == Some(130) && said.ends_with(&told), "{code:?}: {said}");
         assert_eq!(folder.listing().iter().filter(|name| name.starts_with('.')).count(), 0);
         done(&folder, &format!("s.toml {samples} --resume"));
-        assert!(bytes(&folder, "s.exr") == bytes(&folder, "whole.exr"), "{signal}");
-        fs::remove_file(folder.path().join("s.checkpoint")).expect("it is there");
+        assert!(folder.read("s.exr") == folder.read("whole.exr"), "{signal}");
+        fs::remove_file(folder.path_of("s.checkpoint")).expect("it is there");
     }
 }
 
@@ -356,8 +360,7 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
             line.clear();
             assert!(said.read_line(&mut line).expect("messages are UTF-8") > 0, "it renders");
         }
-        let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("there is kill");
-        assert!(sent.success());
+        send(signal, &[&child]);
         let mut rest = String::new();
         said.read_to_string(&mut rest).expect("messages are UTF-8");
         let told = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
@@ -387,15 +390,12 @@ fn how_to_go_on_is_said_of_files_of_any_name() {
     use std::os::unix::ffi::OsStrExt;
     let folder = folder();
     let name = OsStr::from_bytes(b"sc\xe9ne.toml");
-    fs::rename(folder.path().join("s.toml"), folder.path().join(name)).expect("any name will do");
+    fs::rename(folder.path_of("s.toml"), folder.path_of(name)).expect("any name will do");
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     command.current_dir(folder.path()).arg(name).args(["--samples", "2000", "--exr", "s.exr", "--checkpoint", "20ms"]);
     let mut child = command.stderr(Stdio::piped()).spawn().expect("the command can be started");
-    while !folder.path().join("s.checkpoint").exists() {
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("there is kill");
-    assert!(sent.success());
+    wait_for(&folder, "s.checkpoint");
+    send("-INT", &[&child]);
     let mut said = Vec::new();
     child.stderr.take().expect("it is piped").read_to_end(&mut said).expect("it ends");
     let said = String::from_utf8_lossy(&said);
@@ -410,16 +410,15 @@ fn how_to_go_on_is_said_of_files_of_any_name() {
 #[test]
 fn a_command_that_has_not_begun_to_render_stops_at_once() {
     let folder = folder();
-    let made = Command::new("mkfifo").arg(folder.path().join("p.toml")).status().expect("there is mkfifo");
+    let made = Command::new("mkfifo").arg(folder.path_of("p.toml")).status().expect("there is mkfifo");
     assert!(made.success());
     for more in [&[][..], &["--checkpoint", "60s"]] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
         command.current_dir(folder.path()).args(["p.toml", "--exr", "p.exr"]).args(more).stderr(Stdio::piped());
         let child = command.spawn().expect("the command can be started");
         // It opens the scene, and waits for its text.
-        let scene = fs::OpenOptions::new().write(true).open(folder.path().join("p.toml")).expect("somebody reads");
-        let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("there is kill");
-        assert!(sent.success());
+        let scene = fs::OpenOptions::new().write(true).open(folder.path_of("p.toml")).expect("somebody reads");
+        send("-TERM", &[&child]);
         let output = child.wait_with_output().expect("it ends");
         drop(scene);
         let said = String::from_utf8(output.stderr).expect("messages are UTF-8");
@@ -442,5 +441,5 @@ fn a_checkpoint_that_cannot_be_written_stops_no_render_and_loses_no_file() {
     assert!(said.contains("error: cannot write s.exr: "), "{said}");
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert_eq!(folder.listing(), ["s.exr", "s.toml"]);
-    assert_eq!(bytes(&folder, "s.exr"), b"an image of last week");
+    assert_eq!(folder.read("s.exr"), b"an image of last week");
 }

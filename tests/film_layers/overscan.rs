@@ -1,16 +1,16 @@
 //! Overscan: pixels around the format that change none in it.
 
 use abbe::film::{Film, Layer, Overscan, Window};
-use abbe::{Image, Options, Scene};
+use abbe::{Image, Options};
 
 use super::{ROOM, rgb};
+use crate::support::scenes::rendered_with;
 
 const AROUND: Overscan = Overscan { left: 5, top: 17, right: 18, bottom: 1 };
 
 fn made(text: &str, overscan: Option<Overscan>, crop: Option<Window>, threads: usize) -> Image {
-    let scene = Scene::parse(text, "").expect("the scene is valid");
     let options = Options { overscan, crop, layers: Some(Layer::all()), threads: Some(threads), ..Options::default() };
-    abbe::render(&scene, &options).expect("it renders")
+    rendered_with(text, &options)
 }
 
 fn window(film: &Film) -> Window {
@@ -106,8 +106,7 @@ fn depths(camera: &str, film: &str) -> Image {
          material.lamp.emissive.radiance = 1\n\
          object = [{{ shape.plane = {{ point = [0, 0, -4], normal = [0.1, 0.2, 1] }}, material = \"lamp\" }}]\n"
     );
-    let options = Options { layers: Some(vec![Layer::Position]), ..Options::default() };
-    abbe::render(&Scene::parse(&text, "").expect("the scene is valid"), &options).expect("it renders")
+    rendered_with(&text, &Options { layers: Some(vec![Layer::Position]), ..Options::default() })
 }
 
 fn places(image: &Image) -> Vec<[f32; 3]> {

@@ -41,7 +41,7 @@ fn degrees_and_angles_need_no_other_layer() {
     let all = Layer::STOKES.into_iter().chain([Layer::Polarization]).collect::<Vec<_>>();
     let (both, alone) = (rendered(ROOM, &all), rendered(ROOM, &[Layer::Polarization]));
     for channel in ["R", "polarization.degree", "polarization.linear_degree", "polarization.angle"] {
-        assert_eq!(both.layer(channel), alone.layer(channel), "{channel}");
+        assert!(both.layer(channel) == alone.layer(channel), "{channel}");
     }
     assert!(alone.layer("S1.R").is_none());
 }

@@ -2,28 +2,28 @@
 
 use abbe::plan::plan;
 use abbe::spectrum::{ColorSpace, apply};
-use abbe::trace::{Method, prepare, render};
+use abbe::trace::Method;
 use palette::Lab;
 use palette::color_difference::Ciede2000;
 use palette::white_point::D65;
 
-use crate::support::scenes::{EVERY_BRANCH, body, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, body, film_of, quad, scene, view};
 
 /// Y, x, y by a perfect mirror's.
 fn mirrored(material: &str, degrees: f64) -> ([f64; 3], String) {
     let (y, x) = degrees.to_radians().sin_cos();
     let center = [-6.0 * y, 0.0, 6.0 * x];
-    let quad = format!("quad = {{ center = {center:?}, u = {:?}, v = [0, 2, 0] }}", [2.0 * x, 0.0, 2.0 * y]);
+    let lamp = quad(center, [2.0 * x, 0.0, 2.0 * y], [0.0, 2.0, 0.0]);
     let plane = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
     let text = view([4.0 * y, 0.0, 4.0 * x], [0.0; 3], 1e-3, 1)
         + "[render]\nsamples = 1\n"
         + &body("seen", material, &[plane])
-        + &body("lamp", "emissive = { radiance = { illuminant = \"D65\" } }", &[&quad]);
+        + &body("lamp", "emissive = { radiance = { illuminant = \"D65\" } }", &[&lamp]);
     let scene = scene(&text);
     let chosen = plan(&scene).method.basis;
     let name = chosen.name();
     let method = Method { basis: chosen, ..crate::support::scenes::method(&scene, EVERY_BRANCH) };
-    let rgb = render(&prepare(&scene, method), &|_| ()).0.pixels[0].rgb.map(f64::from);
+    let rgb = film_of(&scene, method).pixels[0].rgb.map(f64::from);
     (apply(&ColorSpace::Rec709.to_xyz(), rgb), name)
 }
 

@@ -1,10 +1,10 @@
 //! The white furnace under films: what is clear shows 1, and metal under a clear film what Abeles' matrices say.
 
-use abbe::material::{Arrival, Index, Lobes, Material, Scatter};
+use abbe::material::{Arrival, Index, Lobes, Material};
 use abbe::spectrum::{Draw, Table};
 
 use super::reference::shares;
-use crate::layers::arrivals::{arrival, material, points, toward};
+use crate::support::arrivals::{self, arrival, material, toward};
 
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const DRAWS: u32 = 1 << 12;
@@ -17,25 +17,8 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos
     let draw = Draw::<4>::fixed(3);
     let at = arrival(&draw, toward(cos, 0.4), indices[0]);
     let arrival = Arrival { beyond: Index::Same(indices[1]), from_inside, ..at };
-    let (mut sums, mut branches) = ([[0.0; 2]; 3], Vec::new());
-    for u in points(DRAWS) {
-        material.scatter(&arrival, u, &mut branches);
-        let mut shown = [0.0; 3];
-        for branch in branches.drain(..) {
-            (0..3).for_each(|band| shown[band] += f64::from(branch.share[band]) / branch.eta_scale);
-        }
-        for (sum, shown) in sums.iter_mut().zip(shown) {
-            *sum = [sum[0] + shown / f64::from(DRAWS), sum[1] + shown * shown / f64::from(DRAWS)];
-        }
-    }
-    let by_chance = material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION);
-    let straight =
-        material.straight(&arrival).map_or([0.0; 3], |straight| [0, 1, 2].map(|i| straight.share()[i].into()));
-    std::array::from_fn(|band| {
-        let [mean, square] = sums[band];
-        let error = ((square - mean * mean).max(0.0) / f64::from(DRAWS)).sqrt();
-        [mean + straight[band], if by_chance { 4.0 * error } else { 0.0 }]
-    })
+    let allowed = if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 4.0 } else { 0.0 };
+    arrivals::furnace(material, &arrival, DRAWS).map(|[shown, error]| [shown, allowed * error])
 }
 
 /// Clear films: a quarter wave, soap, a mirror of five layers, and more than a wavelength.

@@ -4,7 +4,7 @@ use abbe::material::{Arrival, Block, Incoming, Index, Layer, Mueller, PolarizedS
 use abbe::math::Complex;
 use abbe::spectrum::{Draw, Table};
 
-use crate::layers::arrivals::{arrival, material, toward};
+use crate::support::arrivals::{arrival, material, toward};
 
 /// What is reflected at 550 nm by one clear layer on n - i k, under an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {

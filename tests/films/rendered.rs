@@ -4,7 +4,7 @@ use abbe::spectrum::{Basis, Response};
 use abbe::trace::{Method, prepare, render};
 
 use super::reference::{Layer, shares};
-use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, assert_near, body, method, quad, rendered, scene, view};
 
 const ANGLES: [f64; 4] = [0.0, 30.0, 45.0, 60.0];
 const NAMED: [&str; 2] = ["reflected", "let through"];
@@ -15,15 +15,11 @@ fn seen(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -
     let (y, x) = degrees.to_radians().sin_cos();
     let camera = [4.0 * y, 0.0, 4.0 * x];
     let [u, lamp] = if behind { [[-x, 0.0, y], [-y, 0.0, -x]] } else { [[x, 0.0, y], [-y, 0.0, x]] };
-    let center = lamp.map(|x| 6.0 * x);
-    let quad = format!(
-        "quad = {{ center = {center:?}, u = {:?}, v = [0, 2, 0] }}",
-        u.map(|x| if behind { 5.0 } else { 2.0 } * x)
-    );
+    let lamp = quad(lamp.map(|x| 6.0 * x), u.map(|x| if behind { 5.0 } else { 2.0 } * x), [0.0, 2.0, 0.0]);
     let text = view(camera, [0.0; 3], 1e-3, 1)
         + "[render]\nsamples = 1\n"
         + &body("seen", material, &[shape])
-        + &body("lamp", "emissive = { radiance = 1 }", &[&quad]);
+        + &body("lamp", "emissive = { radiance = 1 }", &[&lamp]);
     let scene = scene(&text);
     // Lanes of lines stand for single wavelengths, however far apart they are.
     let basis = Basis::wavelengths(scene.film.color_space, vec![600.0], &nm);
@@ -40,12 +36,6 @@ fn reflected(material: &str, degrees: f64, nm: [f64; 3]) -> [f64; 3] {
     let white = seen("mirror = { reflectance = 1 }", PLANE, degrees, false, nm);
     let found = seen(material, PLANE, degrees, false, nm);
     std::array::from_fn(|i| found[i] / white[i])
-}
-
-fn near(found: [f64; 3], expected: [f64; 3], what: &str) {
-    for i in 0..3 {
-        assert!((found[i] - expected[i]).abs() < 1e-5, "{what}: {found:?} for {expected:?}");
-    }
 }
 
 /// n - i k and nm of layers, as a scene has them.
@@ -69,11 +59,11 @@ fn a_quarter_wave_of_magnesium_fluoride_darkens_glass() {
         ([450.0, 550.0, 650.0], [0.015_953, 0.012_709, 0.014_704]),
     ];
     for (nm, expected) in rows {
-        near(reflected(material, 0.0, nm), expected, "F3, F4");
+        assert_near(reflected(material, 0.0, nm), expected, 1e-5, "F3, F4");
         for degrees in ANGLES {
             let cos = degrees.to_radians().cos();
             let expected = nm.map(|nm| shares(1.0, &[([1.38, 0.0], 99.63768115942)], [bk7(nm), 0.0], cos, nm)[0]);
-            near(reflected(material, degrees, nm), expected, &format!("{degrees} degrees"));
+            assert_near(reflected(material, degrees, nm), expected, 1e-5, &format!("{degrees} degrees"));
         }
     }
 }
@@ -114,9 +104,14 @@ fn layers_are_listed_from_the_outside_inward_and_met_from_both_sides() {
             assert!((back - t).abs() < 1e-9);
             t * t / (1.0 - r * r)
         });
-        near([0, 1, 2].map(|i| found[i] / bare[i]), through, &format!("{degrees} degrees, through both faces"));
+        assert_near(
+            [0, 1, 2].map(|i| found[i] / bare[i]),
+            through,
+            1e-5,
+            &format!("{degrees} degrees, through both faces"),
+        );
         let expected = nm.map(|nm| shares(1.0, &STACK, [1.52, 0.0], cos, nm)[0]);
-        near(reflected(&material, degrees, nm), expected, &format!("{degrees} degrees, reflected"));
+        assert_near(reflected(&material, degrees, nm), expected, 1e-5, &format!("{degrees} degrees, reflected"));
     }
 }
 
@@ -137,7 +132,12 @@ fn a_film_is_reflected_by_and_seen_through() {
                         [0, 1, 2].map(|i| found[i] / bare[i])
                     }
                 };
-                near(found, expected.map(|shares| shares[way]), &format!("{thickness} nm, {degrees} degrees, {name}"));
+                assert_near(
+                    found,
+                    expected.map(|shares| shares[way]),
+                    1e-5,
+                    &format!("{thickness} nm, {degrees} degrees, {name}"),
+                );
             }
         }
     }
@@ -153,9 +153,9 @@ fn metal_and_plastic_reflect_by_their_layers() {
     for degrees in ANGLES {
         let cos = degrees.to_radians().cos();
         let expected = nm.map(|nm| shares(1.0, &[([1.46, 0.0], 100.0)], [1.015, -6.627], cos, nm)[0]);
-        near(reflected(&metal, degrees, nm), expected, &format!("metal, {degrees} degrees"));
+        assert_near(reflected(&metal, degrees, nm), expected, 1e-5, &format!("metal, {degrees} degrees"));
         let expected = nm.map(|nm| shares(1.0, &STACK, [1.5, 0.0], cos, nm)[0]);
-        near(reflected(&plastic, degrees, nm), expected, &format!("plastic, {degrees} degrees"));
+        assert_near(reflected(&plastic, degrees, nm), expected, 1e-5, &format!("plastic, {degrees} degrees"));
     }
 }
 
@@ -173,8 +173,7 @@ fn a_checkerboard_of_thicknesses_is_what_its_squares_are() {
              shape.quad = {{ center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }}\n\
              [material.black]\ndiffuse = {{ reflectance = 0 }}\n"
         );
-        let scene = abbe::Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}"));
-        abbe::render(&scene, &abbe::Options::default()).expect("it renders").rgb_at(0, 0)
+        rendered(&text).rgb_at(0, 0)
     };
     for model in ["\"rgb\"", "{ bands = 16 }"] {
         let even = color("300", model);

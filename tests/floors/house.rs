@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::LazyLock;
 
-use super::source::{Names, Source, texts};
+use super::source::{Names, Source};
+use crate::support::texts::texts;
 
 /// All files, and the file that each module is.
 pub struct House {

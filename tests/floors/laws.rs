@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::exceptions::{ABROAD, LONG, TUPLES, WIDE};
 use super::house::{House, exactly, here};
-use super::source::texts;
+use crate::support::texts::texts;
 
 /// Most lines of a file.
 const LONGEST_FILE: usize = 500;

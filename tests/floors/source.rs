@@ -2,8 +2,6 @@
 //! not count.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::Path;
 
 use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
@@ -38,21 +36,6 @@ pub struct Source {
     /// The types of its inherent `impl`.
     pub impls: BTreeSet<Names>,
     pub functions: Vec<Function>,
-}
-
-/// Every Rust file below a folder, by its path inside it.
-pub fn texts(folder: &Path) -> BTreeMap<String, String> {
-    let mut found = BTreeMap::new();
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        if path.is_dir() {
-            found.extend(texts(&path).into_iter().map(|(inner, text)| (format!("{name}/{inner}"), text)));
-        } else if name.ends_with(".rs") {
-            found.insert(name, fs::read_to_string(&path).expect("a text file"));
-        }
-    }
-    found
 }
 
 impl Source {

@@ -4,10 +4,9 @@ use std::f64::consts::PI;
 
 use abbe::plan::plan;
 use abbe::spectrum::{ColorSpace, Curve, CurveKind, Dye, apply, visible};
-use abbe::trace::{prepare, render};
 
 use super::{BRIGHTENER, Bells, RED, YELLOW, color, light, near, pixel};
-use crate::support::scenes::{body, scene, view};
+use crate::support::scenes::{body, film_of, scene, view};
 
 const PAPER: &str = "quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }";
 
@@ -77,7 +76,7 @@ fn the_plan_keeps_its_word_of_dyed_paper() {
             let text = lit_scene(&dye.material(), illuminant, "");
             let scene = scene(&text);
             let plan = plan(&scene);
-            let found = render(&prepare(&scene, plan.method.clone()), &|_| ()).0.pixels[0].rgb.map(f64::from);
+            let found = film_of(&scene, plan.method.clone()).pixels[0].rgb.map(f64::from);
             // 32 lanes are within 2e-4.
             let share = plan.model_error + 2e-4;
             near(found, pixel(&text), share, &format!("{} by {illuminant}, at most {share:.1e}", dye.name));

@@ -1,26 +1,17 @@
 //! What dyes shine is unpolarized, and is polarized on its way to the camera as any light is.
 
-use abbe::film::Layer;
-use abbe::{Options, Scene};
-
 use super::YELLOW;
+use crate::polarization::stokes_vectors;
+use crate::support::scenes::{one_pixel, rendered};
 
 /// Stokes vectors of red, green and blue that a pixel sees of a material under a point light.
 fn stokes(material: &str, camera: &str, more: &str) -> [[f64; 3]; 4] {
-    let text = format!(
-        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6{camera} }}\n\
-         film = {{ width = 1, height = 1, filter = \"center\", stokes = true }}\nrender.samples = 8\n\
-         [material.paper]\n{material}\n[[light]]\n\
-         point = {{ position = [2, 0, 1], intensity = {{ illuminant = \"D65\", scale = 20 }} }}\n{more}"
-    );
-    let scene = Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let image = abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders");
-    let film = image.film();
-    let of = |layer: Layer| {
-        let image = film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
-        [0, 1, 2].map(|c| f64::from(image.values[c]))
-    };
-    [film.pixels[0].rgb.map(f64::from), of(Layer::S1), of(Layer::S2), of(Layer::S3)]
+    let text = one_pixel(camera, ", stokes = true")
+        + &format!(
+            "render.samples = 8\n[material.paper]\n{material}\n[[light]]\n\
+             point = {{ position = [2, 0, 1], intensity = {{ illuminant = \"D65\", scale = 20 }} }}\n{more}"
+        );
+    stokes_vectors(rendered(&text).film())
 }
 
 const STRAIGHT: &str =

@@ -1,10 +1,10 @@
 //! Light that excites dyes again and again.
 
 use abbe::spectrum::{Basis, visible};
-use abbe::trace::{Method, prepare, render};
+use abbe::trace::Method;
 
 use super::{BRIGHTENER, Bells, RED, YELLOW, color, light};
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, method, scene, view};
+use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, film_of, method, scene, view};
 
 /// The radiance of a closed room whose walls have a dye and lose to, or get of, the outside what they do not cover:
 /// L = opacity (reflected + excited glow) L + (1 - opacity) E, a matrix of rank 1 beside a diagonal.
@@ -47,7 +47,7 @@ fn a_room_of_one_dye_shines_as_its_matrix_says() {
                 + &format!("[material.dyed]\n{}\n", dye.material());
             let scene = scene(&text);
             let basis = Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]);
-            let film = render(&prepare(&scene, Method { basis, ..method(&scene, transport) }), &|_| ()).0;
+            let film = film_of(&scene, Method { basis, ..method(&scene, transport) });
             let outside: Vec<f64> = light("D65").iter().map(|light| (1.0 - OPACITY) * light).collect();
             let expected = color(&room(&dye, OPACITY, &outside));
             let mean = Mean::of(&film);

@@ -2,10 +2,10 @@
 
 use abbe::film::Film;
 use abbe::spectrum::{Basis, Emission};
-use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method};
 
 use super::{BRIGHTENER, Bells, RED, YELLOW};
-use crate::support::scenes::{Mean, SPLITTING, body, method, moments, scene, view};
+use crate::support::scenes::{Mean, SPLITTING, body, films_of, method, moments, rendered, scene, view};
 
 /// Renders whose spread is their noise.
 const SEEDS: u64 = 4;
@@ -14,7 +14,7 @@ const SEEDS: u64 = 4;
 fn agree(found: Mean, expected: Mean, what: &str) {
     let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     for c in 0..3 {
-        let (off, error) = (found.value[c] - expected.value[c], found.error[c].hypot(expected.error[c]));
+        let (off, error) = (found.value[c] - expected.value[c], found.beside(&expected).error[c]);
         println!("{what} {c}: {:.5} for {:.5} +- {error:.5}", found.value[c], expected.value[c]);
         assert!(off.abs() < 4.0 * error + 1e-6 * strongest, "{what}: {found:?} for {expected:?}");
         assert!(error < 0.02 * strongest, "{what}: the noise hides all");
@@ -64,7 +64,7 @@ fn films(text: &str, basis: impl Fn(&abbe::scene::Scene) -> Basis, light_pass: O
     let scene = scene(text);
     let method =
         Method { basis: basis(&scene), samples: 16, light_pass, diffuse_bounces: 1, ..method(&scene, SPLITTING) };
-    (0..SEEDS).map(|seed| render(&prepare(&scene, Method { seed, ..method.clone() }), &|_| ()).0).collect()
+    films_of(&scene, &method, 0..SEEDS)
 }
 
 #[test]
@@ -111,16 +111,14 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
         let heroes = Basis::bands_from_ultraviolet(scene.film.color_space, 12, lines).with_heroes(4, &lights);
         let of = |basis: Basis, samples: u32| {
             let method = Method { basis, samples, ..method(&scene, SPLITTING) };
-            let films: Vec<Film> =
-                (0..SEEDS).map(|seed| render(&prepare(&scene, Method { seed, ..method.clone() }), &|_| ()).0).collect();
-            mean(&films)
+            mean(&films_of(&scene, &method, 0..SEEDS))
         };
         // A sample of heroes has a tenth of the variance, or less.
         let times = if lines.is_empty() { 1 } else { 8 };
         let (found, expected) = (of(heroes, times * 128), of(lanes, times * 256));
         for c in 0..3 {
             let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.error[c].hypot(expected.error[c]));
+            let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.beside(&expected).error[c]);
             println!("{} {c}: {:.5} for {:.5} +- {error:.5}", dye.name, found.value[c], expected.value[c]);
             // Colors of the lanes that stay together, in 12 and in 32 of them.
             assert!(off < 4.0 * error + 2e-3 * strongest, "{}: {found:?} for {expected:?}", dye.name);
@@ -138,8 +136,7 @@ fn what_a_dye_shines_through_glass_is_dispersed() {
         + &body("paper", &YELLOW.material(), &["quad = { center = [0, 0, -3], u = [9, 0, 0], v = [0, 9, 0] }"])
         + &body("glass", "dielectric = { index = \"N-SF11\" }", &["cube = { center = [0, 0, 0], size = 2 }"])
         + "[[light]]\npoint = { position = [-2, 3, -1.5], intensity = 100 }\n";
-    let image = abbe::render(&abbe::Scene::parse(&text, "").expect("it is valid"), &abbe::Options::default());
-    let image = image.expect("it renders");
+    let image = rendered(&text);
     let sum = |values: &mut dyn Iterator<Item = f32>| values.map(f64::from).sum::<f64>();
     let layer = ["R", "G", "B"].map(|channel| image.layer(&format!("dispersed.{channel}")).expect("it was asked for"));
     let share = sum(&mut layer.into_iter().flatten()) / sum(&mut image.rgb().into_iter().flatten());

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
+use base64::prelude::*;
 use exr::prelude::{Blocks, Compression, Encoding, Image, LineOrder, SpecificChannels, Vec2, WritableImage, f16};
 
 use super::pictures::{self, L8, L16, LA8, LA16, RGB8, RGB16, RGBA8, RGBA16};
@@ -95,20 +96,10 @@ pub fn obj() -> Vec<Vec<u8>> {
     .into()
 }
 
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    assert_eq!(bytes.len() % 3, 0, "no padding is written");
-    let group = |three: &[u8]| {
-        let bits = three.iter().fold(0_u32, |bits, &byte| bits << 8 | u32::from(byte));
-        [18, 12, 6, 0].map(|shift| char::from(DIGITS[(bits >> shift) as usize & 63]))
-    };
-    bytes.chunks(3).flat_map(group).collect()
-}
-
 pub fn gltf() -> Vec<Vec<u8>> {
     let corners = FACES.iter().flatten().flat_map(|&corner| (corner as u16).to_le_bytes());
     let binary: Vec<u8> = POINTS.iter().flatten().flat_map(|x| x.to_le_bytes()).chain(corners).collect();
-    let uri = format!("\"uri\":\"data:application/octet-stream;base64,{}\",", base64(&binary));
+    let uri = format!("\"uri\":\"data:application/octet-stream;base64,{}\",", BASE64_STANDARD.encode(&binary));
     let plain = |uri: &str| {
         format!(
             r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],

@@ -157,17 +157,10 @@ pub fn with_checksums(bytes: &mut [u8]) {
     while let Some(length) = bytes.get(at..at + 4) {
         let length = u32::from_be_bytes(length.try_into().expect("four bytes")) as usize;
         let Some(end) = at.checked_add(8 + length).filter(|end| end + 4 <= bytes.len()) else { return };
-        let sum = checksum(&bytes[at + 4..end]);
+        let sum = crc32fast::hash(&bytes[at + 4..end]);
         bytes[end..end + 4].copy_from_slice(&sum.to_be_bytes());
         at = end + 4;
     }
-}
-
-/// CRC-32 of ISO 3309, as PNG has it.
-fn checksum(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |sum, &byte| {
-        (0..8).fold(sum ^ u32::from(byte), |sum: u32, _| (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 })
-    })
 }
 
 /// Gives the chunks of a binary glTF file the lengths that they have.

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use abbe::math::DVec3;
 
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, image, view};
+use crate::support::scenes::{GROUND, Mean, SINGLE_PATH, SPLITTING, body, image, view};
 
 /// The bands' radiances are in these proportions.
 const BANDS: [f64; 3] = [1.0, 2.0, 0.5];
@@ -64,7 +64,7 @@ fn assert_closed_forms(cases: &[Case]) {
             // So far away and narrow that all pixels see one place.
             let text = view(case.camera, case.point, 1e-5, 40)
                 + &format!("[render]\nsamples = {samples}\n{limit}")
-                + &body("floor", &floor, &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
+                + &body("floor", &floor, &[GROUND])
                 + &case.scene;
             let (film, report) = image(&text, transport);
             assert_eq!(report.non_finite, 0, "{}", case.name);

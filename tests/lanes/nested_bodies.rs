@@ -3,7 +3,7 @@
 use abbe::math::DVec3;
 
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, SPLITTING, body, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, GROUND, SINGLE_PATH, SPLITTING, body, environment, image, view};
 use abbe::trace::{MOST_MEDIA, Transport};
 
 /// Reflectance over transmittance of one interface at normal incidence.
@@ -206,7 +206,7 @@ fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
         look(planes, [[camera, 0.0, 0.0], [lamp, 0.0, 0.0]], "u = [0, 1, 0], v = [0, 0, 1]", expected);
     }
     // In two half spaces at once, of which the way to the lamp leaves one.
-    let wedge = vec![plane(0.0, 1.0), "plane = { point = [0, 0, 0], normal = [0, 1, 0] }".to_owned()];
+    let wedge = vec![plane(0.0, 1.0), GROUND.to_owned()];
     let ways = [[-1.0, -1.0, 0.0], [1.0, -3.0, 0.0]];
     look(&wedge, ways, "u = [1, 1, 0], v = [0, 0, 1]", (-8_f64.sqrt()).exp());
     // Exactly along the surface.

@@ -9,9 +9,13 @@ use abbe::plan::plan;
 use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, comparison, data, visible,
 };
-use abbe::trace::{Method, World, prepare, render};
+use abbe::trace::{Method, prepare, render};
 
-use crate::support::scenes::{EVERY_BRANCH, SINGLE_PATH, body, environment, method, scene, standard_errors, view};
+use crate::support::arrivals::arrival;
+use crate::support::fresnel::reflectances;
+use crate::support::scenes::{
+    EVERY_BRANCH, Mean, SINGLE_PATH, body, environment, film_of, method, scene, standard_errors, view,
+};
 
 const SPACE: ColorSpace = ColorSpace::Rec709;
 
@@ -21,9 +25,7 @@ fn named(kind: fn(&str) -> Option<CurveKind>, name: &str) -> Curve {
 
 /// R and T of a plate in vacuum with all reflections inside, unpolarized at every surface, from Fresnel's equations.
 fn plate(n: f64, cos: f64) -> [f64; 2] {
-    let beyond = (n * n - 1.0 + cos * cos).sqrt() / n;
-    let (s, p) = ((cos - n * beyond) / (cos + n * beyond), (n * cos - beyond) / (n * cos + beyond));
-    let r = 0.5 * (s * s + p * p);
+    let r = 0.5 * reflectances(n, cos).iter().sum::<f64>();
     [2.0 * r / (1.0 + r), (1.0 - r) / (1.0 + r)]
 }
 
@@ -74,19 +76,12 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
             let material = clear(&basis, table.clone());
             for degrees in (0..18).map(|i| f64::from(5 * i)) {
                 let (sin, cos) = libm::sincos(degrees.to_radians());
-                let (wo, normal, present) = (DVec3::new(sin, 0.0, cos), DVec3::Z, draw.start());
+                let wo = DVec3::new(sin, 0.0, cos);
                 let enters = Arrival {
-                    wo,
-                    normal,
-                    uv: [0.0; 2],
-                    draw: &draw,
-                    present,
-                    from_inside: false,
-                    is_alone: false,
-                    incident: Index::Same(1.0),
+                    normal: DVec3::Z,
                     beyond: Index::Own(&table),
                     direction_indices: [Some(1.0), Some(direction)],
-                    together: 0.0,
+                    ..arrival(&draw, wo, 1.0)
                 };
                 let [Some(r), Some(t)] = met(&material, &enters) else { panic!("{} at {degrees}", glass.key) };
                 let leaves = Arrival { wo: -t.wi, ..enters.turned_around() };
@@ -94,7 +89,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                 assert!((out.wi + wo).length() < 1e-12, "{} at {degrees} degrees goes on to {}", glass.key, out.wi);
                 assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
                 let Some(forward) = leaves.forward() else { panic!("{} at {degrees}", glass.key) };
-                for lane in (0..MAX_LANES).filter(|&lane| present[lane] != 0.0) {
+                for lane in (0..MAX_LANES).filter(|&lane| enters.present[lane] != 0.0) {
                     // A photon out of the glass brings what a path into it would find, solid angle for solid angle.
                     let photon = f64::from(out.share[lane] * forward[lane]) / out.eta_scale;
                     assert!((photon / (f64::from(t.share[lane]) / t.eta_scale) - 1.0).abs() < 1e-6);
@@ -128,10 +123,6 @@ fn before_or_behind(glass: &str, reflected: bool) -> String {
         )
 }
 
-fn film(world: &World) -> Film {
-    render(world, &|_| ()).0
-}
-
 #[test]
 fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
     let keys: Vec<&str> = data::glasses().map(|glass| glass.key).step_by(41).collect();
@@ -147,7 +138,7 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
             };
             for lane in (0..basis.lanes()).step_by(if basis.lanes() > 12 { 5 } else { 1 }) {
                 let own = index.bins()[lane];
-                let film = film(&world().with_responses(|response| comparison::only(response, lane)));
+                let (film, _) = render(&world().with_responses(|response| comparison::only(response, lane)), &|_| ());
                 // What the lane is worth: the channel that has most of it, before nothing.
                 let light = Curve::from(1.0);
                 let alone = {
@@ -233,19 +224,17 @@ fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
                 continue;
             }
             let basis = basis.kept_together();
-            let film = film(&prepare(&scene, Method { basis, ..method(&scene, transport) }));
-            let count = film.pixels.len() as f64;
+            let film = film_of(&scene, Method { basis, ..method(&scene, transport) });
             if roughness.is_empty() {
-                let worst = film.pixels.iter().flat_map(|p| p.rgb).map(|x| (x - 1.0).abs()).fold(0.0, f32::max);
+                let off = film.pixels.iter().flat_map(|p| p.rgb).map(|x| (x - 1.0).abs());
+                let worst = off.max_by(f32::total_cmp).expect("a film has pixels");
                 println!("{inner}: an even sky is at most {worst:.1e} off");
                 assert!(worst < 1e-5, "{inner}: {worst}");
                 continue;
             }
-            for band in 0..3 {
-                let of = |pixel: &abbe::film::Pixel| f64::from(pixel.rgb[band]);
-                let mean = film.pixels.iter().map(of).sum::<f64>() / count;
-                let variance = film.pixels.iter().map(|p| (of(p) - mean) * (of(p) - mean)).sum::<f64>() / (count - 1.0);
-                let error = standard_errors(15) * (variance / count).sqrt();
+            let Mean { value, error } = Mean::of(&film);
+            for (band, (mean, error)) in value.into_iter().zip(error).enumerate() {
+                let error = standard_errors(15) * error;
                 assert!((mean - 1.0).abs() < tolerance + error, "{roughness}: {mean} +- {error} in band {band}");
             }
         }
@@ -266,7 +255,7 @@ fn mirror_ball(model: &str) -> (abbe::plan::Plan, Film, Vec<f64>) {
         );
     let scene = scene(&text);
     let plan = plan(&scene);
-    let film = film(&prepare(&scene, plan.method.clone()));
+    let film = film_of(&scene, plan.method.clone());
     let cosines = (0..81).map(|at| {
         let ray = scene.camera.ray(DVec2::new(f64::from(at % 9) + 0.5, f64::from(at / 9) + 0.5));
         let along = -ray.origin.dot(ray.direction);
@@ -385,7 +374,7 @@ fn photons_and_paths_bring_the_same_color_through_glass_whose_lanes_stay_togethe
         let scene = scene(&text);
         let method = plan(&scene).method;
         assert!(method.light_pass.is_some() == (caustics == "auto"), "{:?}", method.light_pass);
-        let film = film(&prepare(&scene, method));
+        let film = film_of(&scene, method);
         let sum = |band: usize| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])).sum::<f64>();
         [sum(0) / sum(1), sum(2) / sum(1)]
     };

@@ -1,5 +1,6 @@
 //! A pane without thickness shows what a plate of glass shows: all reflections between its two sides.
 
+use crate::support::fresnel::reflectances;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 
 /// What comes straight through a pane that is turned by an angle from a screen of radiance 1, or back from one behind
@@ -19,15 +20,11 @@ fn through(material: &str, shape: &str, degrees: f64, wall_behind: bool) -> f64 
     f64::from(image(&text, EVERY_BRANCH).0.pixels[0].rgb[1])
 }
 
-const PANE: &str = "quad = { center = [0, 0, 0], u = [50, 0, 0], v = [0, 50, 0] }";
-
-/// Reflectances of s and p of a surface from vacuum to an index, straight from Fresnel's equations.
-fn fresnel(n: f64, degrees: f64) -> [f64; 2] {
-    let cos = libm::cos(degrees.to_radians());
-    let beyond = (n * n - 1.0 + cos * cos).sqrt() / n;
-    let (s, p) = ((cos - n * beyond) / (cos + n * beyond), (n * cos - beyond) / (n * cos + beyond));
-    [s * s, p * p]
+fn cosine(degrees: f64) -> f64 {
+    libm::cos(degrees.to_radians())
 }
+
+const PANE: &str = "quad = { center = [0, 0, 0], u = [50, 0, 0], v = [0, 50, 0] }";
 
 /// (1 - R) / (1 + R) of s and of p, by the exact Fresnel equations for n = 1.5 and N-BK7's n_d.
 #[test]
@@ -35,7 +32,7 @@ fn a_pane_lets_through_what_all_its_reflections_leave_of_each_polarization() {
     for n in [1.5, 1.5168, 2.5] {
         for degrees in [0.0, 10.0, 30.0, 45.0, 56.31, 60.0, 70.0, 75.0, 85.0] {
             let pane = format!("thin = {{ index = {n} }}");
-            let [s, p] = fresnel(n, degrees).map(|r| (1.0 - r) / (1.0 + r));
+            let [s, p] = reflectances(n, cosine(degrees)).map(|r| (1.0 - r) / (1.0 + r));
             let found = through(&pane, PANE, degrees, true);
             assert!((found - 0.5 * (s + p)).abs() < 1e-6, "{n} at {degrees} degrees: {found}");
         }
@@ -52,7 +49,7 @@ fn a_tinted_pane_at_any_angle_is_the_sum_of_its_reflections() {
             let terms = (0..2000).map(|m| (r * t).powi(2 * m));
             (1.0 - r) * (1.0 - r) * t * terms.sum::<f64>()
         };
-        let surface = fresnel(1.52, degrees);
+        let surface = reflectances(1.52, cosine(degrees));
         let [s, p] = surface.map(series);
         let material = format!("thin = {{ index = 1.52, transmittance = {t} }}");
         let found = through(&material, PANE, degrees, true);

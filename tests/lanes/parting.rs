@@ -3,7 +3,9 @@
 use abbe::film::Film;
 use abbe::trace::Transport;
 
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, image, images_from, standard_errors, view};
+use crate::support::scenes::{
+    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, films_of, image, method, scene, standard_errors, view,
+};
 
 /// A ball and a prism of some glass among other things: what the scenes of this folder share.
 pub const BALL_AND_PRISM: &str = r#"[[object]]
@@ -88,9 +90,9 @@ fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
     const BLOCKS: u32 = 5;
     let floor = "diffuse.reflectance.rgb = [0.7, 0.6, 0.5]";
     for transport in [SPLITTING, SINGLE_PATH] {
-        let films = |index: &str, first: u64| -> Vec<Film> {
-            let text = text(index, floor, "box", BLOCK * BLOCKS);
-            images_from(&text, transport, first, SEEDS).into_iter().map(|(film, _)| film).collect()
+        let films = |index: &str, first: u64| {
+            let scene = scene(&text(index, floor, "box", BLOCK * BLOCKS));
+            films_of(&scene, &method(&scene, transport), first..first + SEEDS)
         };
         let parted = films(&index_per_band(), 0);
         for (band, index) in INDICES.into_iter().enumerate() {
@@ -100,7 +102,7 @@ fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
                 let of = |films: &[Film]| {
                     let blocks: Vec<Film> =
                         films.iter().map(|film| block(film, place % BLOCKS, place / BLOCKS)).collect();
-                    let mean = Mean::over_seeds(blocks.iter());
+                    let mean = Mean::over_seeds(&blocks);
                     (mean.value[band], mean.error[band])
                 };
                 let ((a, error_a), (b, error_b)) = (of(&parted), of(&flat));

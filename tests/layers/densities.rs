@@ -6,7 +6,7 @@ use abbe::material::{Material, Scatter};
 use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 
-use super::arrivals::{NORMAL, arrival, material, toward};
+use crate::support::arrivals::{NORMAL, arrival, material, toward};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 

@@ -3,7 +3,7 @@
 use abbe::material::{Interface, Material, Scatter, diffuse_transmittance};
 use abbe::spectrum::{Draw, Table};
 
-use super::arrivals::{arrival, material, points, toward};
+use crate::support::arrivals::{self, PARTS, arrival, material, toward};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
@@ -13,16 +13,7 @@ const DRAWS: u32 = 1 << 14;
 /// What a material shows of an even environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    let arrival = arrival(&draw, toward(cos, 0.4), index);
-    let (mut sum, mut branches) = ([0.0; 3], Vec::new());
-    for u in points(DRAWS) {
-        material.scatter(&arrival, u, &mut branches);
-        for branch in branches.drain(..) {
-            (0..3).for_each(|lane| sum[lane] += f64::from(branch.share[lane]) / f64::from(DRAWS));
-        }
-    }
-    let straight = material.straight(&arrival).map_or([0.0; 4], |straight| straight.share().0.map(f64::from));
-    [0, 1, 2].map(|lane| sum[lane] + straight[lane])
+    arrivals::furnace(material, &arrival(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -146,7 +137,7 @@ fn lossless_balls_are_invisible_in_an_even_environment() {
         for transport in [SINGLE_PATH, SPLITTING] {
             let text = view([0.0, 0.0, 9.0], [0.0; 3], 16.0, 32)
                 + "[render]\nsamples = 256\n"
-                + super::arrivals::PARTS
+                + PARTS
                 + &body("tested", material, &[ball])
                 + &environment(1.0);
             let mean = Mean::of(&image(&text, transport).0);
@@ -159,7 +150,7 @@ fn lossless_balls_are_invisible_in_an_even_environment() {
     }
     // Nothing that is left to chance: white and mirror in equal parts, lit from nowhere else.
     let mirrors = "mix = { materials = [\"mirror\", \"pane\"], amount = 0.25 }";
-    let text = view([0.0, 0.0, 9.0], [0.0; 3], 10.0, 8) + super::arrivals::PARTS + &body("tested", mirrors, &[ball]);
+    let text = view([0.0, 0.0, 9.0], [0.0; 3], 10.0, 8) + PARTS + &body("tested", mirrors, &[ball]);
     let (film, report) = image(&(text + &environment(1.0)), EVERY_BRANCH);
     let even = film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| (x - 1.0).abs() < 1e-5));
     assert!(even && report.dropped < 1e-6, "{report:?}");

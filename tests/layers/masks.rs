@@ -1,11 +1,11 @@
 //! What masks let through: rays from the camera, light from lamps, and paths between surfaces.
 
 use abbe::film::Film;
-use abbe::trace::Transport;
 
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, image, images, view};
+use crate::support::scenes::{
+    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_aimed_at_as_met, body, image, lamps, view,
+};
 
-const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
 const SHEET: &str = "quad = { center = [0, 1, 0], u = [40, 0, 0], v = [0, 0, 40] }";
 const POINT: &str = "[[light]]\npoint = { position = [0.3, 3, 0.2], intensity = 10 }\n";
 const SUN: &str = "[[light]]\nsun = { toward = [0.2, 1, 0.1], irradiance = 3 }\n";
@@ -17,17 +17,13 @@ const SKY: &str = "[[light]]\nenvironment = { radiance = 2 }\n";
 fn under(sheet: &str, lights: &str, samples: u32) -> String {
     view([3.0, 0.8, 0.5], [0.0, 0.0, 0.0], 20.0, 12)
         + &format!("[render]\nsamples = {samples}\n[material.black]\ndiffuse = {{ reflectance = 0 }}\n")
-        + &body("floor", "diffuse = { reflectance = { rgb = [0.8, 0.5, 0.3] } }", &[FLOOR])
+        + &body("floor", "diffuse = { reflectance = { rgb = [0.8, 0.5, 0.3] } }", &[GROUND])
         + sheet
         + lights
 }
 
 fn masked(material: &str, opacity: &str) -> String {
     body("sheet", &format!("mask = {{ material = \"{material}\", opacity = {opacity} }}"), &[SHEET])
-}
-
-fn mean(text: &str, transport: Transport) -> Mean {
-    Mean::over_seeds(images(text, transport, 8).iter().map(|(film, _)| film))
 }
 
 /// Largest difference of two films, relative to their brightest number.
@@ -60,15 +56,12 @@ fn lights_shine_through_holes_in_the_share_that_is_open() {
     let opacity = "{ rgb = [0.25, 0.5, 0.9] }";
     for (name, lights) in [("point", POINT), ("sun", SUN), ("lamp", LAMP)] {
         for transport in [SINGLE_PATH, SPLITTING] {
-            let open = mean(&under("", lights, 64), transport);
-            let mut through = mean(&under(&masked("black", opacity), lights, 256), transport);
-            let expected = [0, 1, 2].map(|band| open.value[band] * [0.75, 0.5, 0.1][band]);
-            for (band, share) in [0.75, 0.5, 0.1].into_iter().enumerate() {
-                through.error[band] = libm::hypot(through.error[band], share * open.error[band]);
-            }
+            let expected = Mean::rendered(&under("", lights, 64), transport, 8).times([0.75, 0.5, 0.1]);
+            let through = Mean::rendered(&under(&masked("black", opacity), lights, 256), transport, 8);
+            let through = through.beside(&expected);
             println!("{name}: {through:.5?} for {expected:.5?}");
-            assert!(through.worst_error(expected) < 0.02, "{name}: {through:?}");
-            through.assert_near(expected, 6, name);
+            assert!(through.worst_error(expected.value) < 0.02, "{name}: {through:?}");
+            through.assert_near(expected.value, 6, name);
         }
     }
 }
@@ -77,11 +70,9 @@ fn lights_shine_through_holes_in_the_share_that_is_open() {
 fn two_sheets_let_through_the_product() {
     let second =
         "[[object]]\nshape.quad = { center = [0, 1.5, 0], u = [40, 0, 0], v = [0, 0, 40] }\nmaterial = \"sheet\"\n";
-    let open = mean(&under("", POINT, 16), SPLITTING);
-    let mut through = mean(&under(&(masked("black", "0.4") + second), POINT, 64), SPLITTING);
-    let expected = open.value.map(|x| 0.36 * x);
-    (0..3).for_each(|band| through.error[band] = libm::hypot(through.error[band], 0.36 * open.error[band]));
-    through.assert_near(expected, 1, "two sheets");
+    let expected = Mean::rendered(&under("", POINT, 16), SPLITTING, 8).times([0.36; 3]);
+    let through = Mean::rendered(&under(&(masked("black", "0.4") + second), POINT, 64), SPLITTING, 8);
+    through.beside(&expected).assert_near(expected.value, 1, "two sheets");
 }
 
 #[test]
@@ -92,25 +83,9 @@ fn aiming_through_a_mask_and_meeting_the_lamp_beyond_show_the_same() {
             [material.inner]\ndiffuse = { reflectance = 0.7 }\n";
         under(&(rough.to_owned() + &masked("inner", "0.5")), lamp, 512).replace("\"floor\"\n", "\"gold\"\n")
     };
-    let met = LAMP.replace(
-        "emissive = { radiance = { rgb = [10, 20, 5] } }",
-        "dielectric = { index = 1.5, reflectance = 0, transmittance = 0, emission = { rgb = [10, 20, 5] } }",
-    );
-    let met = met.replace("quad = { center = [0, 2, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }", BALL);
-    let aimed = LAMP.replace("quad = { center = [0, 2, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }", BALL);
-    let by_chance = mean(&sheet(&met), SINGLE_PATH);
-    for transport in [SINGLE_PATH, SPLITTING] {
-        let mut aimed = mean(&sheet(&aimed), transport);
-        println!("{aimed:.5?} for {by_chance:.5?}");
-        for band in 0..3 {
-            aimed.error[band] = libm::hypot(aimed.error[band], by_chance.error[band]);
-        }
-        assert!(aimed.worst_error(by_chance.value) < 0.02, "{aimed:?}");
-        aimed.assert_near(by_chance.value, 2, "through a mask");
-    }
+    let [aimed_at, met] = lamps(&["sphere = { center = [0, 2.2, 0], radius = 0.8 }"]).map(|lamp| sheet(&lamp));
+    assert_aimed_at_as_met([&aimed_at, &met], 8, 0.02, 2, "through a mask");
 }
-
-const BALL: &str = "sphere = { center = [0, 2.2, 0], radius = 0.8 }";
 
 #[test]
 fn a_hole_before_the_camera_leaves_no_trace_in_alpha_and_depth() {
@@ -136,10 +111,9 @@ fn a_hole_before_the_camera_leaves_no_trace_in_alpha_and_depth() {
 #[test]
 fn holes_are_no_bounces() {
     let text = under(&masked("black", "0.5"), LAMP, 64).replace("[render]\n", "[render]\nmax_bounces = 1\n");
-    let all = mean(&under(&masked("black", "0.5"), LAMP, 64), SPLITTING);
-    let mut one = mean(&text, SPLITTING);
-    (0..3).for_each(|band| one.error[band] = libm::hypot(one.error[band], all.error[band]));
-    one.assert_near(all.value, 1, "one bounce lights the floor through the sheet");
+    let all = Mean::rendered(&under(&masked("black", "0.5"), LAMP, 64), SPLITTING, 8);
+    let one = Mean::rendered(&text, SPLITTING, 8);
+    one.beside(&all).assert_near(all.value, 1, "one bounce lights the floor through the sheet");
 }
 
 #[test]

@@ -5,10 +5,8 @@ use std::f64::consts::PI;
 use abbe::math::DVec3;
 use abbe::trace::{LightPass, MapPasses, Method, Sunlit, World};
 
-use super::{
-    LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, quad, room, screen, smooth, walls,
-};
-use crate::support::scenes::{body, environment, view};
+use super::{LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, room, screen, smooth, walls};
+use crate::support::scenes::{body, environment, quad, view};
 
 const SUN: &str = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = { rgb = [15, 13, 10] } }\n";
 

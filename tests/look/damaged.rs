@@ -7,22 +7,19 @@ mod corpus;
 #[path = "../fuzz/mutate.rs"]
 mod mutate;
 
-use std::fs;
-
 use abbe::Error;
 use abbe::film::ExrFile;
 use exr::meta::MetaData;
 use exr::prelude::Compression;
 
 use super::files::{Exr, ramp};
-use crate::messages::run::Folder;
 use crate::support::pictures;
+use crate::support::run::Folder;
 
 /// Reads damaged bytes; looks at all that a file says where they are still one.
 fn look(folder: &Folder, bytes: &[u8]) -> Result<(), String> {
-    let path = folder.path().join("case.exr");
-    fs::write(&path, bytes).expect("files can be written");
-    match ExrFile::read(&path) {
+    folder.write("case.exr", bytes);
+    match ExrFile::read(&folder.path_of("case.exr")) {
         Ok(file) => {
             for layer in file.layers() {
                 layer.channels.iter().for_each(|channel| assert!(channel.statistics().finite <= 1 << 20));
@@ -45,8 +42,7 @@ fn layered() -> Exr {
 fn files_that_are_cut_off_anywhere_are_refused() {
     let folder = Folder::new();
     for image in [ramp(), layered()] {
-        image.write(&folder.path().join("whole.exr"));
-        let whole = fs::read(folder.path().join("whole.exr")).expect("it is there");
+        let whole = image.bytes();
         assert_eq!(look(&folder, &whole), Ok(()));
         for length in 0..whole.len() {
             assert!(look(&folder, &whole[..length]).is_err(), "{length} of {} bytes", whole.len());
@@ -58,8 +54,7 @@ fn files_that_are_cut_off_anywhere_are_refused() {
 fn files_with_changed_bytes_are_read_or_refused() {
     let folder = Folder::new();
     for image in [ramp(), layered()] {
-        image.write(&folder.path().join("whole.exr"));
-        let whole = fs::read(folder.path().join("whole.exr")).expect("it is there");
+        let whole = image.bytes();
         let mut refused = 0;
         for at in 4..whole.len() {
             for value in [0, 255, whole[at] ^ 128, whole[at].wrapping_add(1)] {
@@ -91,8 +86,7 @@ fn a_block_that_claims_more_than_the_image_is_refused_before_memory_is_asked_for
     let values: Vec<f32> = (0..4096).map(|i| 0.01 * (i % 64) as f32).collect();
     let channels = ["R", "G", "B"].map(|name| (name, values.clone())).to_vec();
     let image = Exr { compression: Compression::DWAA(None), half: true, ..Exr::new([64, 64], channels) };
-    image.write(&folder.path().join("whole.exr"));
-    let whole = fs::read(folder.path().join("whole.exr")).expect("it is there");
+    let whole = image.bytes();
     assert_eq!(look(&folder, &whole), Ok(()));
     let mut rest = std::io::Cursor::new(&whole);
     MetaData::read_from_buffered(&mut rest, false).expect("it has a head");
@@ -110,8 +104,7 @@ fn a_block_that_claims_more_than_the_image_is_refused_before_memory_is_asked_for
 #[test]
 fn channels_in_half_the_size_are_told_of_as_what_they_are() {
     let folder = Folder::new();
-    ramp().write(&folder.path().join("whole.exr"));
-    let mut bytes = fs::read(folder.path().join("whole.exr")).expect("it is there");
+    let mut bytes = ramp().bytes();
     let name = b"channels\0chlist\0";
     let list = bytes.windows(name.len()).position(|window| window == name).expect("channels") + name.len() + 4;
     // Behind the first channel's name of one letter: its type, 4 bytes, and steps along both axes.
@@ -126,8 +119,7 @@ fn channels_in_half_the_size_are_told_of_as_what_they_are() {
 #[test]
 fn a_size_that_no_such_file_can_have_is_refused_before_memory_is_asked_for() {
     let folder = Folder::new();
-    ramp().write(&folder.path().join("whole.exr"));
-    let mut bytes = fs::read(folder.path().join("whole.exr")).expect("it is there");
+    let mut bytes = ramp().bytes();
     for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
         let at = bytes.windows(name.len()).position(|window| window == name).expect("a window") + name.len() + 4;
         bytes[at + 8..at + 12].copy_from_slice(&15_999_i32.to_le_bytes());

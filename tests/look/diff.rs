@@ -1,11 +1,12 @@
 use abbe::film::ExrFile;
 use abbe::look::{Difference, compare};
+use abbe::plan::plan;
 use abbe::{Options, Scene};
 
-use super::assert_refused;
 use super::files::{Exr, ramp};
-use crate::messages::run::{Answer, Folder, render};
 use crate::support::pictures::read_png;
+use crate::support::run::{Answer, Folder, render};
+use crate::support::scenes::{films_of, moments, scene};
 
 /// A lamp above matte balls: noise in nearly every pixel, and a sky without any.
 const SCENE: &str = r#"
@@ -30,22 +31,16 @@ const VARIANCES: [&str; 3] = ["variance.R", "variance.G", "variance.B"];
 
 /// The mean of 16 renders of 2 samples each, with the variance that it has by their spread.
 fn with_variance(first_seed: u64) -> Exr {
-    let scene = Scene::parse(SCENE, "").expect("a scene");
-    let renders: Vec<Vec<[f32; 3]>> = (first_seed..first_seed + 16)
-        .map(|seed| {
-            let options = Options { samples: Some(2), seed: Some(seed), ..Options::default() };
-            abbe::render(&scene, &options).expect("an image").rgb()
-        })
-        .collect();
-    let count = renders[0].len();
+    let mut scene = scene(SCENE);
+    scene.render.samples = Some(2);
+    let films = films_of(&scene, &plan(&scene).method, first_seed..first_seed + 16);
+    let count = films[0].pixels.len();
     let (mut means, mut variances) = (vec![vec![0.0; count]; 3], vec![vec![0.0; count]; 3]);
     for channel in 0..3 {
         for pixel in 0..count {
-            let values: Vec<f64> = renders.iter().map(|image| image[pixel][channel].into()).collect();
-            let mean = values.iter().sum::<f64>() / 16.0;
-            let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+            let (mean, variance) = moments(films.iter().map(|film| f64::from(film.pixels[pixel].rgb[channel])));
             means[channel][pixel] = mean as f32;
-            variances[channel][pixel] = (squares / (15.0 * 16.0)) as f32;
+            variances[channel][pixel] = (variance / 16.0) as f32;
         }
     }
     let mut channels: Vec<_> = COLORS.into_iter().zip(means).collect();
@@ -63,15 +58,15 @@ fn gray() -> Exr {
 }
 
 fn diff(folder: &Folder, a: &Exr, b: &Exr, more: &[&str]) -> Answer {
-    a.write(&folder.path().join("a.exr"));
-    b.write(&folder.path().join("b.exr"));
+    folder.write("a.exr", a.bytes());
+    folder.write("b.exr", b.bytes());
     render(folder, &[&["diff", "a.exr", "b.exr"], more].concat())
 }
 
 fn difference(a: &Exr, b: &Exr) -> Difference {
     let folder = Folder::new();
     diff(&folder, a, b, &[]);
-    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(&folder.path().join(name)).expect("an image"));
+    let [a, b] = ["a.exr", "b.exr"].map(|name| ExrFile::read(&folder.path_of(name)).expect("an image"));
     compare([&a, &b], None, ["a.exr", "b.exr"]).expect("they can be compared")
 }
 
@@ -167,7 +162,7 @@ fn edges_agree_whatever_tells_their_variance() {
     .expect("a scene");
     let folder = Folder::new();
     let file = |seed: u64, options: Options| {
-        let path = folder.path().join(format!("{seed}.exr"));
+        let path = folder.path_of(format!("{seed}.exr"));
         let image = abbe::render(&scene, &Options { seed: Some(seed), ..options }).expect("an image");
         image.write_exr(&path).expect("the folder takes files");
         ExrFile::read(&path).expect("an image")
@@ -196,7 +191,7 @@ fn glass_agrees_with_itself_however_few_samples_there_are() {
     .expect("a scene");
     let folder = Folder::new();
     let file = |samples: u32, seed: u64| {
-        let path = folder.path().join("image.exr");
+        let path = folder.path_of("image.exr");
         let options = Options { samples: Some(samples), seed: Some(seed), ..Options::default() };
         abbe::render(&scene, &options).expect("an image").write_exr(&path).expect("the folder takes files");
         ExrFile::read(&path).expect("an image")
@@ -322,7 +317,7 @@ fn a_layer_is_compared_by_its_name_and_a_picture_shows_where() {
     assert_eq!(answer.code, Some(1), "{}", answer.stderr);
     assert_eq!(answer.stderr, "wrote where.png: white is a difference of 2 or more\n");
     assert!(answer.stdout.contains("\nworst pixel  (1, 1): 1 and 3\n"), "{}", answer.stdout);
-    let picture = read_png(&folder.path().join("where.png"));
+    let picture = read_png(&folder.path_of("where.png"));
     let white: Vec<usize> = (0..8).filter(|&i| picture.pixels[i] == [255; 3]).collect();
     assert_eq!(white, [5]);
 }
@@ -335,7 +330,7 @@ fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
     let answer = diff(&folder, &a, &b, &["--png", "where.png"]);
     assert_eq!(answer.stderr, "wrote where.png: white is what differs and is not finite\n");
     assert!(answer.stdout.contains("\nfirst of them  (2, 1): "), "{}", answer.stdout);
-    let picture = read_png(&folder.path().join("where.png"));
+    let picture = read_png(&folder.path_of("where.png"));
     assert_eq!((0..8).filter(|&i| picture.pixels[i] == [255; 3]).collect::<Vec<_>>(), [6]);
     assert_eq!(
         diff(&folder, &a, &a, &["--png", "same.png"]).stderr,
@@ -345,8 +340,7 @@ fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
 
 #[test]
 fn of_a_crop_the_pixels_that_both_have_are_compared() {
-    let folder = Folder::new();
-    folder.write("room.toml", SCENE);
+    let folder = Folder::with("room.toml", SCENE);
     let made = |name: &str, more: &[&str]| {
         let words = [&["room.toml", "--quiet", "--samples", "16", "--layers", "variance,samples", "--exr", name], more];
         assert_eq!(render(&folder, &words.concat()).code, Some(0));
@@ -367,7 +361,7 @@ fn of_a_crop_the_pixels_that_both_have_are_compared() {
     let noisy = compared("whole.exr", "other.exr");
     assert!(noisy.code == Some(0) && noisy.stdout.starts_with(&format!("whole.exr and other.exr agree {here}\n")));
     assert!(noisy.stdout.contains("\nz "), "{}", noisy.stdout);
-    assert_eq!(read_png(&folder.path().join("where.png")).pixels.len(), 45);
+    assert_eq!(read_png(&folder.path_of("where.png")).pixels.len(), 45);
     let wide = compared("wide.exr", "whole.exr");
     assert!(wide.stdout.starts_with("wide.exr and whole.exr agree in the 32 x 24 pixels at (0, 0)"), "{}", wide.stdout);
     for (other, pixels) in
@@ -385,24 +379,24 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     (crop.corner, crop.full) = ([2, 1], [8, 4]);
     let size = "error: a.exr has 4 x 2 pixels at (0, 0) of 4 x 2, b.exr 4 x 2 pixels at (2, 1) of 8 x 4\n\
                 help: images of one size can be compared where both have pixels\n";
-    assert_refused(&diff(&folder, &ramp(), &crop, &[]), 2, size);
+    diff(&folder, &ramp(), &crop, &[]).assert_refused(2, size);
     let mut aces = ramp();
     aces.texts.push(("colorInteropID", "lin_ap1_scene".into()));
     let space = "error: b.exr has the color space lin_ap1_scene, a.exr no color space, which means lin_rec709_scene\n\
          help: colors of other spaces cannot be compared\n";
     diff(&folder, &ramp(), &aces, &[]);
-    assert_refused(&render(&folder, &["diff", "b.exr", "a.exr", "--png", "c.png"]), 2, space);
+    render(&folder, &["diff", "b.exr", "a.exr", "--png", "c.png"]).assert_refused(2, space);
     let layer = "error: a.exr has no layer Z\nhelp: it has beauty\n";
-    assert_refused(&diff(&folder, &ramp(), &ramp(), &["--layer", "Z"]), 2, layer);
+    diff(&folder, &ramp(), &ramp(), &["--layer", "Z"]).assert_refused(2, layer);
     let tolerance = "error: a tolerance is a finite number, 0 or more\nhelp: for instance: --tolerance 1e-4\n";
     for number in ["-1", "nan", "inf"] {
-        assert_refused(&diff(&folder, &ramp(), &ramp(), &["--tolerance", number]), 2, tolerance);
+        diff(&folder, &ramp(), &ramp(), &["--tolerance", number]).assert_refused(2, tolerance);
     }
     folder.write("b.exr", "no image");
     let broken = "error: cannot read b.exr: it is no complete OpenEXR image (it does not begin as one does)\n";
-    assert_refused(&render(&folder, &["diff", "a.exr", "b.exr", "--png", "c.png"]), 2, broken);
+    render(&folder, &["diff", "a.exr", "b.exr", "--png", "c.png"]).assert_refused(2, broken);
     let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
-    assert_refused(&render(&folder, &["diff", "a.exr", "A.exr"]), 2, missing);
+    render(&folder, &["diff", "a.exr", "A.exr"]).assert_refused(2, missing);
     assert_eq!(render(&folder, &["diff", "a.exr"]).code, Some(2));
     assert_eq!(folder.listing(), ["a.exr", "b.exr"]);
 }

@@ -1,5 +1,6 @@
 //! Small OpenEXR files of every kind.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use exr::meta::attribute::Chromaticities;
@@ -48,6 +49,11 @@ impl Exr {
     }
 
     pub fn write(&self, path: &Path) {
+        std::fs::write(path, self.bytes()).expect("an image can be written");
+    }
+
+    /// The file.
+    pub fn bytes(&self) -> Vec<u8> {
         let layers = self.parts.iter().map(|(name, channels)| {
             let list = channels.iter().map(|(name, values)| AnyChannel {
                 name: Text::from(*name),
@@ -75,7 +81,9 @@ impl Exr {
         let display = IntegerBounds::from_dimensions((self.full[0], self.full[1]));
         let mut image = Image::from_layers(ImageAttributes::new(display), layers.collect::<Layers<_>>());
         image.attributes.chromaticities = self.chromaticities;
-        image.write().non_parallel().to_file(path).expect("an image can be written");
+        let mut bytes = Cursor::new(Vec::new());
+        image.write().non_parallel().to_buffered(&mut bytes).expect("an image can be written");
+        bytes.into_inner()
     }
 }
 

@@ -1,8 +1,5 @@
-use std::fs;
-
-use super::assert_refused;
 use super::files::{Exr, ramp};
-use crate::messages::run::{Folder, render};
+use crate::support::run::{Folder, render};
 
 const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
@@ -31,8 +28,7 @@ fn assert_says(lines: &[String], expected: &[&str]) {
 
 #[test]
 fn a_render_says_its_overscan() {
-    let folder = Folder::new();
-    folder.write("ball.toml", SCENE);
+    let folder = Folder::with("ball.toml", SCENE);
     assert_eq!(render(&folder, &["ball.toml", "--overscan", "4,2,6,5"]).code, Some(0));
     let expected = ["size 12 x 8 pixels", "overscan 22 x 15 pixels are there, (-4, -2) to (17, 12)"];
     assert_says(&lines(&folder, "ball.exr"), &expected);
@@ -40,8 +36,7 @@ fn a_render_says_its_overscan() {
 
 #[test]
 fn a_render_says_size_crop_color_camera_origin_and_channels() {
-    let folder = Folder::new();
-    folder.write("ball.toml", SCENE);
+    let folder = Folder::with("ball.toml", SCENE);
     assert_eq!(render(&folder, &["ball.toml", "--crop", "4,2,6,5"]).code, Some(0));
     let lines = lines(&folder, "ball.exr");
     assert_says(
@@ -71,7 +66,7 @@ fn values_that_are_no_numbers_are_counted_and_left_out() {
     let folder = Folder::new();
     let values = vec![f32::NAN, 1.0, 2.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY];
     let image = Exr::new([3, 2], vec![("Y", values), ("broken.X", vec![f32::NAN; 6])]);
-    image.write(&folder.path().join("a.exr"));
+    folder.write("a.exr", image.bytes());
     assert_says(&lines(&folder, "a.exr"), &["Y Y float 1 1.5 2 2 NaN, 2 infinite", "broken X float - - - 6 NaN"]);
 }
 
@@ -87,7 +82,7 @@ fn overscan_and_parts_of_other_programs_are_told() {
         ("albedo", vec![("R", flat(0.25)), ("G", flat(0.25)), ("B", flat(0.25))]),
         ("depth", vec![("Z", flat(7.0))]),
     ];
-    image.write(&folder.path().join("a.exr"));
+    folder.write("a.exr", image.bytes());
     assert_says(
         &lines(&folder, "a.exr"),
         &[
@@ -108,21 +103,21 @@ fn overscan_and_parts_of_other_programs_are_told() {
 #[test]
 fn a_file_that_cannot_be_read_is_told_in_one_line() {
     let folder = Folder::new();
-    ramp().write(&folder.path().join("ramp.exr"));
+    folder.write("ramp.exr", ramp().bytes());
     folder.write("text.exr", "no image");
     folder.write("empty.exr", "");
-    let whole = fs::read(folder.path().join("ramp.exr")).expect("it is there");
-    fs::write(folder.path().join("half.exr"), &whole[..whole.len() - 20]).expect("files can be written");
+    let whole = folder.read("ramp.exr");
+    folder.write("half.exr", &whole[..whole.len() - 20]);
     let info = |file: &str| render(&folder, &["info", file]);
     let help = "help: an image is an OpenEXR file, such as prism.exr\n";
     let missing = "error: there is no image file rampe.exr\nhelp: did you mean ramp.exr?\n";
-    assert_refused(&info("rampe.exr"), 2, missing);
-    assert_refused(&info("no/a.exr"), 2, &format!("error: there is no image file no/a.exr\n{help}"));
-    assert_refused(&info("."), 2, &format!("error: . is a folder, not an image\n{help}"));
+    info("rampe.exr").assert_refused(2, missing);
+    info("no/a.exr").assert_refused(2, &format!("error: there is no image file no/a.exr\n{help}"));
+    info(".").assert_refused(2, &format!("error: . is a folder, not an image\n{help}"));
     for file in ["text.exr", "empty.exr"] {
         let refusal =
             format!("error: cannot read {file}: it is no complete OpenEXR image (it does not begin as one does)\n");
-        assert_refused(&info(file), 1, &refusal);
+        info(file).assert_refused(1, &refusal);
     }
     let answer = info("half.exr");
     assert_eq!((answer.code, &*answer.stdout), (Some(1), ""));

@@ -1,9 +1,8 @@
 use abbe::film::{Manifest, id};
 
-use super::assert_refused;
 use super::files::Exr;
 use super::view::pixels;
-use crate::messages::run::{Folder, render};
+use crate::support::run::{Folder, render};
 
 /// Four pixels: all ball, half ball and a quarter each of floor and nothing, all of what no name is of, and nothing.
 fn mattes(folder: &Folder) {
@@ -27,7 +26,7 @@ fn mattes(folder: &Folder) {
         ("cryptomatte/3ae39a5/name", "CryptoObject".to_owned()),
         ("cryptomatte/3ae39a5/manifest", manifest.json()),
     ];
-    Exr { texts, ..Exr::new([4, 1], channels) }.write(&folder.path().join("a.exr"));
+    folder.write("a.exr", Exr { texts, ..Exr::new([4, 1], channels) }.bytes());
 }
 
 #[test]
@@ -59,8 +58,7 @@ fn all_mattes_have_colors_of_their_own_by_their_coverage() {
 
 #[test]
 fn mattes_of_a_render_are_shown_by_the_names_of_its_objects() {
-    let folder = Folder::new();
-    folder.write("balls.toml", super::view::SCENE);
+    let folder = Folder::with("balls.toml", super::view::SCENE);
     let set = ["--set", "film.layers=[\"CryptoObject\"]", "--set", "film.multipart=true"];
     let made = render(&folder, &[&["balls.toml", "--exr", "a.exr"], &set[..]].concat());
     assert_eq!(made.code, Some(0), "{}", made.stderr);
@@ -77,9 +75,9 @@ fn a_matte_that_there_is_not_is_refused_with_the_nearest_name() {
     mattes(&folder);
     let view = |arguments: &[&str]| render(&folder, &[&["view", "a.exr", "--png", "b.png"], arguments].concat());
     let near = "error: a.exr has no bal in CryptoObject\nhelp: did you mean ball? it has ball, floor.left\n";
-    assert_refused(&view(&["CryptoObject.bal"]), 2, near);
+    view(&["CryptoObject.bal"]).assert_refused(2, near);
     let tone = "error: --tone is for colors, and CryptoObject has none\nhelp: leave it out\n";
-    assert_refused(&view(&["CryptoObject", "--tone", "hable"]), 2, tone);
+    view(&["CryptoObject", "--tone", "hable"]).assert_refused(2, tone);
     let misspelt = view(&["crptoobject"]);
     let near = "error: a.exr has no layer crptoobject\nhelp: did you mean CryptoObject? it has ";
     assert!(misspelt.code == Some(2) && misspelt.stderr.starts_with(near), "{}", misspelt.stderr);

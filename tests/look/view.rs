@@ -3,10 +3,9 @@ use std::process::Command;
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::Vec2;
 
-use super::assert_refused;
 use super::files::{Exr, ramp};
-use crate::messages::run::{Folder, render};
 use crate::support::pictures::read_png;
+use crate::support::run::{Folder, render};
 
 pub const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
@@ -25,7 +24,7 @@ pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     let answer = render(folder, &[&["view", "a.exr", "--png", "look.png"], arguments].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
     let said = answer.stderr.strip_suffix("wrote look.png\n").expect("the last line").to_owned();
-    (read_png(&folder.path().join("look.png")).pixels, said)
+    (read_png(&folder.path_of("look.png")).pixels, said)
 }
 
 /// Color, two normals, a position, a depth and a label of two pixels.
@@ -37,16 +36,15 @@ fn layers(folder: &Folder) {
     channels.extend([("Nd.X", vec![0.0, -1.0]), ("Nd.Y", vec![0.0, 1.0]), ("Nd.Z", vec![1.0, 0.0])]);
     channels.extend([("P.X", vec![5.0, 7.0]), ("P.Y", vec![f32::NAN, 1.0])]);
     channels.extend([("albedo.R", vec![1.0, 0.0]), ("albedo.G", vec![0.0; 2]), ("albedo.B", vec![0.0; 2])]);
-    Exr::new([2, 1], channels).write(&folder.path().join("a.exr"));
+    folder.write("a.exr", Exr::new([2, 1], channels).bytes());
 }
 
 #[test]
 fn a_picture_of_an_image_is_the_one_that_its_render_writes() {
-    let folder = Folder::new();
-    folder.write("ball.toml", SCENE);
+    let folder = Folder::with("ball.toml", SCENE);
     assert_eq!(render(&folder, &["ball.toml", "--exr", "a.exr", "--png", "b.png", "--exposure", "-1"]).code, Some(0));
     pixels(&folder, &["--exposure", "-1"]);
-    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("it is there");
+    let read = |name: &str| folder.read(name);
     assert!(read("look.png") == read("b.png"));
 }
 
@@ -74,7 +72,7 @@ fn each_layer_is_shown_as_what_it_is() {
 #[test]
 fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
     let folder = Folder::new();
-    Exr::new([2, 1], vec![("Y", vec![1.0, 3.0])]).write(&folder.path().join("a.exr"));
+    folder.write("a.exr", Exr::new([2, 1], vec![("Y", vec![1.0, 3.0])]).bytes());
     let (shown, said) = pixels(&folder, &[]);
     assert_eq!(shown, [[0; 3], [255; 3]]);
     assert!(said.starts_with("there are no R, G and B: this is Y\nY: black is 1.0, white 3.0, "), "{said}");
@@ -83,7 +81,7 @@ fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
 #[test]
 fn a_gray_comes_before_its_alpha_and_small_letters_are_colors() {
     let folder = Folder::new();
-    let path = folder.path().join("a.exr");
+    let path = folder.path_of("a.exr");
     Exr::new([2, 1], vec![("A", vec![1.0; 2]), ("Y", vec![1.0, 3.0])]).write(&path);
     let (shown, said) = pixels(&folder, &[]);
     assert_eq!(shown, [[0; 3], [255; 3]]);
@@ -108,7 +106,7 @@ fn a_tone_is_chosen_by_name() {
 #[test]
 fn colors_of_any_space_are_brought_to_rec709() {
     let folder = Folder::new();
-    let path = folder.path().join("a.exr");
+    let path = folder.path_of("a.exr");
     // A green of Rec.2020 is outside of Rec.709: all but green is clipped to 0.
     let green = Exr::new([1, 1], vec![("R", vec![0.0]), ("G", vec![0.2]), ("B", vec![0.0])]);
     let rec2020 = Chromaticities {
@@ -140,7 +138,7 @@ fn colors_of_any_space_are_brought_to_rec709() {
 #[test]
 fn without_a_terminal_pixels_are_halves_of_characters_in_so_many_columns() {
     let folder = Folder::new();
-    ramp().write(&folder.path().join("a.exr"));
+    folder.write("a.exr", ramp().bytes());
     let answer = render(&folder, &["view", "a.exr"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
     assert_eq!(answer.stdout.matches('▀').count(), 4);
@@ -162,21 +160,21 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     let view = |arguments: &[&str]| render(&folder, &[&["view"], arguments].concat());
     let has = "it has beauty, Z, N, Nd, P, albedo\n";
     let refusal = format!("error: a.exr has no layer albdo\nhelp: did you mean albedo? {has}");
-    assert_refused(&view(&["a.exr", "albdo", "--png", "b.png"]), 2, &refusal);
-    assert_refused(&view(&["a.exr", "variance"]), 2, &format!("error: a.exr has no layer variance\nhelp: {has}"));
+    view(&["a.exr", "albdo", "--png", "b.png"]).assert_refused(2, &refusal);
+    view(&["a.exr", "variance"]).assert_refused(2, &format!("error: a.exr has no layer variance\nhelp: {has}"));
     let png = "error: --png writes a file that ends in .png, not b.jpg\nhelp: for instance: --png look.png\n";
-    assert_refused(&view(&["a.exr", "--png", "b.jpg"]), 2, png);
+    view(&["a.exr", "--png", "b.jpg"]).assert_refused(2, png);
     let exposure = "error: an exposure is a finite number of stops\nhelp: for instance: --exposure 1\n";
-    assert_refused(&view(&["a.exr", "--exposure", "nan"]), 2, exposure);
+    view(&["a.exr", "--exposure", "nan"]).assert_refused(2, exposure);
     let depth = "error: --exposure is for colors, and Z has none\nhelp: leave it out\n";
-    assert_refused(&view(&["a.exr", "Z", "--exposure", "1"]), 2, depth);
+    view(&["a.exr", "Z", "--exposure", "1"]).assert_refused(2, depth);
     let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
-    assert_refused(&view(&["A.exr", "--png", "b.png"]), 2, missing);
+    view(&["A.exr", "--png", "b.png"]).assert_refused(2, missing);
     assert_eq!(view(&["a.exr", "--png", "b.png", "--sixel"]).code, Some(2));
     let place = "error: cannot write a.exr/b.png: a file stands where its folder should be\n";
-    assert_refused(&view(&["a.exr", "--png", "a.exr/b.png"]), 1, place);
-    std::fs::copy(folder.path().join("a.exr"), folder.path().join("a.png")).expect("files can be copied");
+    view(&["a.exr", "--png", "a.exr/b.png"]).assert_refused(1, place);
+    std::fs::copy(folder.path_of("a.exr"), folder.path_of("a.png")).expect("files can be copied");
     let itself = "error: a.png is the image itself\nhelp: name another file\n";
-    assert_refused(&view(&["a.png", "--png", "a.png"]), 2, itself);
+    view(&["a.png", "--png", "a.png"]).assert_refused(2, itself);
     assert_eq!(folder.listing(), ["a.exr", "a.png"]);
 }

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use abbe::math::{DVec3, Ray, Transform};
-use abbe::scene::Source;
 use abbe::shape::{Mesh, Shape, Vertices, read_mesh, read_smooth_mesh};
 
 use crate::support::random::Random;
+use crate::support::run::Folder;
+use crate::support::scenes::scene_in;
 
 /// A pyramid over a square, its base cut into two triangles. No coordinate is exact in 32 bits.
 pub const POINTS: [[f64; 3]; 5] =
@@ -20,11 +21,10 @@ pub fn triangles(single: bool) -> Vec<[DVec3; 3]> {
     FACES.map(|face| face.map(|corner| DVec3::from(POINTS[corner as usize].map(round)))).to_vec()
 }
 
-/// A folder with one file in it.
-pub fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join(name);
-    std::fs::write(&path, bytes).expect("the file can be written");
+/// A folder with one file in it, and its path.
+pub fn file(name: &str, bytes: impl AsRef<[u8]>) -> (Folder, PathBuf) {
+    let folder = Folder::with(name, bytes);
+    let path = folder.path_of(name);
     (folder, path)
 }
 
@@ -99,7 +99,7 @@ fn strips_of_a_ply_are_cut_into_triangles() {
     let vertices = POINTS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
     // The second one goes back to where it was without a triangle.
     let strips = "8 0 3 2 -1 2 1 0 4\n13 1 2 4 3 -1 -7 0 4 3 -1 4 4 0\n";
-    let (_folder, path) = file("a.ply", (header.replace("uchar int", "int int") + &vertices + strips).as_bytes());
+    let (_folder, path) = file("a.ply", header.replace("uchar int", "int int") + &vertices + strips);
     let expected = [[0, 3, 2], [2, 1, 0], [0, 1, 4], [1, 2, 4], [4, 2, 3], [0, 4, 3]];
     assert_eq!(read_mesh(&path).expect("strips").faces, expected);
 }
@@ -107,7 +107,7 @@ fn strips_of_a_ply_are_cut_into_triangles() {
 #[test]
 fn what_a_ply_cannot_say_with_its_faces_is_told() {
     let refusal = |from: &str, to: &str| {
-        let (_folder, path) = file("a.ply", ply_text().replace(from, to).as_bytes());
+        let (_folder, path) = file("a.ply", ply_text().replace(from, to));
         read_mesh(&path).err().unwrap_or_default()
     };
     let list = "list uchar int vertex_indices";
@@ -121,7 +121,7 @@ fn what_a_ply_cannot_say_with_its_faces_is_told() {
         "the file holds no faces"
     );
     let header = ply_header("binary_little_endian", "float", "int").replace("uchar int", "int int");
-    let (_folder, path) = file("a.ply", &[header.as_bytes(), &[0; 13 * 5], &[255; 4 * 4 * 5]].concat());
+    let (_folder, path) = file("a.ply", [header.as_bytes(), &[0; 13 * 5], &[255; 4 * 4 * 5]].concat());
     let told = read_mesh(&path).err();
     assert_eq!(told.as_deref(), Some("its bytes do not fit a PLY file with this header"));
     for name in ["a.ply", "a.obj", "a.glb"] {
@@ -183,7 +183,7 @@ fn an_obj_far_from_the_origin_is_as_exact_as_near_it() {
     let faces = "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
     for (far, is_rounded) in [(0.0, true), (1e7 + 0.1, false)] {
         let text = POINTS.map(|[x, y, z]| format!("v {} {y} {z}\n", x + far)).concat() + faces;
-        let (_folder, path) = file("far.obj", text.as_bytes());
+        let (_folder, path) = file("far.obj", text);
         let mesh = read_mesh(&path).expect("it is right");
         assert_eq!(matches!(mesh.vertices, Vertices::Single(_)), is_rounded);
         for [x, y, z] in POINTS {
@@ -215,7 +215,7 @@ fn broken_obj_files_are_refused_with_the_line() {
         ("f 1/1/", "f 1/2/", "the face in line 6 asks for a texture coordinate that the file does not have"),
         ("f 1/1/1", "f 1/1/-2", "the face in line 6 asks for a normal that the file does not have"),
     ] {
-        let (_folder, path) = file("a.obj", good.replace(old, new).as_bytes());
+        let (_folder, path) = file("a.obj", good.replace(old, new));
         assert_eq!(read_smooth_mesh(&path).err().unwrap_or_default(), message, "{new}");
         // Normals that are not used may be anything, as for faces without area.
         let is_of_normal = message.starts_with("the normal");
@@ -251,15 +251,13 @@ fn faces_that_are_not_convex_cover_their_area_once() {
 
 /// The warnings of a scene that holds nothing but a mesh file of some material.
 fn warnings(name: &str, bytes: &[u8], material: &str) -> Vec<String> {
-    let (folder, _path) = file(name, bytes);
+    let folder = Folder::with(name, bytes);
     let text = format!(
         "camera = {{ position = [0, 1, 5], look_at = [0, 0, 0], vertical_fov = 40 }}\n\
          film = {{ width = 4, height = 4 }}\nlight = [{{ environment.radiance = 1 }}]\nmaterial.stuff.{material}\n\
          [[object]]\nname = \"pyramid\"\nshape.mesh.file = \"{name}\"\nmaterial = \"stuff\"\n"
     );
-    let source = Source { path: folder.path().join("scene.toml"), text };
-    let scene = source.compile();
-    scene.unwrap_or_else(|error| panic!("{error}")).warnings
+    scene_in(folder.path(), &text).warnings
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use abbe::math::{DVec3, Transform};
 use abbe::shape::{Mesh, read_mesh};
+use base64::prelude::*;
 
 use super::files::{FACES, POINTS, file, read, triangles};
 use crate::support::random::Random;
@@ -11,19 +12,6 @@ fn binary(width: usize) -> Vec<u8> {
     let points = POINTS.iter().flatten().flat_map(|&x| (x as f32).to_le_bytes());
     let corners = FACES.iter().flatten().flat_map(|corner| corner.to_le_bytes()[..width].to_vec());
     points.chain(corners).collect()
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let group = |three: &[u8]| {
-        let bits = three.iter().fold(0_u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - three.len()));
-        let digit = |place: usize| match place <= three.len() {
-            true => char::from(DIGITS[(bits >> (18 - 6 * place)) as usize & 63]),
-            false => '=',
-        };
-        (0..4).map(digit).collect::<String>()
-    };
-    bytes.chunks(3).map(group).collect()
 }
 
 /// A document of the pyramid, with `uri` as the address of its buffer and further text for its nodes.
@@ -42,7 +30,7 @@ fn document(uri: &str, width: usize, node: &str) -> String {
 }
 
 fn embedded(width: usize) -> String {
-    format!(r#""uri":"data:application/octet-stream;base64,{}","#, base64(&binary(width)))
+    format!(r#""uri":"data:application/octet-stream;base64,{}","#, BASE64_STANDARD.encode(binary(width)))
 }
 
 fn glb(json: &str, binary: &[u8]) -> Vec<u8> {
@@ -61,7 +49,7 @@ fn every_way_to_store_a_gltf_gives_the_same_triangles() {
     for width in [1, 2, 4] {
         assert_eq!(read("a.gltf", document(&embedded(width), width, "").as_bytes()).0, triangles(true));
         assert_eq!(read("a.glb", &glb(&document("", width, ""), &binary(width))).0, triangles(true));
-        let (folder, path) = file("a.GLTF", document(r#""uri":"a%20b.bin","#, width, "").as_bytes());
+        let (folder, path) = file("a.GLTF", document(r#""uri":"a%20b.bin","#, width, ""));
         std::fs::write(folder.path().join("a b.bin"), binary(width)).expect("the file can be written");
         let mesh = read_mesh(&path).expect("a glTF file");
         assert_eq!(mesh.faces, FACES);
@@ -73,13 +61,13 @@ fn every_way_to_store_a_gltf_gives_the_same_triangles() {
 fn strips_fans_and_bare_points_become_triangles() {
     let with_mode = |mode: u32, corners: &[u8]| {
         let bytes = [&binary(1)[..60], corners].concat();
-        let uri = format!(r#""uri":"data:;base64,{}","#, base64(&bytes));
+        let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode(&bytes));
         let text = document(&uri, 1, "").replace(r#""indices":1"#, &format!(r#""indices":1,"mode":{mode}"#));
         let count = corners.len();
         let text = text
             .replace("18,", &format!("{count},"))
             .replace(r#""byteLength":18"#, &format!(r#""byteLength":{count}"#));
-        let (_folder, path) = file("a.gltf", text.replace(r#""byteLength":78"#, r#""byteLength":60"#).as_bytes());
+        let (_folder, path) = file("a.gltf", text.replace(r#""byteLength":78"#, r#""byteLength":60"#));
         read_mesh(&path).map(|mesh| mesh.faces)
     };
     assert_eq!(with_mode(5, &[0, 1, 2, 3, 4]).expect("a strip"), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
@@ -95,7 +83,7 @@ fn sparse_entries_replace_those_of_the_view() {
     // Corners 1 and 4 are those of corners 4 and 1.
     let swapped = [POINTS[4], POINTS[1]].into_iter().flatten().flat_map(|x| (x as f32).to_le_bytes());
     let bytes: Vec<u8> = binary(1).into_iter().chain([1, 4]).chain(swapped).collect();
-    let uri = format!(r#""uri":"data:;base64,{}","#, base64(&bytes));
+    let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode(&bytes));
     let sparse = r#""type":"VEC3","sparse":{"count":2,"indices":{"bufferView":2,"componentType":5121},"values":{"bufferView":3}}"#;
     let text = document(&uri, 1, "").replace(r#""type":"VEC3""#, sparse).replace(
         r#""byteLength":18}]"#,
@@ -112,7 +100,7 @@ fn sparse_entries_without_a_view_replace_zeros() {
     // The base stays where it is, and the tip is at 0.
     let points = POINTS[..4].iter().flatten().flat_map(|&x| (x as f32).to_le_bytes());
     let bytes: Vec<u8> = binary(1).into_iter().chain([0, 1, 2, 3]).chain(points).collect();
-    let uri = format!(r#""uri":"data:;base64,{}","#, base64(&bytes));
+    let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode(&bytes));
     let sparse = r#"{"componentType":5126,"count":5,"type":"VEC3","sparse":{"count":4,"indices":{"bufferView":2,"componentType":5121},"values":{"bufferView":3}}}"#;
     let text =
         document(&uri, 1, "").replace(r#"{"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"}"#, sparse);
@@ -125,7 +113,7 @@ fn sparse_entries_without_a_view_replace_zeros() {
     };
     assert_eq!(read("a.gltf", text.as_bytes()).0, FACES.map(|face| face.map(point)));
     let countless = text.replace(r#""count":5"#, r#""count":1000000000000"#);
-    let (_folder, path) = file("a.gltf", countless.as_bytes());
+    let (_folder, path) = file("a.gltf", countless);
     let message = read_mesh(&path).err();
     assert_eq!(message.as_deref(), Some("accessor 0 has more entries than the buffers have bytes"));
 }
@@ -134,9 +122,9 @@ fn sparse_entries_without_a_view_replace_zeros() {
 fn copies_that_only_an_extension_tells_of_are_said_to_be_ignored() {
     let used = r#""scene":0,"extensionsUsed":["KHR_materials_ior","EXT_mesh_gpu_instancing"]"#;
     let text = document(&embedded(1), 1, "");
-    let (_folder, path) = file("a.gltf", text.replace(r#""scene":0"#, used).as_bytes());
+    let (_folder, path) = file("a.gltf", text.replace(r#""scene":0"#, used));
     assert_eq!(read_mesh(&path).expect("a glTF file").ignored, ["copies by EXT_mesh_gpu_instancing"]);
-    let (_folder, path) = file("a.gltf", text.as_bytes());
+    let (_folder, path) = file("a.gltf", text);
     assert_eq!(read_mesh(&path).expect("a glTF file").ignored, [""; 0]);
 }
 
@@ -145,7 +133,7 @@ fn a_matrix_of_a_node_may_have_the_rounding_of_32_bits() {
     let text =
         |last: &str| document(&embedded(1), 1, &format!(r#","matrix":[1,0,0,0,0,1,0,1e-9,0,0,1,0,0,0,0,{last}]"#));
     assert_eq!(read("a.gltf", text("1.0000001").as_bytes()).0, triangles(true));
-    let (_folder, path) = file("a.gltf", text("1.00001").as_bytes());
+    let (_folder, path) = file("a.gltf", text("1.00001"));
     assert_eq!(read_mesh(&path).err().as_deref(), Some("the matrix of node 0 is not affine"));
 }
 
@@ -202,7 +190,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
     ];
     for (old, new, message) in cases {
         assert!(good.contains(old), "{old}");
-        let (_folder, path) = file("a.gltf", good.replacen(old, new, 1).as_bytes());
+        let (_folder, path) = file("a.gltf", good.replacen(old, new, 1));
         match read_mesh(&path) {
             Err(found) => assert!(found == message || message.is_empty(), "{new}: {found}"),
             Ok(_) => assert!(message.is_empty(), "{new} is accepted"),
@@ -211,11 +199,11 @@ fn broken_gltf_files_are_refused_with_the_reason() {
     for (text, start) in
         [("", "its JSON is not that of glTF: EOF"), ("[1]", "it is glTF"), ("glTF", "it is not version 2")]
     {
-        let (_folder, path) = file("a.glb", text.as_bytes());
+        let (_folder, path) = file("a.glb", text);
         let message = read_mesh(&path).err().expect("no glTF");
         assert!(message.starts_with(start) || text == "[1]", "{message}");
     }
-    let (_folder, path) = file("a.gltf", document(r#""uri":"absent.bin","#, 1, "").as_bytes());
+    let (_folder, path) = file("a.gltf", document(r#""uri":"absent.bin","#, 1, ""));
     assert_eq!(read_mesh(&path).err().as_deref(), Some("there is no file absent.bin beside it"));
 }
 
@@ -223,7 +211,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
 fn a_small_file_cannot_ask_for_much_memory() {
     // 3000 nodes that each place one mesh of 300 000 triangles would be 900 million.
     let corners = vec![0_u8; 900_000];
-    let uri = format!(r#""uri":"data:;base64,{}","#, base64(&[&binary(1)[..60], &corners].concat()));
+    let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode([&binary(1)[..60], &corners].concat()));
     let text = document(&uri, 1, "").replace(r#""count":18"#, r#""count":900000"#);
     let text = text
         .replace(r#""byteLength":18"#, r#""byteLength":900000"#)
@@ -233,7 +221,7 @@ fn a_small_file_cannot_ask_for_much_memory() {
     let text = text
         .replace(r#"[{"mesh":0}]"#, &format!("[{nodes}]"))
         .replace(r#""nodes":[0]"#, &format!(r#""nodes":[{}]"#, children.join(",")));
-    let (_folder, path) = file("a.gltf", text.as_bytes());
+    let (_folder, path) = file("a.gltf", text);
     assert_eq!(read_mesh(&path).err().as_deref(), Some("its nodes place more than 134217728 triangles or vertices"));
 }
 

@@ -2,14 +2,10 @@
 
 use std::sync::Arc;
 
-use abbe::film::Film;
-use abbe::scene::{Scene, Source};
 use abbe::shape::{Mesh, Shape};
-use abbe::spectrum::Curve;
-use abbe::trace::{Report, Transport, prepare, render};
 
 use crate::support::bodies::ball;
-use crate::support::scenes::{Mean, SPLITTING, environment, method, view};
+use crate::support::scenes::{Mean, SPLITTING, environment, image_in, refusal_in, scene_in, view};
 
 /// A folder with `ball.obj`, a ball of radius 1, and `same.obj`, which is not shared.
 fn folder() -> tempfile::TempDir {
@@ -21,17 +17,6 @@ fn folder() -> tempfile::TempDir {
         std::fs::write(folder.path().join(name), vertices.clone() + &faces).expect("the file can be written");
     }
     folder
-}
-
-fn scene(folder: &tempfile::TempDir, text: &str) -> Scene<Curve> {
-    let source = Source { path: folder.path().join("scene.toml"), text: text.to_owned() };
-    source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
-fn image(folder: &tempfile::TempDir, text: &str, transport: Transport) -> (Film, Report) {
-    let scene = scene(folder, text);
-    let method = method(&scene, transport);
-    render(&prepare(&scene, method), &|_| ())
 }
 
 /// An object of a mesh file.
@@ -62,7 +47,7 @@ fn objects_of_one_mesh_file_share_it_in_memory() {
         + "instances = [[], [{ scale = 2 }, { translate = [0, 3, 0] }]]\n[[object]]\nname = \"pea\"\n\
            shape.sphere = { center = [1, 0, 0], radius = 0.5 }\nmaterial = \"gray\"\n\
            transform = [{ scale = 2 }]\ninstances = [[], [{ translate = [0, 0, 4] }]]\n";
-    let objects = scene(&folder(), &text).objects;
+    let objects = scene_in(folder().path(), &text).objects;
     let names: Vec<&str> = objects.iter().map(|object| object.name.as_str()).collect();
     assert_eq!(names, ["object 1", "object 2", "object 3", "object 4 [1]", "object 4 [2]", "pea [1]", "pea [2]"]);
     let [first, second, alone, third, fourth] = [0, 1, 2, 3, 4].map(|i| mesh_of(&objects[i].shape));
@@ -79,13 +64,13 @@ fn objects_of_one_mesh_file_share_it_in_memory() {
 fn compared(text: impl Fn(&str) -> String, what: &str) {
     let folder = folder();
     let means = [("ball.obj", 3), ("same.obj", 4)].map(|(file, seed)| {
-        let (film, report) = image(&folder, &text(file).replace("SEED", &seed.to_string()), SPLITTING);
+        let (film, report) = image_in(folder.path(), &text(file).replace("SEED", &seed.to_string()), SPLITTING);
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         Mean::of(&film)
     });
     for band in 0..3 {
         let off = means[0].value[band] - means[1].value[band];
-        let error = means[0].error[band].hypot(means[1].error[band]);
+        let error = means[0].beside(&means[1]).error[band];
         assert!(means[1].value[band] > 0.01 && off.abs() <= 3.5 * error, "{what}: {off} with an error of {error}");
     }
 }
@@ -118,7 +103,7 @@ fn nested_glass_of_instances_loses_no_light() {
         + &glass("{ scale = [1.1, 0.8, -1] }, { rotate = { axis = [1, 2, 0], degrees = 40 } }")
         + &object("ball.obj", "water", "{ scale = [0.7, 0.5, 0.6] }, { rotate = { axis = [1, 2, 0], degrees = 40 } }")
         + &object("ball.obj", "flint", "{ scale = 0.4 }, { translate = [0.4, 0.1, 0.2] }");
-    let (film, report) = image(&folder(), &text, SPLITTING);
+    let (film, report) = image_in(folder().path(), &text, SPLITTING);
     assert_eq!((report.non_finite, report.unmatched), (0, 0));
     let mean = Mean::of(&film);
     assert!(mean.worst_error([1.0; 3]) <= 1e-3, "{mean:?}");
@@ -132,8 +117,6 @@ fn instances_that_touch_are_refused_by_their_names() {
         + "[material]\nglass.dielectric.index = 1.5\n"
         + &object("ball.obj", "glass", "{ scale = 0.5 }").replace("[[object]]", "[[object]]\nname = \"bead\"")
         + "instances = [[], [{ translate = [3, 0, 0] }], [{ translate = [3, 0, 0] }]]\n";
-    let folder = folder();
-    let source = Source { path: folder.path().join("scene.toml"), text };
-    let error = source.compile().expect_err("they coincide");
-    assert!(error.to_string().contains("bead [2] and bead [3] lies in one place"), "{error}");
+    let error = refusal_in(folder().path(), &text).message;
+    assert!(error.contains("bead [2] and bead [3] lies in one place"), "{error}");
 }

@@ -6,7 +6,7 @@ use abbe::shape::{Crossing, Mesh, Shape, Triangle, Vertices};
 use abbe::spectrum::Curve;
 
 use crate::support::random::Random;
-use crate::support::scenes::{scene, view};
+use crate::support::scenes::{body, quad, scene, view};
 
 const RAYS: u32 = 100_000;
 
@@ -47,7 +47,7 @@ fn the_tree_of_a_scene_finds_what_a_search_finds() {
                 0 => format!("sphere = {{ center = {center:?}, radius = {size} }}"),
                 1 => format!("cube = {{ center = {center:?}, size = {size} }}"),
                 2 => format!("disc = {{ center = {center:?}, normal = {:?}, radius = {size} }}", vector()),
-                3 => format!("quad = {{ center = {center:?}, u = {:?}, v = {:?} }}", vector(), vector()),
+                3 => quad(center, vector(), vector()),
                 _ => format!("triangle = {{ points = [{center:?}, {:?}, {:?}] }}", vector(), vector()),
             };
             let steps = if i % 3 == 0 {
@@ -76,7 +76,7 @@ fn of_objects_in_one_place_the_first_is_met() {
         for (u, v) in
             [([0.5, 0.0, 0.0], [0.0, 0.5, 0.0]), ([0.0, 0.6, 0.0], [0.4, 0.0, 0.0]), ([0.3, 0.0, 0.0], [0.0, 0.3, 0.0])]
         {
-            shapes.push(format!("quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}"));
+            shapes.push(quad(center, u, v));
         }
         shapes.push(format!("disc = {{ center = {center:?}, normal = [0, 0, 1], radius = 0.45 }}"));
     }
@@ -84,8 +84,8 @@ fn of_objects_in_one_place_the_first_is_met() {
     for i in (1..shapes.len()).rev() {
         shapes.swap(i, (random.number() * (i + 1) as f64) as usize);
     }
-    let objects: String = shapes.iter().map(|shape| format!("[[object]]\nshape.{shape}\nmaterial = \"m\"\n")).collect();
-    let text = view([0.0, 0.0, 9.0], [0.0; 3], 40.0, 4) + "[material.m]\nmirror = {}\n" + &objects;
+    let shapes: Vec<&str> = shapes.iter().map(String::as_str).collect();
+    let text = view([0.0, 0.0, 9.0], [0.0; 3], 40.0, 4) + &body("m", "mirror = {}", &shapes);
     let scene = scene(&text);
     for _ in 0..RAYS {
         let (from, to) = (DVec3::from(numbers(&mut random, -3.0, 3.0)), DVec3::from(numbers(&mut random, -2.0, 2.0)));

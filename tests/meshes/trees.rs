@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use abbe::math::{DVec3, Ray};
 use abbe::shape::{Mesh, Shape, Vertices};
 
+use crate::support::bodies::ball_faces;
 use crate::support::random::Random;
 
 const AROUND: u32 = 180;
@@ -22,17 +23,7 @@ fn ball(center: DVec3, scale: f64) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
             points.push(place(DVec3::new(sin * libm::cos(azimuth), sin * libm::sin(azimuth), cos)));
         }
     }
-    let vertex = |ring: u32, step: u32| 2 + (ring - 1) * AROUND + step % AROUND;
-    let mut faces = Vec::new();
-    for step in 0..AROUND {
-        faces.push([0, vertex(1, step), vertex(1, step + 1)]);
-        for ring in 1..RINGS - 1 {
-            faces.push([vertex(ring, step), vertex(ring + 1, step), vertex(ring + 1, step + 1)]);
-            faces.push([vertex(ring, step), vertex(ring + 1, step + 1), vertex(ring, step + 1)]);
-        }
-        faces.push([1, vertex(RINGS - 1, step + 1), vertex(RINGS - 1, step)]);
-    }
-    (points, faces)
+    (points, ball_faces(AROUND, RINGS - 1))
 }
 
 fn mesh(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Shape {

@@ -4,7 +4,7 @@ use abbe::plan::plan;
 use abbe::trace::{LightPass, World, photons_within};
 
 use super::twenty::{Room, rooms};
-use crate::support::scenes::{SPLITTING, body, method, scene, view};
+use crate::support::scenes::{GROUND, SPLITTING, body, method, scene, view};
 
 /// What is right for each was measured: `cargo bench --bench rooms`, the table in `benches/README.md`.
 #[test]
@@ -80,7 +80,7 @@ fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
 fn caustics_of_clear_coats_are_said_to_be_left_to_chance() {
     let said = |material: &str, light: &str| {
         let text = view([0.0, 2.0, 6.0], [0.0, 1.0, 0.0], 30.0, 16)
-            + &body("floor", "diffuse = { reflectance = 0.5 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
+            + &body("floor", "diffuse = { reflectance = 0.5 }", &[GROUND])
             + &body("ball", material, &["sphere = { center = [0, 1, 0], radius = 0.8 }"])
             + "[[light]]\n"
             + light;

@@ -9,7 +9,7 @@ use abbe::trace::{Method, Polarizing, prepare, render};
 
 use super::stokes::{Stokes, metal, mirror, pane, surface};
 use crate::support::random::Random;
-use crate::support::scenes::scene;
+use crate::support::scenes::{body, object, quad, scene, view};
 
 /// What a chain is made of.
 #[derive(Clone)]
@@ -108,26 +108,14 @@ fn is_free(places: &[DVec3]) -> bool {
 }
 
 fn text(met: &[Met], places: &[DVec3]) -> String {
-    let show = |v: DVec3| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z);
-    let mut text = format!(
-        "[camera]\nposition = {}\nlook_at = [0, 0, 0]\nvertical_fov = 0.05\n[film]\nwidth = 4\nheight = 4\nfilter = \"center\"\n",
-        show(places[0])
-    );
+    let mut text = view(places[0].into(), [0.0; 3], 0.05, 4) + "filter = \"center\"\n";
     for (number, (met, place)) in met.iter().zip(&places[1..]).enumerate() {
         let u = met.normal.cross(DVec3::new(0.3, 0.5, 0.81)).try_normalize().expect("not along it");
         let (u, v) = (u * 0.5, met.normal.cross(u) * 0.5);
-        text += &format!("[material.m{number}]\n{}\n", met.link.material());
-        text += &format!(
-            "[[object]]\nmaterial = \"m{number}\"\nshape.quad = {{ center = {}, u = {}, v = {} }}\n",
-            show(*place),
-            show(u),
-            show(v)
-        );
+        text += &body(&format!("m{number}"), &met.link.material(), &[&quad(*place, u, v)]);
     }
-    text + &format!(
-        "[[object]]\nmaterial = \"lamp\"\nshape.sphere = {{ center = {}, radius = 0.03 }}\n",
-        show(places[places.len() - 1])
-    )
+    let lamp = places[places.len() - 1].to_array();
+    text + &object("lamp", &format!("sphere = {{ center = {lamp:?}, radius = 0.03 }}"))
 }
 
 /// The transmittance of a filter or the reflectance of a mirror: a paint of the chart, or an edge as of colored glass.

@@ -2,7 +2,7 @@
 
 use abbe::plan::{Plan, plan};
 
-use crate::support::scenes::scene;
+use crate::support::scenes::{GROUND, object, quad, scene};
 
 /// The picture is so many pixels wide and high, under 40 degrees.
 const SIDE: f64 = 400.0;
@@ -31,10 +31,6 @@ fn plan_of(things: &str, width: f64) -> Plan {
     )))
 }
 
-fn object(material: &str, shape: &str) -> String {
-    format!("[[object]]\nmaterial = \"{material}\"\n{shape}\n")
-}
-
 /// A wedge of three sides, or an eight-sided gem, of a width around a place.
 fn body(gem: bool, material: &str, width: f64, [x, y, z]: [f64; 3]) -> String {
     let (points, faces) = if gem {
@@ -52,7 +48,7 @@ fn body(gem: bool, material: &str, width: f64, [x, y, z]: [f64; 3]) -> String {
     object(
         material,
         &format!(
-            "shape.mesh = {{ points = {points}, faces = {faces} }}\n\
+            "mesh = {{ points = {points}, faces = {faces} }}\n\
              transform = [{{ rotate = {{ axis = {turn} }} }}, {{ scale = {width:?} }}, {{ translate = [{x:?}, {y:?}, {z:?}] }}]"
         ),
     )
@@ -68,11 +64,9 @@ fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
     // Off the middle, so that no ray of a grid meets it by luck.
     let aside = |distance: f64| [0.137 * distance, 0.071 * distance, -distance];
     let cube = |material: &str, z: f64, size: [f64; 3]| {
-        object(material, &format!("shape.cube = {{ center = [0, 0, {z:?}], size = {size:?} }}"))
+        object(material, &format!("cube = {{ center = [0, 0, {z:?}], size = {size:?} }}"))
     };
-    let quad = |material: &str, center: [f64; 3], u: [f64; 3], v: [f64; 3]| {
-        object(material, &format!("shape.quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}"))
-    };
+    let quad = |material: &str, center: [f64; 3], u: [f64; 3], v: [f64; 3]| object(material, &quad(center, u, v));
     let here = |distance: f64| body(gem, material, at(distance), aside(distance));
     match place {
         "in the open" => here(10.0),
@@ -89,17 +83,15 @@ fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
         }
         "in a mirror ball" => {
             // A ball of radius 2 shows what is 8 before it some 8.6 times as small as a flat mirror would.
-            let ball = object("mirror", "shape.sphere = { center = [0, 0, -10], radius = 2 }");
+            let ball = object("mirror", "sphere = { center = [0, 0, -10], radius = 2 }");
             body(gem, material, at(8.0) * 9.0, [2.5, 1.5, -1.0]) + &ball
         }
-        "in a body of water" => {
-            here(10.0) + &object("water", "shape.plane = { point = [0, 0, -3], normal = [0.1, 0.2, 1] }")
-        }
+        "in a body of water" => here(10.0) + &object("water", "plane = { point = [0, 0, -3], normal = [0.1, 0.2, 1] }"),
         "in a tank" => here(10.0) + &cube("plain", -10.0, [9.0, 7.0, 6.0]) + &cube("water", -10.0, [8.8, 6.8, 5.8]),
         "in a mirror behind a pane" => {
             body(gem, material, at(14.0), [-6.5, 0.9, -7.5])
                 + &quad("mirror", [0.0, 0.0, -7.0], [2.0, 0.0, 2.0], [0.0, 3.0, 0.0])
-                + &object("pane", "shape.quad = { center = [0, 0, -2], u = [4, 0, 0], v = [0, 4, 0] }")
+                + &object("pane", "quad = { center = [0, 0, -2], u = [4, 0, 0], v = [0, 4, 0] }")
         }
         _ => unreachable!("no such place: {place}"),
     }
@@ -167,7 +159,7 @@ fn a_prism_of_3_pixels_is_noticed_in_pictures_of_any_size() {
 #[test]
 fn windows_of_optical_glass_keep_lanes_together_where_their_edges_are_seen() {
     for glass in ["crown", "flint"] {
-        let pane = "shape.cube = { center = [0.3, 0.2, -8], size = [3, 2, 0.02] }\n\
+        let pane = "cube = { center = [0.3, 0.2, -8], size = [3, 2, 0.02] }\n\
                     transform = [{ rotate = { axis = [0, 1, 0], degrees = 2 } }]";
         let plan = plan_of(&object(glass, pane), SIDE);
         assert!(!parts(&plan), "{glass}: {:?}", plan.because);
@@ -189,7 +181,7 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
     };
     let even = plan(&scene(&text("[[light]]\nenvironment = { radiance = 1 }\n")));
     assert!(!parts(&even), "{:?}", even.because);
-    let block = object("stripe", "shape.cube = { center = [0, 0, -9], size = [9, 0.4, 0.4] }");
+    let block = object("stripe", "cube = { center = [0, 0, -9], size = [9, 0.4, 0.4] }");
     let behind = plan(&scene(&(text("[[light]]\nenvironment = { radiance = 1 }\n") + &block)));
     assert!(parts(&behind), "{:?}", behind.because);
 }
@@ -200,8 +192,8 @@ fn dispersion_inside_a_drop_is_noticed_where_only_what_it_mirrors_inside_shows()
         plan(&scene(&format!(
             "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 2\n[film]\nwidth = 100\nheight = 100\n{MATERIALS}\
              [material.drop]\ndielectric = {{ index = \"water\" }}\n{}{}{behind}",
-            object("drop", "shape.sphere = { center = [0, 0, -9], radius = 0.1 }"),
-            object("wall", "shape.quad = { center = [0, 0, 1], u = [30, 0, 0], v = [0, 30, 0] }"),
+            object("drop", "sphere = { center = [0, 0, -9], radius = 0.1 }"),
+            object("wall", "quad = { center = [0, 0, 1], u = [30, 0, 0], v = [0, 30, 0] }"),
         )))
     };
     let alone = drop("");
@@ -228,7 +220,7 @@ fn dispersion_is_assumed_where_no_ray_sees_anything_through_the_glass() {
 fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
     let head = format!(
         "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}{}",
-        object("wall", "shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        object("wall", GROUND)
     );
     let sun = "[[light]]\nsun = { toward = [0, 1, 0.2], irradiance = 3, angular_diameter = 0.53 }\n";
     // Above the top of the picture.
@@ -239,7 +231,7 @@ fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
         let faint = plan(&scene(&(head.clone() + sun + &body(true, "faint", width, place))));
         assert!(!parts(&faint), "{:?}", faint.because);
     }
-    let pane = object("crown", "shape.cube = { center = [0.1, 2.7, -6], size = [1, 0.01, 1] }");
+    let pane = object("crown", "cube = { center = [0.1, 2.7, -6], size = [1, 0.01, 1] }");
     let found = plan(&scene(&(head + sun + &pane)));
     assert!(!parts(&found), "through a pane: {:?}", found.because);
 }
@@ -250,8 +242,8 @@ fn the_light_of_a_drop_far_above_the_floor_counts_only_where_it_is_not_outshone(
         plan(&scene(&format!(
             "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}\
              [[light]]\nspot = {{ position = [0, 6, -6], look_at = [0, 0, -6], cone_angle = {cone_angle:?}, blend = 0, intensity = 3 }}\n{}{}",
-            object("wall", "shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }"),
-            object("flint", &format!("shape.sphere = {{ center = [0, {height:?}, -6], radius = 0.02 }}")),
+            object("wall", GROUND),
+            object("flint", &format!("sphere = {{ center = [0, {height:?}, -6], radius = 0.02 }}")),
         )))
     };
     let near = plan_of(0.04, 150.0);
@@ -266,10 +258,10 @@ fn the_light_of_a_drop_far_above_the_floor_counts_only_where_it_is_not_outshone(
 fn light_of_small_lamps_through_a_small_gem_out_of_sight_is_noticed() {
     let head = format!(
         "[camera]\nposition = [0, 1, 0]\nlook_at = [0, 0, -6]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}{}",
-        object("wall", "shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        object("wall", GROUND)
     );
     let point = "[[light]]\npoint = { position = [0.15, 3.2, -5.9], intensity = 3 }\n".to_owned();
-    let bulb = object("lamp", "shape.sphere = { center = [0.15, 3.2, -5.9], radius = 0.02 }");
+    let bulb = object("lamp", "sphere = { center = [0.15, 3.2, -5.9], radius = 0.02 }");
     let mut missed = Vec::new();
     for (name, lamp) in [("point", point), ("bulb", bulb)] {
         for (material, seen) in [("flint", true), ("crown", true), ("diamond", true), ("faint", false)] {
@@ -289,7 +281,7 @@ fn a_rainbow_that_a_small_prism_out_of_sight_throws_on_a_wall_is_noticed() {
         format!(
             "[camera]\nposition = [0, 0.6, 0]\nlook_at = [2, 0.6, -4.36]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}\
              [[light]]\nsun = {{ toward = [-0.52, 0.1, 0.854], irradiance = 3, angular_diameter = 0.53 }}\n{}{}",
-            object("wall", "shape.plane = { point = [2, 0, 0], normal = [-1, 0, 0] }"),
+            object("wall", "plane = { point = [2, 0, 0], normal = [-1, 0, 0] }"),
             body(false, material, 0.05, [-1.5, 1.0, -3.0])
         )
     };

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use abbe::plan::plan;
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
-use abbe::trace::{Method, Polarizing, Transport, polarization_error, prepare, render, seen_light};
+use abbe::trace::{Method, Polarizing, Transport, polarization_error, prepare, seen_light};
 
 use crate::support::random::Random;
-use crate::support::scenes::scene;
+use crate::support::scenes::{film_of, scene};
 
 /// What the plan tolerates of it: a third of one percent of each error that a scene may have, see `plan`.
 const TOLERATED: f64 = 0.01;
@@ -83,7 +83,7 @@ fn error_of_averaging(scene: &Scene<Curve>, method: &Method) -> (f64, bool) {
         return ((squares.sum::<f64>() / 8.0).sqrt(), false);
     }
     let [averaged, traced] = [Polarizing::Averaged, Polarizing::Traced].map(|polarization| {
-        let film = render(&prepare(scene, Method { polarization, ..method.clone() }), &|_| ()).0;
+        let film = film_of(scene, Method { polarization, ..method.clone() });
         film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).collect::<Vec<_>>()
     });
     let square = |x: f64| x * x;

@@ -1,22 +1,14 @@
 //! The layer `polarization`: degrees and an angle, made of the sums of Stokes vectors.
 
+use abbe::Image;
 use abbe::math::DVec3;
-use abbe::{Image, Options, Scene};
 
 use super::{BLACK_GLASS, ROUNDING, SKY, mirrors, polarizer, retarder, sheets};
-
-fn rendered(camera: &str, film: &str, rest: &str) -> Image {
-    let text = format!(
-        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6{camera} }}\n\
-         film = {{ width = 1, height = 1, filter = \"center\", {film} }}\n{rest}"
-    );
-    let scene = Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders")
-}
+use crate::support::scenes::{one_pixel, rendered};
 
 /// Degree, linear degree and angle of one pixel.
 fn degrees(rest: &str) -> [f64; 3] {
-    let image = rendered("", "layers = [\"polarization\"]", rest);
+    let image = rendered(&(one_pixel("", ", layers = [\"polarization\"]") + rest));
     let one = |channel: &str| f64::from(image.layer(&format!("polarization.{channel}")).expect("it is there")[0]);
     ["degree", "linear_degree", "angle"].map(one)
 }
@@ -66,11 +58,10 @@ fn shadow_catchers_leave_no_stokes_vectors() {
              shape.plane = {{ point = [0, 0, 0], normal = [0, 0.8, 0.6] }}\n"
         )
     };
-    let layers = "stokes = true, layers = [\"polarization\"]";
+    let seen = |keys: &str| rendered(&(one_pixel("", ", stokes = true, layers = [\"polarization\"]") + &coated(keys)));
     let of = |image: &Image, channel: &str| image.layer(channel).expect("it is there")[0];
-    let seen = rendered("", layers, &coated(""));
-    assert!(of(&seen, "polarization.degree") > 0.05 && of(&seen, "S1.G").abs() > 0.01, "the coat polarizes");
-    let caught = rendered("", layers, &coated("shadow_catcher = true"));
+    let (shown, caught) = (seen(""), seen("shadow_catcher = true"));
+    assert!(of(&shown, "polarization.degree") > 0.05 && of(&shown, "S1.G").abs() > 0.01, "the coat polarizes");
     for channel in
         ["G", "S1.G", "S2.G", "S3.G", "polarization.degree", "polarization.linear_degree", "polarization.angle"]
     {
@@ -100,11 +91,7 @@ fn photons_leave_no_stokes_vectors_on_shadow_catchers() {
         shape.sphere = { center = [-1, 3.5, 1], radius = 0.02 }
         material = "lamp"
     "#;
-    let seen = |text: &str| {
-        let scene = Scene::parse(text, "").expect("the scene is valid");
-        abbe::render(&scene, &Options { threads: Some(1), ..Options::default() }).expect("it renders")
-    };
-    let (caught, shown) = (seen(text), seen(&text.replace("shadow_catcher = true", "")));
+    let (caught, shown) = (rendered(text), rendered(&text.replace("shadow_catcher = true", "")));
     assert!(caught.because().iter().any(|line| line.starts_with("photon tracing")), "{:?}", caught.because());
     let (mut dark, mut polarized) = (0, 0);
     for (pixel, rgb) in caught.rgb().into_iter().enumerate().filter(|(_, rgb)| *rgb == [0.0; 3]) {

@@ -1,9 +1,9 @@
 //! Light from all around that is scattered without loss: as much of it as came, and as little polarized.
 
-use abbe::{Options, Scene};
+use abbe::plan::plan;
 
-use super::{SKY, components, sheets};
-use crate::support::scenes::{moments, standard_errors};
+use super::{SKY, in_green, sheets};
+use crate::support::scenes::{films_of, moments, one_pixel, scene, standard_errors};
 
 /// What is seen of a surface that is turned from the viewer, in an even sky: S0 to S3, each its mean and variance, of
 /// renders by other seeds.
@@ -14,16 +14,11 @@ fn in_an_even_sky(material: &str, turned: f64) -> [(f64, f64); 4] {
 /// What is seen straight on of any objects and the sky: S0 to S3, each its mean and variance, of renders by other
 /// seeds.
 fn of_objects(objects: &str) -> [(f64, f64); 4] {
-    let view = "camera = { position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6 }\n\
-                film = { width = 1, height = 1, filter = \"center\", stokes = true }\n";
-    let text = view.to_owned() + objects;
-    let scene = Scene::parse(&text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let of_seed = |seed| {
-        let options = Options { seed: Some(seed), samples: Some(SAMPLES), threads: Some(1), ..Options::default() };
-        components(&abbe::render(&scene, &options).expect("it renders"))
-    };
-    let found: Vec<[f64; 4]> = (0..SEEDS).map(of_seed).collect();
-    std::array::from_fn(|part| moments(found.iter().map(|stokes| stokes[part])))
+    let mut scene = scene(&(one_pixel("", ", stokes = true") + objects));
+    scene.render.samples = Some(SAMPLES);
+    // A plan takes longer than a pixel.
+    let films = films_of(&scene, &plan(&scene).method, 0..SEEDS);
+    std::array::from_fn(|part| moments(films.iter().map(|film| in_green(film)[part])))
 }
 
 /// Each wavelength leaves rough glass another way, and by its own density: as clear as in lanes that stay together.

@@ -2,10 +2,10 @@
 
 use abbe::film::Film;
 use abbe::spectrum::Basis;
-use abbe::trace::{Method, Transport, prepare, render};
+use abbe::trace::{Method, Transport};
 
 use crate::support::scenes::{
-    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, method, scene, standard_errors, view,
+    EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, film_of, image, method, scene, standard_errors, view,
 };
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
@@ -71,7 +71,7 @@ fn lanes_that_part_or_stay_together_at_rough_glass_lose_nothing() {
         for split in [0.05, 1.0] {
             let transport = Transport::Random { split, roulette: 0.05 };
             let method = Method { basis: basis.clone(), ..method(&scene, transport) };
-            let (film, _) = render(&prepare(&scene, method), &|_| ());
+            let film = film_of(&scene, method);
             let mean = Mean::of(&film);
             println!("N-SF11, roughness {roughness}: {:.4?} +- {:.4?}", mean.value, mean.error);
             for band in 0..3 {

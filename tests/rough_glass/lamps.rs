@@ -2,21 +2,13 @@
 
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, Emission};
-use abbe::trace::{Method, Transport, prepare, render};
+use abbe::trace::{Method, Transport};
 
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, images, scene, view};
+use crate::support::scenes::{
+    Mean, SPLITTING, assert_aimed_at_as_met, body, environment, films_of, image, lamps, method, scene, view,
+};
 
-const RADIANCE: &str = "{ rgb = [10, 20, 5] }";
 const LAMP: &str = "sphere = { center = [0.4, 0.3, -1.5], radius = 0.5 }";
-
-/// The same lamp, aimed at, or as glass that shines by being met.
-fn lamps(shapes: &[&str]) -> [String; 2] {
-    let dark = "index = 1.5, reflectance = 0, transmittance = 0, priority = 9";
-    [
-        body("lamp", &format!("emissive = {{ radiance = {RADIANCE} }}"), shapes),
-        body("lamp", &format!("dielectric = {{ {dark}, emission = {RADIANCE} }}"), shapes),
-    ]
-}
 
 fn glass(index: &str, roughness: f64, extra: &str, shapes: &[&str]) -> String {
     body("glass", &format!("dielectric = {{ index = {index}, roughness = {roughness:?}{extra} }}"), shapes)
@@ -44,18 +36,8 @@ fn aiming_at_a_lamp_behind_inside_or_before_rough_glass_and_meeting_it_show_the_
     ];
     for (name, glass, shapes) in &cases {
         let [aimed_at, met] = lamps(shapes);
-        let by_chance = images(&picture(&(glass.clone() + &met), 400), SINGLE_PATH, 4);
-        let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
-        for transport in [SINGLE_PATH, SPLITTING] {
-            let aimed = images(&picture(&(glass.clone() + &aimed_at), 64), transport, 4);
-            let mut aimed = Mean::over_seeds(aimed.iter().map(|(film, _)| film));
-            println!("{name}: {aimed:.5?} for {by_chance:.5?}");
-            for band in 0..3 {
-                aimed.error[band] = libm::hypot(aimed.error[band], by_chance.error[band]);
-            }
-            assert!(aimed.worst_error(by_chance.value) < 0.04, "{name}: {aimed:?}");
-            aimed.assert_near(by_chance.value, 2 * cases.len(), name);
-        }
+        let [aimed_at, met] = [picture(&(glass.clone() + &aimed_at), 64), picture(&(glass.clone() + &met), 400)];
+        assert_aimed_at_as_met([&aimed_at, &met], 4, 0.04, 2 * cases.len(), name);
     }
 }
 
@@ -69,21 +51,14 @@ fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
         let bands = Basis::bands(scene.film.color_space, 12, &[]);
         // Fixed wavelengths alone all count wherever they go.
         let shown = [bands.clone(), bands.with_heroes(4, &[emission])].map(|basis| {
-            let films: Vec<_> = (0..4)
-                .map(|seed| {
-                    let transport = Transport::Random { split: 0.05, roulette: 0.05 };
-                    let base = crate::support::scenes::method(&scene, transport);
-                    render(&prepare(&scene, Method { basis: basis.clone(), seed, ..base }), &|_| ()).0
-                })
-                .collect();
-            Mean::over_seeds(films.iter())
+            let method = Method { basis, ..method(&scene, SPLITTING) };
+            Mean::over_seeds(&films_of(&scene, &method, 0..4))
         });
-        let [fixed, mut heroes] = shown;
+        let [fixed, heroes] = shown;
         println!("roughness {roughness}: {heroes:.4?} for {fixed:.4?}");
-        for band in 0..3 {
-            // Twelve wavelengths miss the color by less than 1 %.
-            heroes.error[band] = libm::hypot(heroes.error[band], fixed.error[band]) + 0.003 * fixed.value[band];
-        }
+        let mut heroes = heroes.beside(&fixed);
+        // Twelve wavelengths miss the color by less than 1 %.
+        (0..3).for_each(|band| heroes.error[band] += 0.003 * fixed.value[band]);
         heroes.assert_near(fixed.value, 2, &format!("roughness {roughness}"));
     }
 }
@@ -102,8 +77,8 @@ fn a_scene_with_rough_glass_is_left_to_chance_and_smooth_glass_is_not() {
 #[test]
 fn below_the_least_roughness_glass_is_smooth_to_the_last_bit() {
     let [lamp, _] = lamps(&[LAMP]);
-    let shown =
-        |roughness| images(&picture(&(glass("1.5", roughness, "", &[PANE]) + &lamp), 16), SPLITTING, 1)[0].0.clone();
-    assert_eq!(shown(0.0).pixels, shown(0.009).pixels);
-    assert_ne!(shown(0.0).pixels, shown(0.1).pixels);
+    let shown = |roughness| image(&picture(&(glass("1.5", roughness, "", &[PANE]) + &lamp), 16), SPLITTING).0.pixels;
+    let smooth = shown(0.0);
+    assert!(smooth == shown(0.009), "below the least roughness it is another image");
+    assert!(smooth != shown(0.1), "roughness changes nothing");
 }

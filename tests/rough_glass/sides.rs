@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use abbe::material::{RoughInterface, Sides};
 use abbe::math::DVec3;
 
-use super::{at, each};
+use super::each;
+use crate::support::arrivals::{about_z as at, points};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -15,11 +16,6 @@ const COSINES: [f64; 5] = [1e-6, 0.001, 0.05, 0.3, 1.0];
 const INDICES: [f64; 3] = [1.001, 1.05, 2.2];
 /// With 2^14, the furnaces of nearly equal indices seen along the surface are off by 1 %.
 const DRAWS: u32 = 1 << 17;
-
-/// The points of Hammersley in the unit square.
-fn points(draws: u32) -> impl Iterator<Item = [f64; 2]> {
-    (0..draws).map(move |i| [(f64::from(i) + 0.5) / f64::from(draws), f64::from(i.reverse_bits()) / 4_294_967_296.0])
-}
 
 /// The light that comes back and the light that crosses, of an even environment: radiance over n^2 is 1 everywhere.
 fn furnace(sides: &Sides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use abbe::material::{Flow, RoughInterface, Sides, Way};
 use abbe::math::DVec3;
 
-use super::at;
+use crate::support::arrivals::about_z as at;
 use crate::support::chi_squared;
 use crate::support::random::Random;
 

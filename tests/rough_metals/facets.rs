@@ -5,16 +5,10 @@ use std::f64::consts::{PI, TAU};
 use abbe::material::{Facets, RoughSurface, Roughness};
 use abbe::math::{DVec3, ball_surface};
 
+use crate::support::arrivals::about_z as at;
 use crate::support::chi_squared;
 use crate::support::exact::Exact;
 use crate::support::random::Random;
-
-/// A unit vector at a cosine to the normal.
-fn at(cos: f64, azimuth: f64) -> DVec3 {
-    let sin = (1.0 - cos * cos).max(0.0).sqrt();
-    let (y, x) = libm::sincos(azimuth);
-    DVec3::new(sin * x, sin * y, cos)
-}
 
 /// Where directions of light lie on a grid: by the facet that mirrors them, its slope s and azimuth, with
 /// tan^2 = alpha^2 q / (1 - q) and 1 - q = (1 - s)^4. Densities over the unit square are bounded at every roughness.

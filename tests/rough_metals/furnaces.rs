@@ -1,16 +1,14 @@
 //! Row G6: in an even environment, what reflects all light cannot be told from it.
 
-use abbe::material::{Material, Roughness, Scatter};
+use abbe::material::{Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 
-use crate::layers::arrivals::{NORMAL, arrival, material, points};
+use crate::support::arrivals::{self, LOSSLESS, arrival, material, points, toward};
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
 const ROUGHNESSES: [f64; 9] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const COSINES: [f64; 14] = [0.001, 0.003, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.0];
-/// Reflects all but 4e-10 of the light at right angles.
-const LOSSLESS: &str = "n = 1e-6, k = 100";
 const DRAWS: u32 = 1 << 16;
 
 fn conductor(metal: &str, roughness: f64) -> Material<Table> {
@@ -22,19 +20,7 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 /// What a metal shows of an even environment of radiance 1, under a medium of an index.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    let along = DVec3::new(0.8, 0.36, -0.48);
-    let wo = (NORMAL * cos + along * (1.0 - cos * cos).max(0.0).sqrt()).normalize();
-    let arrival = arrival(&draw, wo, index);
-    let (mut sum, mut branches) = ([0.0; 3], Vec::new());
-    for u in points(DRAWS) {
-        material.scatter(&arrival, u, &mut branches);
-        for branch in branches.drain(..) {
-            for (lane, sum) in sum.iter_mut().enumerate() {
-                *sum += f64::from(branch.share[lane]) / f64::from(DRAWS);
-            }
-        }
-    }
-    sum
+    arrivals::furnace(material, &arrival(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -76,14 +62,15 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
 #[test]
 fn no_metal_reflects_more_than_comes_and_the_rougher_the_deeper_its_color() {
     for metal in ["metal = \"Au\"", "metal = \"Cu\"", "metal = \"Al\"", "n = 2.9, k = 3.1"] {
+        let surfaces = [0.0, 0.3, 0.6, 1.0].map(|roughness| conductor(metal, roughness));
         for index in [1.0, 1.5] {
             for cos in [0.02, 0.3, 1.0] {
-                let shown = [0.0, 0.3, 0.6, 1.0].map(|roughness| furnace(&conductor(metal, roughness), cos, index));
+                let shown = surfaces.each_ref().map(|surface| furnace(surface, cos, index));
                 println!("{metal} under {index}, cos {cos}: {shown:.4?}");
                 assert!(shown.as_flattened().iter().all(|x| (0.0..1.0).contains(x)), "{metal}: {shown:?}");
             }
-            let [smooth, rough] =
-                [0.0, 1.0].map(|roughness| furnace(&conductor(metal, roughness), 1.0, index)).map(|x| x[2] / x[0]);
+            let [smooth, .., rough] =
+                surfaces.each_ref().map(|surface| furnace(surface, 1.0, index)).map(|x| x[2] / x[0]);
             if metal.contains("Au") || metal.contains("Cu") {
                 assert!(rough < smooth, "{metal}: blue over red {rough}, smooth {smooth}");
             }

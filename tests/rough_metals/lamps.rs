@@ -6,41 +6,28 @@ use abbe::plan::plan;
 use abbe::spectrum::Draw;
 use abbe::trace::{Transport, prepare};
 
-use crate::layers::arrivals::arrival;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, image, images, method, scene, view};
+use crate::support::arrivals::arrival;
+use crate::support::scenes::{
+    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, assert_aimed_at_as_met, body, image, lamps, method, scene, view,
+};
 
-const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
 const LAMP: &str = "sphere = { center = [-1, 2, 0], radius = 0.7 }";
-const RADIANCE: &str = "{ rgb = [10, 20, 5] }";
 
 /// A floor of gold under a lamp that is not in view.
 fn gold(roughness: f64, lamp: &str, samples: u32) -> String {
     view([4.0, 3.0, 0.5], [0.5, 0.0, 0.0], 25.0, 12)
         + &format!("[render]\nsamples = {samples}\n")
-        + &body("gold", &format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}"), &[FLOOR])
+        + &body("gold", &format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}"), &[GROUND])
         + lamp
 }
 
 #[test]
 fn aiming_at_a_lamp_and_meeting_it_show_the_same() {
-    let aimed_at = body("lamp", &format!("emissive = {{ radiance = {RADIANCE} }}"), &[LAMP]);
-    // Glass that only shines is met by chance, and never aimed at.
-    let dark = "index = 1.5, reflectance = 0, transmittance = 0";
-    let met = body("lamp", &format!("dielectric = {{ {dark}, emission = {RADIANCE} }}"), &[LAMP]);
+    let [aimed_at, met] = lamps(&[LAMP]);
     let cases = [0.15, 0.3, 0.6, 1.0];
     for roughness in cases {
-        let by_chance = images(&gold(roughness, &met, 1024), SINGLE_PATH, 8);
-        let by_chance = Mean::over_seeds(by_chance.iter().map(|(film, _)| film));
-        for transport in [SINGLE_PATH, SPLITTING] {
-            let aimed = images(&gold(roughness, &aimed_at, 128), transport, 8);
-            let mut aimed = Mean::over_seeds(aimed.iter().map(|(film, _)| film));
-            println!("roughness {roughness}: {aimed:.5?} for {by_chance:.5?}");
-            for band in 0..3 {
-                aimed.error[band] = libm::hypot(aimed.error[band], by_chance.error[band]);
-            }
-            assert!(aimed.worst_error(by_chance.value) < 0.01, "{aimed:?}");
-            aimed.assert_near(by_chance.value, 2 * cases.len(), &format!("roughness {roughness}"));
-        }
+        let [aimed_at, met] = [gold(roughness, &aimed_at, 128), gold(roughness, &met, 1024)];
+        assert_aimed_at_as_met([&aimed_at, &met], 8, 0.01, 2 * cases.len(), &format!("roughness {roughness}"));
     }
 }
 
@@ -49,7 +36,7 @@ fn a_point_light_shows_the_brdf_itself() {
     let point = "[[light]]\npoint = { position = [-1, 2, 0.3], intensity = 10 }\n";
     for roughness in [0.2, 0.7] {
         let text = view([4.0, 3.0, 0.5], [0.5, 0.0, 0.0], 1e-6, 1)
-            + &body("gold", &format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}"), &[FLOOR])
+            + &body("gold", &format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}"), &[GROUND])
             + point;
         let scene = scene(&text);
         let world = prepare(&scene, method(&scene, SINGLE_PATH));
@@ -70,11 +57,10 @@ fn a_point_light_shows_the_brdf_itself() {
 #[test]
 fn the_smoother_a_metal_the_more_it_looks_like_a_smooth_one() {
     // The lamp's mirror image is in view, and its edge.
-    let lamp = body("lamp", &format!("emissive = {{ radiance = {RADIANCE} }}"), &[LAMP]);
+    let [lamp, _] = lamps(&[LAMP]);
     let shown = |roughness: f64| {
         let text = gold(roughness, &lamp, 256).replace("look_at = [0.5, 0.0, 0.0]", "look_at = [1.1, 0, 0.15]");
-        let films = images(&text, SINGLE_PATH, 8);
-        Mean::over_seeds(films.iter().map(|(film, _)| film))
+        Mean::rendered(&text, SINGLE_PATH, 8)
     };
     let smooth = shown(0.0);
     assert_eq!(smooth, shown(0.009), "below the least roughness the image is the same to the last bit");
@@ -107,7 +93,7 @@ fn a_scene_with_a_rough_metal_is_left_to_chance_and_a_smooth_one_is_not() {
 #[test]
 fn deterministic_transport_follows_rough_metals_as_well() {
     // Not what the plan takes, but it must not fail: one direction, and all lights.
-    let lamp = body("lamp", &format!("emissive = {{ radiance = {RADIANCE} }}"), &[LAMP]);
+    let [lamp, _] = lamps(&[LAMP]);
     let (film, _) = image(&gold(0.5, &lamp, 16), EVERY_BRANCH);
     assert!(film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| x.is_finite() && *x > 0.0)));
     assert!(Roughness::new(0.5).surface().is_some());
@@ -118,10 +104,10 @@ fn deterministic_transport_follows_rough_metals_as_well() {
 fn surfaces_that_are_as_rough_share_their_tables() {
     let metal = |roughness: f64| format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}");
     let text = view([4.0, 3.0, 0.5], [0.5, 0.0, 0.0], 10.0, 1)
-        + &body("gold", &metal(0.25), &[FLOOR])
-        + &body("copper", "conductor = { metal = \"Cu\", roughness = 0.25 }", &[FLOOR])
-        + &body("other", &metal(0.5), &[FLOOR])
-        + &body("red", "plastic = { reflectance = 0.5, roughness = 0.25 }", &[FLOOR])
+        + &body("gold", &metal(0.25), &[GROUND])
+        + &body("copper", "conductor = { metal = \"Cu\", roughness = 0.25 }", &[GROUND])
+        + &body("other", &metal(0.5), &[GROUND])
+        + &body("red", "plastic = { reflectance = 0.5, roughness = 0.25 }", &[GROUND])
         + &body(
             "frost",
             "dielectric = { index = 1.5, roughness = 0.25 }",

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use abbe::Image;
 use abbe::spectrum::{apply, data};
 
-use super::{FINE, WHITE, rendered, room};
-use crate::support::scenes::SHEETS;
+use super::{FINE, WHITE, room};
+use crate::support::scenes::{SHEETS, one_pixel, rendered};
 
 /// What the bands of S1, S2 and S3 make of their layers, at worst relative to the brightest channel of the pixel and
 /// one percent of the image's mean; and how much of the image's light is polarized.
@@ -28,6 +28,7 @@ fn worst_component(image: &Image) -> (f64, f64) {
                 (0..3).for_each(|i| xyz[i] += f64::from(radiance) * cmf[i] / luminous);
             }
             let color = apply(&film_of_xyz, xyz);
+            assert!(color.iter().all(|x| x.is_finite()), "{color:?}");
             let off = (0..3).map(|i| (color[i] - f64::from(layers[i][number])).abs()).fold(0.0, f64::max);
             worst = worst.max(off / strongest(pixel.rgb).max(0.01 * mean));
             polarized += f64::from(layers[1][number]).abs() / (mean * film.pixels.len() as f64);
@@ -58,12 +59,9 @@ fn spectra_of_stokes_vectors_make_their_layers() {
 
 /// S0 to S3 in each band of one pixel that sees an even spectrum of 1, and the center of the band in nm.
 fn spectrum(rest: &str) -> Vec<(f64, [f64; 4])> {
-    let image = rendered(&format!(
-        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6 }}\n\
-         film = {{ width = 1, height = 1, filter = \"center\", layers = [\"polarization\"], \
-         spectral = {{ from = 460, to = 660, step = 5 }} }}\n\
-         light = [{{ environment.radiance.samples = [[300, 1], [900, 1]] }}]\n{rest}"
-    ));
+    let film = ", layers = [\"polarization\"], spectral = { from = 460, to = 660, step = 5 }";
+    let sky = "light = [{ environment.radiance.samples = [[300, 1], [900, 1]] }]\n";
+    let image = rendered(&(one_pixel("", film) + sky + rest));
     let radiance = image.spectrum_at(0, 0).expect("spectra were asked for");
     let [s1, s2, s3] = image.stokes_spectra_at(0, 0).expect("Stokes vectors were asked for");
     (0..radiance.len())

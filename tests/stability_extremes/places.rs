@@ -4,7 +4,7 @@
 use abbe::film::DEPTH_OF_NOTHING;
 
 use crate::support::bodies::ball;
-use crate::support::scenes::{Mean, SPLITTING, body, environment, image, standard_errors, view};
+use crate::support::scenes::{GROUND, Mean, SPLITTING, body, environment, image, standard_errors, view};
 
 /// Every closed shape under scales that differ by up to 10^6, turned, in an even sky: white paint and glass are as
 /// bright as the sky, which no wrong normal, cosine or area leaves them.
@@ -53,7 +53,7 @@ fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
     let white = "diffuse = { reflectance = 1 }";
     let glass = "dielectric = { index = 1.5 }";
     for (material, shape, position, look_at) in [
-        (white, "plane = { point = [0, 0, 0], normal = [0, 1, 0] }", [0.0, 0.0, 0.0], [1.0, 0.2, 0.3]),
+        (white, GROUND, [0.0, 0.0, 0.0], [1.0, 0.2, 0.3]),
         (white, "cube = { center = [0, 0, 0], size = 2 }", [1.0, 0.3, 0.2], [3.0, 0.5, 0.1]),
         (glass, "sphere = { center = [0, 0, 0], radius = 1 }", [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]),
         (glass, "sphere = { center = [0, 0, 0], radius = 1 }", [0.0, 0.0, 1.0], [0.0, 0.0, 3.0]),

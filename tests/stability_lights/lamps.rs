@@ -8,7 +8,7 @@ use abbe::shape::{Shape, Sphere};
 use crate::support::exact::Exact;
 use crate::support::random::Random;
 use crate::support::scenes::{
-    Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, standard_errors, view,
+    GROUND, Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, standard_errors, view,
 };
 
 /// Lamps that fill a thousandth of what a pixel sees, sampled 1024 times. Found by chance they are as noisy as counting
@@ -38,7 +38,7 @@ fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_ai
     // Far above a white floor, a thousandth of what the floor sees.
     let above = view([0.0, 1.0, 0.1], [0.0; 3], 1e-3, 1)
         + render
-        + &body("floor", "diffuse = { reflectance = 1 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
+        + &body("floor", "diffuse = { reflectance = 1 }", &[GROUND])
         + &lamp("[0, 1000, 0]", "[28, 0, 0]", "[0, 0, 28]");
     // What a small surface sees of a square above it, half its edge over the distance being a: Hamilton & Morgan 1952,
     // P-5.
@@ -135,7 +135,7 @@ fn l3_a_lamp_that_touches_the_floor_lights_it_quietly_up_to_the_edge() {
         let text = view([0.0, 5.0, distance], [0.0, 0.0, distance], 1e-7, 16)
             .replace("vertical_fov", "up = [1, 0, 0]\nvertical_fov")
             + "[render]\nsamples = 64\ndiffuse_bounces = 0\n"
-            + &body("floor", "diffuse = { reflectance = 1 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
+            + &body("floor", "diffuse = { reflectance = 1 }", &[GROUND])
             + &body(
                 "lamp",
                 "emissive = { radiance = 1, sides = \"front\" }",
@@ -166,11 +166,10 @@ fn l5_a_lamp_in_the_plane_of_the_floor_leaves_it_dark_and_makes_no_nan() {
         "triangle = { points = [[-3, 0, 0], [-2, 0, 0], [-2, 0, 1]] }",
         "mesh = { points = [[0, 0, 3], [1, 0, 3], [1, 0, 4], [0, 0, 4]], faces = [[0, 1, 2], [0, 2, 3]] }",
     ];
-    let floor = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
     for materials in ["diffuse = { reflectance = 1 }", "conductor = { metal = \"Au\", roughness = 0.4 }"] {
         let text = view([0.0, 2.0, 0.1], [0.0; 3], 30.0, 12)
             + "[render]\nsamples = 16\n"
-            + &body("floor", materials, &[floor])
+            + &body("floor", materials, &[GROUND])
             + &body("lamp", "emissive = { radiance = 1e6 }", &shapes);
         let (film, report) = image(&text, SPLITTING);
         assert_eq!(report.non_finite, 0);
@@ -178,7 +177,7 @@ fn l5_a_lamp_in_the_plane_of_the_floor_leaves_it_dark_and_makes_no_nan() {
     }
     // Lamp and floor in one place, under a sky: either may be seen, nothing else.
     let both = view([0.0, 2.0, 0.1], [0.0; 3], 10.0, 12)
-        + &body("floor", "diffuse = { reflectance = 0.5 }", &[floor])
+        + &body("floor", "diffuse = { reflectance = 0.5 }", &[GROUND])
         + &body(
             "lamp",
             "emissive = { radiance = 8 }",

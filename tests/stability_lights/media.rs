@@ -1,11 +1,11 @@
 //! Rows D6, M2, M5 and T6: media whose indices are near each other, and surfaces that lie in one place.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use abbe::material::Interface;
 use abbe::scene::Source;
 
-use crate::support::scenes::{EVERY_BRANCH, SPLITTING, body, environment, image, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, GROUND, SPLITTING, body, environment, image, refusal_in, scene, view};
 
 /// Reflectance of even light from outside of an index: Walsh 1926, *The Reflection Factor of a Polished Glass Surface
 /// for Diffused Light*.
@@ -32,14 +32,6 @@ fn d6_even_light_between_glass_and_water_is_reflected_as_the_closed_form_says() 
     }
 }
 
-fn refusal(text: &str) -> String {
-    let source = Source { path: PathBuf::from("test.toml"), text: text.to_owned() };
-    match source.compile() {
-        Err(abbe::Error::Scene(mistakes)) => mistakes[0].message.clone(),
-        other => panic!("{other:?}"),
-    }
-}
-
 #[test]
 fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_not() {
     let text = |half: f64| {
@@ -50,7 +42,7 @@ fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_n
             + &body("water", "dielectric = { index = 1.333 }", &[&water])
             + &environment(1.0)
     };
-    assert!(refusal(&text(1.0)).contains("lies in one place"));
+    assert!(refusal_in(Path::new(""), &text(1.0)).message.contains("lies in one place"));
     for half in [0.99, 1.01] {
         let (_, report) = image(&text(half), EVERY_BRANCH);
         assert_eq!(report.unmatched, 0, "{half}");
@@ -85,7 +77,7 @@ fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
 /// The order of the objects decides nothing, and planes have no box that others could lie in.
 #[test]
 fn m2_a_plane_that_a_body_or_another_plane_lies_in_is_refused_whichever_comes_first() {
-    let water = body("water", "dielectric = { index = 1.33 }", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"]);
+    let water = body("water", "dielectric = { index = 1.33 }", &[GROUND]);
     let block = |y: f64| {
         body("block", "dielectric = { index = 1.5 }", &[&format!("cube = {{ center = [0, {y:?}, 0], size = 1 }}")])
     };

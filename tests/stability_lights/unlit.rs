@@ -1,16 +1,15 @@
 //! Rows L6, L9 and M6: scenes that look right in their file and in which a light lights nothing or stands in a surface,
 //! or a body is inside out.
 
-use crate::support::scenes::{body, environment, scene, view};
+use crate::support::scenes::{GROUND, body, environment, scene, view};
 
-const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
 const BALL: &str = "sphere = { center = [0, 1, 0], radius = 1 }";
 const LAMP: &str = "emissive = { radiance = 5, sides = \"front\" }";
 
 /// A ball on a floor, seen from before it, and what is added to them.
 fn stage(more: &str) -> String {
     view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16)
-        + &body("white", "diffuse = { reflectance = 0.7 }", &[FLOOR, BALL])
+        + &body("white", "diffuse = { reflectance = 0.7 }", &[GROUND, BALL])
         + more
 }
 
@@ -142,7 +141,7 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
         |y: f64| body("lamp", LAMP, &[&format!("quad = {{ center = [0, {y:?}, 0], u = [1, 0, 0], v = [0, 0, 1] }}")]);
     for both in [ceiling(flat) + &lamp(5.0), lamp(5.0) + &ceiling(flat)] {
         let text = view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16)
-            + &body("white", "diffuse = { reflectance = 0.7 }", &[FLOOR, BALL])
+            + &body("white", "diffuse = { reflectance = 0.7 }", &[GROUND, BALL])
             + &both;
         let warnings = scene(&text).warnings;
         let told = "which shines, lies exactly in object";

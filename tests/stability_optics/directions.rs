@@ -6,7 +6,7 @@ use abbe::shape::SurfacePoint;
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
 
-use crate::layers::arrivals::arrival;
+use crate::support::arrivals::arrival;
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};

@@ -5,12 +5,11 @@ use std::f64::consts::FRAC_PI_2;
 use abbe::material::{Arrival, Branch, Index, Interface, Material, Scatter};
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
-use abbe::trace::prepare;
 
-use crate::layers::arrivals::arrival;
+use crate::support::arrivals::{arrival, material};
 use crate::support::exact::Exact;
 use crate::support::random::Random;
-use crate::support::scenes::{EVERY_BRANCH, body, environment, image, method, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 
 /// Reflectance and transmittance with 31 digits, of the same rounded inputs.
 fn truth(n1: f64, n2: f64, c1: f64) -> (Exact, Exact) {
@@ -71,7 +70,7 @@ fn d1_reflectance_is_right_and_continuous_through_the_critical_angle() {
 
 #[test]
 fn d1_no_branch_is_nan_at_the_critical_angle() {
-    let glass = glass();
+    let glass = material("dielectric = { index = 1.5 }");
     let mut random = Random::new(1);
     let critical = libm::asin(1.0 / 1.5);
     for _ in 0..20_000 {
@@ -153,7 +152,7 @@ fn d3_reflectance_and_transmittance_sum_to_1_within_4_roundings() {
 
 #[test]
 fn d4_light_crosses_between_equal_indices_with_every_bit_of_its_direction() {
-    let glass = glass();
+    let glass = material("dielectric = { index = 1.5 }");
     let mut random = Random::new(4);
     for step in 0..10_000 {
         let normal = random.direction();
@@ -225,13 +224,6 @@ fn the_reference_agrees_with_brewster() {
     let (reflectance, transmittance) = truth(1.0, 1.5, 1.0 / 3.25f64.sqrt());
     assert!(difference(25.0 / 338.0, reflectance) < 1e-15);
     assert!((reflectance + transmittance - Exact::from(1.0)).abs().rounded() < 1e-30);
-}
-
-/// Some clear material of index 1.5.
-fn glass() -> Material<Table> {
-    let ball = body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0, 0, 0], radius = 1 }"]);
-    let scene = scene(&format!("{}{ball}", view([0.0, 0.0, 5.0], [0.0; 3], 30.0, 1)));
-    prepare(&scene, method(&scene, EVERY_BRANCH)).scene().material_of(0).clone()
 }
 
 fn branches(material: &Material<Table>, wo: DVec3, normal: DVec3, incident: f64, beyond: f64) -> Vec<Branch<4>> {

@@ -1,12 +1,11 @@
 //! Row D9: lanes that share a path where one is totally reflected and another is not.
 
-use abbe::film::Film;
 use abbe::material::Interface;
 use abbe::math::{DVec2, DVec3};
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
 
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, body, image, images, scene, view};
+use crate::support::scenes::{EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, body, films_of, image, method, scene, view};
 
 /// N-SF11 at 700, 550 and 400 nm, about.
 const INDICES: [f64; 3] = [1.77, 1.79, 1.845];
@@ -23,7 +22,7 @@ fn text() -> String {
     let (sin, cos) = libm::sincos(middle);
     let flint = format!("dielectric = {{ index = {{ rgb = {INDICES:?} }} }}");
     view([0.0, -1.0, 0.0], [sin, cos - 1.0, 0.0], field, SIDE)
-        + &body("flint", &flint, &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"])
+        + &body("flint", &flint, &[GROUND])
         + &body("sky", "emissive = { radiance = 1 }", &["plane = { point = [0, 9, 0], normal = [0, -1, 0] }"])
 }
 
@@ -40,10 +39,10 @@ fn expected(scene: &Scene<Curve>) -> [f64; 3] {
 
 #[test]
 fn d9_lanes_that_disagree_at_the_critical_angle_keep_their_energy() {
-    let text = text();
-    let expected = expected(&scene(&text));
-    let films: Vec<Film> = images(&text, SINGLE_PATH, SEEDS).into_iter().map(|(film, _)| film).collect();
-    let mean = Mean::over_seeds(films.iter());
+    let scene = scene(&text());
+    let expected = expected(&scene);
+    let films = films_of(&scene, &method(&scene, SINGLE_PATH), 0..SEEDS);
+    let mean = Mean::over_seeds(&films);
     println!("D9: {:?} for {expected:?}, sigma {:.2e}", mean.value, mean.worst_error(expected));
     mean.assert_near(expected, 1, "random choice");
     assert!(mean.worst_error(expected) <= 0.003, "sigma is {}", mean.worst_error(expected));

@@ -1,13 +1,11 @@
 //! Rows B1 to B3 and B6 of the stability catalog: boxes of the tree, and vertices that are no numbers. (Rows B4 and B5
 //! are tested where the tree is built.)
 
-use std::fs;
-use std::path::Path;
-
 use abbe::math::{Bounds, DVec3, Ray};
 use abbe::shape::{Bvh, Mesh, Shape, Triangle, Vectors, Vertices, Visitor, read_mesh};
 
 use super::OFFSET;
+use crate::meshes::files::file;
 use crate::support::random::Random;
 
 /// Whether a walk shows an item.
@@ -97,23 +95,20 @@ fn obj(number: &str) -> String {
     format!("v 0 0 0\nv 1 {number} 0\nv 0 1 0\nf 1 2 3\n")
 }
 
-fn refusal(path: &Path, text: &str) -> Option<String> {
-    fs::write(path, text).expect("the folder can be written");
-    read_mesh(path).err()
-}
-
 #[test]
 fn b3_mesh_files_with_vertices_that_are_not_finite_are_refused() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let refusal = |name, text: String| {
+        let (_folder, path) = file(name, text);
+        read_mesh(&path).err()
+    };
     for (name, text) in [("mesh.ply", ply as fn(&str) -> String), ("mesh.obj", obj)] {
-        let path = folder.path().join(name);
         for number in ["nan", "inf", "-inf", "1e39"] {
-            let message = refusal(&path, &text(number)).unwrap_or_else(|| panic!("{name} with {number} is accepted"));
+            let message = refusal(name, text(number)).unwrap_or_else(|| panic!("{name} with {number} is accepted"));
             // By the line where it is told, else by the vertex.
             let place = ["vertex 1 ", "line 11 ", "the vertex in line 2 "];
             assert!(place.iter().any(|place| message.contains(place)), "{name} with {number}: {message}");
         }
-        assert_eq!(refusal(&path, &text("0.5")), None, "{name} is sound");
+        assert_eq!(refusal(name, text("0.5")), None, "{name} is sound");
     }
 }
 

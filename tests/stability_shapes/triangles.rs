@@ -1,11 +1,10 @@
 //! Rows T1 to T5 of the stability catalog: edges, slivers, sizes and triangles without area.
 
-use std::fs;
-
 use abbe::math::{DVec3, Frame, Ray, UNIT_ROUNDOFF};
 use abbe::shape::{Crossing, Mesh, Shape, Triangle, Vertices, read_mesh};
 
 use super::OFFSET;
+use crate::meshes::files::file;
 use crate::support::bodies::{ball, closed_mesh};
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::random::Random;
@@ -154,11 +153,9 @@ const FACES: [[u32; 3]; 4] = [[0, 1, 3], [0, 1, 2], [0, 3, 4], [0, 0, 4]];
 
 #[test]
 fn t5_triangles_without_area_are_dropped_and_reported() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
     let points: String = POINTS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
     let faces: String = FACES.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect();
-    let path = folder.path().join("flat.obj");
-    fs::write(&path, points + &faces).expect("the folder can be written");
+    let (_folder, path) = file("flat.obj", points + &faces);
     let file = read_mesh(&path).expect("the file is sound");
     let (mesh, report) = Mesh::new(file.vertices, file.faces).expect("one triangle has an area");
     assert_eq!((mesh.count(), report.degenerate), (1, 3));

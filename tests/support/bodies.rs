@@ -20,17 +20,22 @@ pub fn ball() -> (Vec<DVec3>, Vec<[u32; 3]>) {
             points.push(DVec3::new(sin * libm::cos(azimuth), sin * libm::sin(azimuth), cos));
         }
     }
-    let vertex = |ring: u32, step: u32| 2 + (ring - 1) * AROUND + step % AROUND;
+    (points, ball_faces(AROUND, RINGS))
+}
+
+/// Faces of a ball of two poles and as many rings of points between them, each ring after the one before.
+pub fn ball_faces(around: u32, rings: u32) -> Vec<[u32; 3]> {
+    let vertex = |ring: u32, step: u32| 2 + (ring - 1) * around + step % around;
     let mut faces = Vec::new();
-    for step in 0..AROUND {
+    for step in 0..around {
         faces.push([0, vertex(1, step), vertex(1, step + 1)]);
-        for ring in 1..RINGS {
+        for ring in 1..rings {
             faces.push([vertex(ring, step), vertex(ring + 1, step), vertex(ring + 1, step + 1)]);
             faces.push([vertex(ring, step), vertex(ring + 1, step + 1), vertex(ring, step + 1)]);
         }
-        faces.push([1, vertex(RINGS, step + 1), vertex(RINGS, step)]);
+        faces.push([1, vertex(rings, step + 1), vertex(rings, step)]);
     }
-    (points, faces)
+    faces
 }
 
 /// The mesh of some faces; panics if it is not closed.

@@ -2,9 +2,13 @@
 
 #![allow(dead_code)]
 
+pub mod arrivals;
 pub mod bodies;
 pub mod chi_squared;
 pub mod exact;
+pub mod fresnel;
 pub mod pictures;
 pub mod random;
+pub mod run;
 pub mod scenes;
+pub mod texts;

@@ -34,6 +34,24 @@ impl Random {
         low + (high - low) * self.number()
     }
 
+    /// A copy of a file that is cut off, changed near its beginning or has four bits turned over, by turns.
+    pub fn damaged(&mut self, whole: &[u8], turn: usize) -> Vec<u8> {
+        let mut bytes = whole.to_vec();
+        let mut within = |most: usize| (self.number() * most as f64) as usize;
+        match turn % 3 {
+            0 => bytes.truncate(within(whole.len())),
+            1 => {
+                let at = within(whole.len().min(600));
+                bytes[at] = within(256) as u8;
+            }
+            _ => (0..4).for_each(|_| {
+                let at = within(whole.len());
+                bytes[at] ^= 1 << within(8);
+            }),
+        }
+        bytes
+    }
+
     /// A uniform unit vector.
     pub fn direction(&mut self) -> DVec3 {
         ball_surface(self.pair())

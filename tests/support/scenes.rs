@@ -1,11 +1,14 @@
 //! Scenes written as text in a test, rendered, and their means judged.
 
-use std::path::PathBuf;
+use std::fmt::Debug;
+use std::ops::Range;
+use std::path::Path;
 
 use abbe::film::Film;
 use abbe::scene::{Scene, Source};
 use abbe::spectrum::{Basis, Curve};
 use abbe::trace::{Method, Report, Transport, prepare, render};
+use abbe::{Diagnostic, Error, Image, Options};
 
 /// Follows every branch down to a weight that no pixel can show.
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
@@ -27,10 +30,49 @@ shape.quad = { center = [0.3, 0.9, 3.3], u = [0.4, 0, 0], v = [0, 0.6, 0] }
 material = "plate"
 "#;
 
+/// The plane y = 0.
+pub const GROUND: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
+/// What lamps shine that are aimed at or met.
+const RADIANCE: &str = "{ rgb = [10, 20, 5] }";
+
 /// The world that a text without mistakes describes.
 pub fn scene(text: &str) -> Scene<Curve> {
-    let source = Source { path: PathBuf::from("test.toml"), text: text.to_owned() };
+    scene_in(Path::new(""), text)
+}
+
+/// The same of a text that names files in a folder.
+pub fn scene_in(folder: &Path, text: &str) -> Scene<Curve> {
+    let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
     source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+/// The first mistake of a text that is refused, which may name files in a folder.
+pub fn refusal_in(folder: &Path, text: &str) -> Diagnostic {
+    let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
+    match source.compile() {
+        Err(Error::Scene(mistakes)) => mistakes[0].clone(),
+        other => panic!("{other:?}\n{text}"),
+    }
+}
+
+/// The image of a text as its plan has it, by one thread.
+pub fn rendered(text: &str) -> Image {
+    rendered_with(text, &Options { threads: Some(1), ..Options::default() })
+}
+
+/// The same with other options.
+pub fn rendered_with(text: &str, options: &Options) -> Image {
+    let scene = Scene::parse(text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    abbe::render(&scene, options).expect("it renders")
+}
+
+/// The camera and the film of one pixel that looks along -z at hardly more than a point, with more keys of both, each
+/// behind a comma.
+pub fn one_pixel(camera: &str, film: &str) -> String {
+    format!(
+        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6{camera} }}\n\
+         film = {{ width = 1, height = 1, filter = \"center\"{film} }}\n"
+    )
 }
 
 /// The tables of a scene's camera and of a square film.
@@ -41,10 +83,29 @@ pub fn view(position: [f64; 3], look_at: [f64; 3], vertical_fov: f64, side: u32)
     )
 }
 
+/// An object of a material that stands elsewhere.
+pub fn object(material: &str, shape: &str) -> String {
+    format!("[[object]]\nshape.{shape}\nmaterial = \"{material}\"\n")
+}
+
 /// A material and objects of it.
 pub fn body(name: &str, material: &str, shapes: &[&str]) -> String {
-    let objects = shapes.iter().map(|shape| format!("[[object]]\nshape.{shape}\nmaterial = \"{name}\"\n"));
+    let objects = shapes.iter().map(|shape| object(name, shape));
     format!("[material.{name}]\n{material}\n{}", objects.collect::<String>())
+}
+
+/// A parallelogram by its center and half of its edges.
+pub fn quad(center: impl Into<[f64; 3]>, u: impl Into<[f64; 3]>, v: impl Into<[f64; 3]>) -> String {
+    format!("quad = {{ center = {:?}, u = {:?}, v = {:?} }}", center.into(), u.into(), v.into())
+}
+
+/// A lamp that is aimed at, and the same as glass that only shines, which is met by chance and never aimed at.
+pub fn lamps(shapes: &[&str]) -> [String; 2] {
+    let dark = "index = 1.5, reflectance = 0, transmittance = 0, priority = 9";
+    [
+        body("lamp", &format!("emissive = {{ radiance = {RADIANCE} }}"), shapes),
+        body("lamp", &format!("dielectric = {{ {dark}, emission = {RADIANCE} }}"), shapes),
+    ]
 }
 
 /// A light of the same radiance everywhere around.
@@ -64,21 +125,31 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
 
 /// The image of a scene by a given transport.
 pub fn image(text: &str, transport: Transport) -> (Film, Report) {
-    let scene = scene(text);
+    image_in(Path::new(""), text, transport)
+}
+
+/// The same of a scene that names files in a folder.
+pub fn image_in(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
+    let scene = scene_in(folder, text);
     let method = method(&scene, transport);
     render(&prepare(&scene, method), &|_| ())
 }
 
-/// Images of one scene under different seeds.
+/// Images of one scene by a given transport, under seeds from 0 on.
 pub fn images(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report)> {
-    images_from(text, transport, 0, seeds)
+    let scene = scene(text);
+    let asked = method(&scene, transport);
+    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ())).collect()
 }
 
-/// The same from another first seed.
-pub fn images_from(text: &str, transport: Transport, first: u64, seeds: u64) -> Vec<(Film, Report)> {
-    let scene = scene(text);
-    let seeded = |seed| Method { seed, ..method(&scene, transport) };
-    (first..first + seeds).map(|seed| render(&prepare(&scene, seeded(seed)), &|_| ())).collect()
+/// The film of a scene by a method.
+pub fn film_of(scene: &Scene<Curve>, method: Method) -> Film {
+    render(&prepare(scene, method), &|_| ()).0
+}
+
+/// Films of a scene by a method, under other seeds.
+pub fn films_of(scene: &Scene<Curve>, method: &Method, seeds: Range<u64>) -> Vec<Film> {
+    seeds.map(|seed| film_of(scene, Method { seed, ..method.clone() })).collect()
 }
 
 /// A mean of each band with its standard error.
@@ -99,15 +170,31 @@ impl Mean {
     }
 
     /// Of films under different seeds, whose pixels may see different things: the error is each pixel's own.
-    pub fn over_seeds<'a>(films: impl Iterator<Item = &'a Film> + Clone) -> Self {
-        let pixels = films.clone().next().map_or(0, |film| film.pixels.len());
-        let seeds = films.clone().count() as f64;
+    pub fn over_seeds(films: &[Film]) -> Self {
+        let (pixels, seeds) = (films[0].pixels.len(), films.len() as f64);
         let bands = [0, 1, 2].map(|band| {
-            let of_pixel = |i: usize| moments(films.clone().map(move |film| f64::from(film.pixels[i].rgb[band])));
+            let of_pixel = |i: usize| moments(films.iter().map(move |film| f64::from(film.pixels[i].rgb[band])));
             let (mean, variance) = (0..pixels).map(of_pixel).fold((0.0, 0.0), |sum, m| (sum.0 + m.0, sum.1 + m.1));
             (mean / pixels as f64, (variance / seeds).sqrt() / pixels as f64)
         });
         Self { value: bands.map(|band| band.0), error: bands.map(|band| band.1) }
+    }
+
+    /// Of images of a text under seeds from 0 on.
+    pub fn rendered(text: &str, transport: Transport, seeds: u64) -> Self {
+        let scene = scene(text);
+        Self::over_seeds(&films_of(&scene, &method(&scene, transport), 0..seeds))
+    }
+
+    /// Each band times a factor.
+    pub fn times(&self, factors: [f64; 3]) -> Self {
+        let by = |of: [f64; 3]| std::array::from_fn(|band| of[band] * factors[band]);
+        Self { value: by(self.value), error: by(self.error) }
+    }
+
+    /// The same value with the standard error of its difference from another mean.
+    pub fn beside(&self, other: &Self) -> Self {
+        Self { error: std::array::from_fn(|band| libm::hypot(self.error[band], other.error[band])), ..*self }
     }
 
     /// Every band lies within 3 standard errors of what is expected, wider only for many claims made together.
@@ -131,6 +218,29 @@ impl Mean {
     /// The largest standard error of a band relative to what is expected there.
     pub fn worst_error(&self, expected: [f64; 3]) -> f64 {
         (0..3).map(|band| self.error[band] / expected[band]).fold(0.0, f64::max)
+    }
+}
+
+/// Every number lies within a tolerance of what is expected.
+pub fn assert_near<T: Copy + Debug + Into<f64>, const N: usize>(
+    found: [T; N],
+    expected: [f64; N],
+    tolerance: f64,
+    what: &str,
+) {
+    let near = (0..N).all(|i| (found[i].into() - expected[i]).abs() <= tolerance);
+    assert!(near, "{what}: {found:?} for {expected:?}");
+}
+
+/// A lamp shows the same where it is aimed at, alone or with all others, and where chance alone meets it. The error of
+/// the difference is less than a share of it.
+pub fn assert_aimed_at_as_met([aimed_at, met]: [&str; 2], seeds: u64, share: f64, claims: usize, what: &str) {
+    let by_chance = Mean::rendered(met, SINGLE_PATH, seeds);
+    for transport in [SINGLE_PATH, SPLITTING] {
+        let aimed = Mean::rendered(aimed_at, transport, seeds).beside(&by_chance);
+        println!("{what}: {aimed:.5?} for {by_chance:.5?}");
+        assert!(aimed.worst_error(by_chance.value) < share, "{what}: {aimed:?}");
+        aimed.assert_near(by_chance.value, claims, what);
     }
 }
 

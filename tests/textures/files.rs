@@ -16,18 +16,13 @@ pub(super) fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
         })
         .collect();
     let text = format!("{}{materials}", view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4));
-    scene(folder, &format!("{text}[[light]]\nenvironment = {{ radiance = 1 }}\n"))
+    scene_in(folder, &format!("{text}[[light]]\nenvironment = {{ radiance = 1 }}\n"))
 }
 
 pub(super) fn image_of(scene: &Scene<Curve>, material: usize) -> Arc<Image> {
     let Material::Diffuse(diffuse) = &scene.materials[material].material else { panic!("all are diffuse") };
     let CurveKind::Texture(texture) = &diffuse.reflectance.kind else { panic!("all are images") };
     texture.image.clone()
-}
-
-fn assert_near(found: [f32; 3], expected: [f64; 3], tolerance: f64, what: &str) {
-    let near = (0..3).all(|c| (f64::from(found[c]) - expected[c]).abs() <= tolerance);
-    assert!(near, "{what}: {found:?} for {expected:?}");
 }
 
 /// IEC 61966-2-1, written another way than the renderer does.
@@ -202,12 +197,7 @@ pub(super) fn refusal_of(folder: &Path, material: &str) -> abbe::Diagnostic {
          shape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
         view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
     );
-    let source = Source { path: folder.join("scene.toml"), text };
-    let read = source.compile();
-    match read {
-        Err(abbe::Error::Scene(mistakes)) => mistakes[0].clone(),
-        other => panic!("{material}: {other:?}"),
-    }
+    refusal_in(folder, &text)
 }
 
 #[test]
@@ -261,18 +251,11 @@ fn impossible_texels_are_refused_with_their_place() {
     write_png(folder.path(), "huge.png", 1, L8, &[7]);
     let mut huge = std::fs::read(folder.path().join("huge.png")).unwrap();
     huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
-    let sum = checksum(&huge[12..29]);
+    let sum = crc32fast::hash(&huge[12..29]);
     huge[29..33].copy_from_slice(&sum.to_be_bytes());
     std::fs::write(folder.path().join("huge.png"), huge).unwrap();
     let told = refused("{ image = \"huge.png\" }");
     assert_eq!(told, "huge.png is not read: its 65536 x 65536 pixels are more than 134217728");
-}
-
-/// CRC-32 of ISO 3309, as PNG has it.
-fn checksum(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |sum, &byte| {
-        (0..8).fold(sum ^ u32::from(byte), |sum: u32, _| (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 })
-    })
 }
 
 #[test]
@@ -351,20 +334,7 @@ fn a_damaged_image_never_stops_the_program() {
         let source = Source { path: folder.path().join("scene.toml"), text };
         let (mut readable, mut refused) = (0, 0);
         for round in 0..900 {
-            let mut bytes = whole.clone();
-            let mut within = |most: usize| (random.number() * most as f64) as usize;
-            match round % 3 {
-                0 => bytes.truncate(within(whole.len())),
-                1 => {
-                    let at = within(whole.len().min(600));
-                    bytes[at] = within(256) as u8;
-                }
-                _ => (0..4).for_each(|_| {
-                    let at = within(whole.len());
-                    bytes[at] ^= 1 << within(8);
-                }),
-            }
-            std::fs::write(folder.path().join(name), &bytes).unwrap();
+            std::fs::write(folder.path().join(name), random.damaged(&whole, round)).unwrap();
             match source.compile() {
                 Ok(_) => readable += 1,
                 Err(abbe::Error::Scene(mistakes)) => {

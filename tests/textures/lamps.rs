@@ -4,7 +4,7 @@ use abbe::math::DVec3;
 use abbe::trace::Method;
 
 use super::*;
-use crate::support::scenes::{Mean, SPLITTING};
+use crate::support::scenes::{Mean, SPLITTING, films_of, scene};
 
 const WIDTH: usize = 4;
 /// Rows from the top: nothing is symmetric.
@@ -51,12 +51,18 @@ const LAMP: &str = "emissive = { radiance = { image = \"lamp.exr\", wrap = \"cla
 /// A small white floor below a lamp whose image faces down, seen from above; u runs along +x and v along +z.
 fn floor(model: &str) -> String {
     format!(
-        "{}up = [0, 0, -1]\n[film]\nwidth = 6\nheight = 6\n[render]\nmodel = {model}\nsamples = 64\n\
+        "{}[render]\nmodel = {model}\nsamples = 64\n\
          [material.white]\ndiffuse = {{ reflectance = 0.5 }}\n[material.lamp]\n{LAMP}\n\
          [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [0, 0, 0.01], v = [0.01, 0, 0] }}\nmaterial = \"white\"\n\
          [[object]]\nshape.quad = {{ center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }}\nmaterial = \"lamp\"\n",
-        view([0.0, 0.5, 0.0], [0.0, 0.0, 0.0], 1.0, 6).split_once("[film]").unwrap().0
+        view([0.0, 0.5, 0.0], [0.0; 3], 1.0, 6).replace("[film]", "up = [0, 0, -1]\n[film]")
     )
+}
+
+/// What is seen by all lights aimed at, or one chosen.
+fn mean(scene: &Scene<Curve>) -> Mean {
+    let method = Method { transport: SPLITTING, ..plan(scene).method };
+    Mean::over_seeds(&films_of(scene, &method, 0..16))
 }
 
 /// The film color of the floor's middle: reflectance / pi times the sum of L cos cos / r^2 over the lamp, whose
@@ -88,20 +94,14 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
     let folder = tempfile::tempdir().unwrap();
     write_lamp(folder.path());
     for model in ["\"rgb\"", "{ bands = 16 }", "\"hero\""] {
-        let scene = scene(folder.path(), &floor(model));
+        let scene = scene_in(folder.path(), &floor(model));
         let expected = expected(&scene, &plan(&scene).method.basis);
         if model == "\"rgb\"" {
             // Three numbers are what the file has, twice.
             let by_texels = sent(|uv| color(uv).map(|x| 2.0 * x));
             assert!((0..3).all(|c| (expected[c] / by_texels[c] - 1.0).abs() < 1e-5), "{expected:?} for {by_texels:?}");
         }
-        let films: Vec<Film> = (0..16)
-            .map(|seed| {
-                let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
-                render(&prepare(&scene, method), &|_| ()).0
-            })
-            .collect();
-        let mean = Mean::over_seeds(films.iter());
+        let mean = mean(&scene);
         let error = mean.worst_error(expected);
         assert!(error < 0.01, "{model}: noise {error}");
         // The floor is no point: over 0.01 to each side the form factor changes by 1e-4, in squares of the distance.
@@ -116,7 +116,6 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
 /// Every light is aimed at, or one chosen: a lamp of dark and bright images beside each other.
 #[test]
 fn a_checkered_lamp_shines_like_its_two_halves() {
-    let folder = tempfile::tempdir().unwrap();
     let lit = |lamps: &str| {
         let text = floor("\"rgb\"").replace(
             LAMP,
@@ -128,18 +127,11 @@ fn a_checkered_lamp_shines_like_its_two_halves() {
                 .replace("{ checker = [0, { rgb = [3, 2, 1] }], repeat = [2, 1], scale = 2 }", lamps)
                 .replace("center = [0.2, 1, 0.1], u = [1, 0, 0]", "center = [0.7, 1, 0.1], u = [0.5, 0, 0]"),
         };
-        let scene = scene(folder.path(), &text);
-        let films: Vec<Film> = (0..16)
-            .map(|seed| {
-                let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
-                render(&prepare(&scene, method), &|_| ()).0
-            })
-            .collect();
-        Mean::over_seeds(films.iter())
+        mean(&scene(&text))
     };
     let (checker, half) = (lit(""), lit("{ rgb = [6, 4, 2] }"));
     for c in 0..3 {
-        let error = (checker.error[c].powi(2) + half.error[c].powi(2)).sqrt();
+        let error = checker.beside(&half).error[c];
         assert!(error < 0.01 * half.value[c], "noise {error}");
         let off = (checker.value[c] - half.value[c]).abs();
         assert!(off <= 3.5 * error + 1e-6, "channel {c}: {} for {}", checker.value[c], half.value[c]);
@@ -163,7 +155,7 @@ fn an_image_turns_with_its_sphere() {
              transform = [{{ scale = [1, {stretch:?}, 1] }}, {{ rotate = {{ axis = [0, 0, 1], degrees = 90 }} }}]\n",
             view(camera.into(), point.into(), 1.0, 1)
         );
-        let found = film(&scene(folder.path(), &text)).pixels[0].rgb;
+        let found = film(&scene_in(folder.path(), &text)).pixels[0].rgb;
         let uv = [0.5 + own.x.atan2(own.z) / std::f64::consts::TAU, 0.5 + own.y.asin() / std::f64::consts::PI];
         let expected = color(uv).map(|x| 2.0 * x);
         for c in 0..3 {
@@ -242,14 +234,8 @@ fn l10_one_bright_texel_of_a_lamp_is_found() {
         exr::prelude::write_rgb_file(folder.path().join("lamp.exr"), 256, 256, bright).unwrap();
         let quad = "quad = { center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }";
         let text = floor("\"rgb\"").replace(LAMP, &LAMP.replace("wrap = \"clamp\"", "filter = \"nearest\""));
-        let scene = scene(folder.path(), &text.replace(quad, lamp.shape));
-        let films: Vec<Film> = (0..16)
-            .map(|seed| {
-                let method = Method { seed, transport: SPLITTING, ..plan(&scene).method };
-                render(&prepare(&scene, method), &|_| ()).0
-            })
-            .collect();
-        let (mean, expected) = (Mean::over_seeds(films.iter()), 2e6 * lamp.expected());
+        let scene = scene_in(folder.path(), &text.replace(quad, lamp.shape));
+        let (mean, expected) = (mean(&scene), 2e6 * lamp.expected());
         let error = mean.worst_error([expected; 3]);
         println!("{}: {} +- {} for {expected}", lamp.shape, mean.value[0], mean.error[0]);
         assert!(error < 0.01, "{}: noise {error}", lamp.shape);
@@ -267,9 +253,9 @@ fn patterns_too_fine_to_be_told_apart_shine_like_their_mean() {
                 faces = [[0, 1, 2], [0, 2, 3]], uv = [[0, 0], [1e30, 0], [1e30, -1e25], [0, 1e9]] }";
     let quad = "quad = { center = [0.2, 1, 0.1], u = [1, 0, 0], v = [0, 0, 0.8] }";
     let lit = |lamp: &str, shape: &str| {
-        let scene = scene(Path::new("."), &floor("\"rgb\"").replace(LAMP, lamp).replace(quad, shape));
+        let scene = scene(&floor("\"rgb\"").replace(LAMP, lamp).replace(quad, shape));
         let method = Method { transport: SPLITTING, ..plan(&scene).method };
-        let film = render(&prepare(&scene, method), &|_| ()).0;
+        let film = film_of(&scene, method);
         film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
     };
     let even = lit("emissive = { radiance = { rgb = [3, 2, 1] } }", quad);

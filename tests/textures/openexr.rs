@@ -59,7 +59,7 @@ fn grays_layers_and_small_letters_are_read() {
     assert_eq!(second(folder, ""), [0.1, 0.2, 0.3]);
     write(folder, "sky.exr", &[("Y", gray)]);
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"sky.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
-    scene(folder, &text);
+    scene_in(folder, &text);
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn colors_of_another_space_are_converted_and_numbers_are_not() {
         "{}[material.a]\n{mask}\n[[object]]\nmaterial = \"a\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n",
         view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4)
     );
-    let masked = scene(folder, &text);
+    let masked = scene_in(folder, &text);
     let opacity = masked.materials.iter().find_map(|named| match &named.material {
         Material::Mask(mask) => Some(mask.opacity.kind.clone()),
         _ => None,
@@ -213,7 +213,7 @@ fn colors_outside_of_rec709_are_told() {
     // A sky says so too.
     write_colors(folder, ACESCG, [[0.0, 9.0, 0.0], [0.5; 3]]);
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"a.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
-    let sky = scene(folder, &text).warnings;
+    let sky = scene_in(folder, &text).warnings;
     assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside of Rec.709")), "{sky:?}");
 }
 

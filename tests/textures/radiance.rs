@@ -66,7 +66,7 @@ fn primaries_of_a_radiance_picture_are_brought_to_rec709() {
         let text = view
             + "[material.a]\nemissive.radiance = { image = \"a.hdr\" }\n[[object]]\nmaterial = \"a\"\n\
                shape.sphere = { center = [0, 0, 0], radius = 1 }\n";
-        let scene = Source { path: folder.path().join("scene.toml"), text }.compile().unwrap();
+        let scene = scene_in(folder.path(), &text);
         let Material::Emissive(emissive) = &scene.materials[0].material else { panic!("it shines") };
         let CurveKind::Texture(texture) = &emissive.radiance.kind else { panic!("it is an image") };
         (texture.image.texel(0, 0), scene.warnings.clone())

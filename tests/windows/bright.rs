@@ -7,12 +7,12 @@ use abbe::math::{Bounds, DVec3};
 use abbe::plan::plan;
 use abbe::trace::{BrightPlace, BrightPlaces, Method, bright_places, prepare, prepare_unguided, render};
 
-use crate::support::scenes::{Mean, SPLITTING, body, environment, method, moments, scene, standard_errors, view};
+use crate::support::scenes::{
+    Mean, SPLITTING, body, environment, films_of, method, moments, quad, scene, standard_errors, view,
+};
 
 /// A closed box, 4 x 3 x 5, with holes in the wall at x = -2: each from z to z, all from y = 1 to 2.2.
 fn walls(holes: &[[f64; 2]]) -> Vec<String> {
-    let quad =
-        |center: [f64; 3], u: [f64; 3], v: [f64; 3]| format!("quad = {{ center = {center:?}, u = {u:?}, v = {v:?} }}");
     let mut quads = vec![
         quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5]),
         quad([0.0, 3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.5]),
@@ -46,7 +46,7 @@ const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 12 }
 fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let asked = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
-    (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+    films_of(&scene, &asked, 0..seeds)
 }
 
 fn learned(text: &str) -> Option<BrightPlaces> {
@@ -74,10 +74,9 @@ fn variance(films: &[Film]) -> f64 {
 }
 
 fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
-    let (mut one, other) = (Mean::over_seeds(one.iter()), Mean::over_seeds(other.iter()));
+    let [one, other] = [one, other].map(Mean::over_seeds);
     println!("{what}: {one:.5?} for {other:.5?}");
-    one.error = std::array::from_fn(|band| libm::hypot(one.error[band], other.error[band]));
-    one.assert_near(other.value, claims, what);
+    one.beside(&other).assert_near(other.value, claims, what);
 }
 
 /// A point of a floor that a rectangle lights which stands at right angles to it, by the irradiance over the radiance
@@ -111,7 +110,7 @@ fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
     let floor = ([0.4, 0.0, 0.1], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5], 2.0);
     let cases = [vec![right], vec![beside], vec![tilted], vec![floor], vec![right, beside, tilted, floor], Vec::new()];
     for case in &cases {
-        let found = Mean::over_seeds(films(&text, Some(&places(case)), 8).iter());
+        let found = Mean::over_seeds(&films(&text, Some(&places(case)), 8));
         println!("{found:.6?} for {expected:.6}");
         // Of the light that came in, the walls send on at most a thousandth of the room's mean.
         let mut wider = found;

@@ -2,11 +2,14 @@
 
 use abbe::plan::plan;
 use abbe::spectrum::Basis;
-use abbe::trace::{Method, Transport, prepare, render};
+use abbe::trace::{Method, Transport};
 
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, images, method, scene, view};
+use crate::support::fresnel::reflectances;
+use crate::support::scenes::{
+    EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_aimed_at_as_met, body, film_of, image, lamps, method,
+    scene, view,
+};
 
-const FLOOR: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
 const POINT: &str = "[[light]]\npoint = { position = [1.5, 3, 0.5], intensity = 10 }\n";
 const SUN: &str = "[[light]]\nsun = { toward = [1, 1, 0.5], irradiance = 3, angular_diameter = 0 }\n";
 const DISC: &str = "[[light]]\nsun = { toward = [1, 1, 0.5], irradiance = 3, angular_diameter = 30 }\n";
@@ -25,25 +28,23 @@ fn panes(material: &str, heights: &[f64]) -> String {
 fn under(panes: &str, lights: &str, reflectance: &str, samples: u32) -> String {
     view([3.0, 0.8, 0.5], [0.0, 0.0, 0.0], 20.0, 12)
         + &format!("[render]\nsamples = {samples}\n")
-        + &body("floor", &format!("diffuse = {{ reflectance = {reflectance} }}"), &[FLOOR])
+        + &body("floor", &format!("diffuse = {{ reflectance = {reflectance} }}"), &[GROUND])
         + panes
         + lights
 }
 
 fn mean(text: &str, transport: Transport) -> Mean {
-    Mean::over_seeds(images(text, transport, 8).iter().map(|(film, _)| film))
+    Mean::rendered(text, transport, 8)
 }
 
 /// Shares that go through a pane and come back, unpolarized, at a cosine, by Fresnel's equations and the sum over all
 /// reflections inside.
 fn pane(n: f64, t: f64, cos: f64) -> [f64; 2] {
-    let beyond = (n * n - 1.0 + cos * cos).sqrt() / n;
-    let of = |amplitude: f64| {
-        let r = amplitude * amplitude;
+    let of = |r: f64| {
         let through = (1.0 - r) * (1.0 - r) * t / (1.0 - r * r * t * t);
         [through, r + r * t * through]
     };
-    let [s, p] = [of((cos - n * beyond) / (cos + n * beyond)), of((n * cos - beyond) / (n * cos + beyond))];
+    let [s, p] = reflectances(n, cos).map(of);
     [0.5 * (s[0] + p[0]), 0.5 * (s[1] + p[1])]
 }
 
@@ -115,12 +116,10 @@ fn every_light_shines_through_a_pane_as_without_it_times_its_transmittance() {
         for heights in [vec![1.0], vec![1.0, 1.1, 2.0]] {
             let material = "thin = { index = 1, transmittance = { rgb = [0.75, 0.5, 0.1] } }";
             for transport in [SPLITTING, SINGLE_PATH] {
-                let mut through = mean(&under(&panes(material, &heights), lights, "0.5", 64), transport);
-                let share = tint.map(|t: f64| t.powi(heights.len() as i32));
-                through.error = [0, 1, 2].map(|band| libm::hypot(through.error[band], share[band] * open.error[band]));
-                let expected = [0, 1, 2].map(|band| open.value[band] * share[band]);
-                assert!(through.worst_error(expected) < 0.02, "{name}: {through:?}");
-                through.assert_near(expected, 20, name);
+                let expected = open.times(tint.map(|t: f64| t.powi(heights.len() as i32)));
+                let through = mean(&under(&panes(material, &heights), lights, "0.5", 64), transport).beside(&expected);
+                assert!(through.worst_error(expected.value) < 0.02, "{name}: {through:?}");
+                through.assert_near(expected.value, 20, name);
             }
         }
     }
@@ -138,21 +137,8 @@ fn aiming_through_panes_and_meeting_the_lamp_beyond_show_the_same() {
     );
     let sheets = things.to_owned() + &panes("thin = { index = 1.52 }", &[1.0]) + &second;
     let floor = |lamp: &str| under(&sheets, lamp, "0.5", 512).replace("\"floor\"\n", "\"gold\"\n");
-    let ball = "sphere = { center = [0, 3, 0], radius = 0.8 }";
-    let lamp = |material: &str| body("lamp", material, &[ball]);
-    let met =
-        lamp("dielectric = { index = 1.5, reflectance = 0, transmittance = 0, emission = { rgb = [10, 20, 5] } }");
-    let aimed = lamp("emissive = { radiance = { rgb = [10, 20, 5] } }");
-    let by_chance = mean(&floor(&met), SINGLE_PATH);
-    for transport in [SINGLE_PATH, SPLITTING] {
-        let mut found = mean(&floor(&aimed), transport);
-        println!("{found:.5?} for {by_chance:.5?}");
-        for band in 0..3 {
-            found.error[band] = libm::hypot(found.error[band], by_chance.error[band]);
-        }
-        assert!(found.worst_error(by_chance.value) < 0.02, "{found:?}");
-        found.assert_near(by_chance.value, 2, "through panes");
-    }
+    let [aimed_at, met] = lamps(&["sphere = { center = [0, 3, 0], radius = 0.8 }"]).map(|lamp| floor(&lamp));
+    assert_aimed_at_as_met([&aimed_at, &met], 8, 0.02, 2, "through panes");
 }
 
 #[test]
@@ -167,7 +153,7 @@ fn a_pane_is_seen_in_alpha_and_depth_and_is_no_bounce() {
     let text =
         view([0.0, 0.0, 5.0], [0.0; 3], 1.0, 1) + "[render]\nsamples = 16\nmax_bounces = 1\n" + &pane + sheet + &wall;
     let sun = "[[light]]\nsun = { toward = [0, 0, 1], irradiance = 3, angular_diameter = 0 }\n";
-    let film = images(&(text + sun), SPLITTING, 1).remove(0).0;
+    let (film, _) = image(&(text + sun), SPLITTING);
     assert_eq!(film.pixels[0].alpha, 1.0);
     assert!((film.pixels[0].depth - 3.0).abs() < 1e-3, "{}", film.pixels[0].depth);
     // Twice through the pane, and once off the wall.
@@ -183,7 +169,7 @@ fn every_model_of_color_sees_the_same_light_through_colored_panes() {
     let scene = scene(&under(&panes(material, &[1.0]), SUN, "0.5", 64));
     let found = |basis: Basis| {
         let method = Method { basis, ..method(&scene, SPLITTING) };
-        Mean::of(&render(&prepare(&scene, method), &|_| ()).0).value
+        Mean::of(&film_of(&scene, method)).value
     };
     let space = scene.film.color_space;
     let (fine, coarse) = (found(Basis::bands(space, 32, &[])), found(Basis::bands(space, 16, &[])));

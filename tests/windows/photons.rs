@@ -1,9 +1,8 @@
 //! Photons and panes: each path is found once, by the light pass or by the camera's paths.
 
-use abbe::film::Film;
-use abbe::trace::{LightPass, MapPasses, Method, prepare, render};
+use abbe::trace::{LightPass, MapPasses, Method};
 
-use crate::support::scenes::{Mean, SPLITTING, body, method, scene, view};
+use crate::support::scenes::{Mean, SPLITTING, body, films_of, method, scene, view};
 
 /// A floor with a ball of glass, under a lamp behind a pane; another pane before the camera.
 fn room(camera_pane: bool, more: &str) -> String {
@@ -28,13 +27,13 @@ fn room(camera_pane: bool, more: &str) -> String {
         + more
 }
 
-fn films(text: &str, light_pass: bool, map: bool) -> Vec<Film> {
+fn mean(text: &str, light_pass: bool, map: bool) -> Mean {
     let scene = scene(text);
     let map = map.then_some(MapPasses { count: 4, photons: 20_000, radius: 1.0, chance: 1.0 });
     let lights = (0..scene.lights.len()).collect();
     let light_pass = light_pass.then_some(LightPass { photons: 60_000, lights, map });
     let asked = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
-    (0..8).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ()).0).collect()
+    Mean::over_seeds(&films_of(&scene, &asked, 0..8))
 }
 
 #[test]
@@ -50,15 +49,12 @@ fn photons_and_paths_from_the_camera_share_out_what_passes_panes() {
         ("with a mirror and a map", true, mirror.as_str(), true),
     ] {
         let text = room(camera_pane, more);
-        let chance = Mean::over_seeds(films(&text, false, false).iter());
-        let mut photons = Mean::over_seeds(films(&text, true, map).iter());
+        let chance = mean(&text, false, false);
+        let mut photons = mean(&text, true, map).beside(&chance);
         println!("{name}: {photons:.5?} for {chance:.5?}");
-        for band in 0..3 {
-            photons.error[band] = libm::hypot(photons.error[band], chance.error[band]);
+        if map {
             // A map blurs: by what it spreads over the floor's edge, less than a thousandth here.
-            if map {
-                photons.error[band] += 0.001 * chance.value[band];
-            }
+            (0..3).for_each(|band| photons.error[band] += 0.001 * chance.value[band]);
         }
         assert!(photons.worst_error(chance.value) < 0.01, "{name}: {photons:?}");
         photons.assert_near(chance.value, 4, name);

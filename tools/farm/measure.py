@@ -1,8 +1,5 @@
 """Measures what a render in parts consists of."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -33,21 +30,10 @@ class Renderer(NamedTuple):
     samples: int | None  # of each pixel, if not those of the scene
     flags: tuple  # more words for the command
 
-    def processor_time(self, *words):
-        """Seconds of processor time that the command takes."""
-        command = [str(render.binary()), *map(str, words)]
-        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
-            said = process.stderr.read().decode()
-            _, status, used = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode:
-            sys.exit(f"{' '.join(command)}: exit code {process.returncode}\n{said}")
-        return used.ru_utime + used.ru_stime
-
     def of_scene(self, *words, samples=None):
         samples = samples or self.samples
         samples = ["--samples", samples] if samples else []
-        return self.processor_time(self.scene, "--threads", self.threads, *samples, *self.flags, *words)
+        return render.spent(self.scene, "--threads", self.threads, *samples, *self.flags, *words).processor
 
     def whole(self):
         return self.of_scene("--exr", self.folder / "whole.exr")
@@ -58,7 +44,7 @@ class Renderer(NamedTuple):
 
     def merge(self, count):
         parts = [self.folder / f"image.{number}-of-{count}.part" for number in range(1, count + 1)]
-        return self.processor_time("merge", self.folder / "image.exr", *parts)
+        return render.spent("merge", self.folder / "image.exr", *parts).processor
 
 
 def tiles_of(exr):
@@ -87,7 +73,7 @@ def merging(renderer):
 
 
 def measure(renderer):
-    start = measured(lambda: renderer.processor_time("--version"))
+    start = measured(lambda: render.spent("--version").processor)
     checked = measured(lambda: renderer.of_scene("--check"))
     planned = measured(lambda: renderer.of_scene("--plan"))
     whole = renderer.whole()

@@ -15,7 +15,6 @@ import argparse
 import json
 import re
 import resource
-import subprocess
 import tempfile
 import tomllib
 from pathlib import Path
@@ -176,7 +175,7 @@ def plan_of(name):
     """What `render --plan` says of a scene."""
     import render
 
-    return subprocess.run([render.binary(), "--plan", SCENES / f"{name}.toml"], capture_output=True, text=True, check=True).stdout
+    return render.said("--plan", SCENES / f"{name}.toml")
 
 
 def words(plan):

@@ -13,7 +13,6 @@ Prints a sentence with its numbers for each row.
 
 import argparse
 import json
-import subprocess
 import time
 from pathlib import Path
 
@@ -77,7 +76,7 @@ def merge(folder: Path, entries: list[dict], made_by: str) -> None:
     path = folder / "stability.json"
     old = json.loads(path.read_text("utf-8"))["plots"] if path.is_file() else []
     plots = {entry["row"]: entry for entry in [*old, *entries] if entry["row"] in ROWS}
-    version = subprocess.run([render.binary(), "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    version = render.said("--version").strip()
     rows = catalog(TABLE.read_text("utf-8")) if TABLE.is_file() else []
     book = {"version": version, "made_by": made_by, "plots": [plots[row] for row in ROWS if row in plots], "rows": rows}
     path.write_text(json.dumps(book, indent=1) + "\n", "utf-8")

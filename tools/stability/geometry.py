@@ -13,8 +13,8 @@ def ball_reflectance(cosine):
 
 
 def ball_rays(distance: float, count: int, precision):
-    """Origin and unit directions from `distance` along z, across 0.999 of a ball of radius 1, rounded to a "
-    "precision."""
+    """Origin and unit directions from `distance` along z, across 0.999 of a ball of radius 1, rounded to a
+    precision."""
     slope = 0.999 / distance * (2 * np.arange(count) + 1 - count) / count
     length = np.hypot(1, slope)
     zero = np.zeros(count)

@@ -122,8 +122,8 @@ def wall_share(h):
 
 
 def area_deviation(h):
-    """Standard deviation over the mean of one point drawn evenly on that lamp, by the trapezoid rule over the "
-    "logarithms."""
+    """Standard deviation over the mean of one point drawn evenly on that lamp, by the trapezoid rule over the
+    logarithms."""
     y = np.geomspace(1e-9, 2, 1500)[:, None]
     z = np.geomspace(1e-9, 1, 1500)
     square = (4 * h * y / (np.pi * (h * h + y * y + z * z) ** 2)) ** 2 * y * z / 2
@@ -201,8 +201,8 @@ def triangle_points(size: float):
 
 
 def triangle_integral(size: float, power: float) -> float:
-    """Integral of cos^power / r^2 over the triangle seen from the origin, 8 x 8 Gauss points: power 1 for the solid "
-    "angle."""
+    """Integral of cos^power / r^2 over the triangle seen from the origin, 8 x 8 Gauss points: power 1 for the solid
+    angle."""
     nodes, weights = np.polynomial.legendre.leggauss(8)
     u, v = np.meshgrid((nodes + 1) / 2, (nodes + 1) / 2)
     w = np.outer(weights, weights).T / 4 * u

@@ -178,8 +178,8 @@ def g6(quick: bool) -> Plot:
 
 
 def through(indices) -> float:
-    """Transmittance of a stack of boundaries at normal incidence, all orders summed: reflectance over transmittance "
-    "adds up."""
+    """Transmittance of a stack of boundaries at normal incidence, all orders summed: reflectance over transmittance
+    adds up."""
     r = [((a - b) / (a + b)) ** 2 for a, b in pairwise(indices)]
     return 1 / (1 + sum(one / (1 - one) for one in r))
 

@@ -9,12 +9,8 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
 from render import binary, read
 
 KILLS = int(os.environ.get("KILLS", "10"))

@@ -4,6 +4,7 @@ pytest tools/tests/test_radiometry.py
 """
 
 import re
+import subprocess
 from datetime import UTC, datetime
 
 import check_exr
@@ -82,7 +83,7 @@ def test_openimageio_tells_luminance_lens_and_date(tmp_path):
     render.write(SCENE.format(lamp="1", film=ABSOLUTE, camera=camera, model='"auto"'), path, threads=2)
     assert "capDate" not in check_exr.read(path).header
     command = [str(render.binary()), str(path.with_suffix(".toml")), "--exr", str(path), "--threads", "2", "--stamp"]
-    render.subprocess.run(command, check=True, capture_output=True)
+    subprocess.run(command, check=True, capture_output=True)
     assert check_exr.violations(path) == []
     spec = oiio.ImageInput.open(str(path)).spec()
     behind = 36 / (4 * np.tan(np.radians(20)))

@@ -19,7 +19,6 @@ import json
 import math
 import os
 import re
-import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -96,11 +95,10 @@ def entry(judged):
 
 
 def write_json(results, path):
-    run = subprocess.run([render.binary(), "--version"], capture_output=True, text=True, check=True)
     command = (
         " ".join(["python tools/validate.py", *sys.argv[1:]]) if "validate" in sys.argv[0] else "tools/validate.py"
     )
-    content = {"version": run.stdout.strip(), "made_by": command, "rows": [entry(judged) for judged in results]}
+    content = {"version": render.said("--version").strip(), "made_by": command, "rows": [entry(judged) for judged in results]}
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(content, indent=1) + "\n")
 

@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use abbe::math::DVec3;
 
 use super::{BANDS, Case, assert_closed_forms, by_quad, case, lamp};
+use crate::support::scenes::quad;
 
 /// Sides, a sky beside a lamp, and more lights than are all aimed at.
 fn combined_lights() -> Vec<Case> {
@@ -22,12 +23,7 @@ fn combined_lights() -> Vec<Case> {
             (center, DVec3::new(0.3, 0.05 * f64::from(i), 0.0), DVec3::new(0.0, 0.1, 0.2 + 0.01 * f64::from(i)))
         })
         .collect();
-    let quads: Vec<String> = ring
-        .iter()
-        .map(|(c, u, v)| {
-            format!("quad = {{ center = {:?}, u = {:?}, v = {:?} }}", c.to_array(), u.to_array(), v.to_array())
-        })
-        .collect();
+    let quads: Vec<String> = ring.iter().map(|&(center, u, v)| quad(center, u, v)).collect();
     let quads: Vec<&str> = quads.iter().map(String::as_str).collect();
     let by_ring: f64 = ring.iter().map(|&(c, u, v)| by_quad([0.0; 3], c, u, v)).sum();
     // A disc wholly above the floor sends its irradiance times the cosine of its middle, however wide it is.
@@ -88,7 +84,7 @@ fn crowds() -> Vec<Case> {
         for (i, j) in (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j))) {
             let [x, z] = [i, j].map(|k| 1.3 * f64::from(k) - 0.8 * f64::from(rows) + 0.37);
             let (center, u, v) = (DVec3::new(x, 2.0, z), DVec3::X * 0.2, DVec3::Z * 0.1);
-            squares.push(format!("quad = {{ center = [{x:?}, 2, {z:?}], u = [0.2, 0, 0], v = [0, 0, 0.1] }}"));
+            squares.push(quad(center, u, v));
             irradiance += by_quad([0.0; 3], center, u, v);
             if (i + 2 * j) % 3 == 0 {
                 let (way, intensity) = (DVec3::new(x + 0.3, 1.0 + 0.1 * f64::from(j % 5), z), 0.01 * f64::from(1 + i));

@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use abbe::math::DVec3;
 
 use super::{Case, assert_closed_forms, by_polygon, by_quad, case};
+use crate::support::scenes::quad;
 
 /// Discs and polygons.
 fn flat_lights() -> Vec<Case> {
@@ -11,23 +12,12 @@ fn flat_lights() -> Vec<Case> {
     let triangle = [DVec3::new(-1.0, 1.0, 0.5), DVec3::new(2.0, 1.5, 0.0), DVec3::new(0.0, 0.7, -2.0)];
     let points = triangle.map(|p| format!("{:?}", p.to_array())).join(", ");
     let wall = |h: f64, below: f64| {
-        let quad = format!(
-            "quad = {{ center = [{:?}, {:?}, 0], u = [0, {:?}, 0], v = [0, 0, 1] }}",
-            -h,
-            0.5 - below,
-            0.5 + below
-        );
-        let (center, u) = (DVec3::new(-h, 0.5, 0.0), DVec3::Y * 0.5);
-        (quad, by_quad([0.0; 3], center, u, DVec3::Z))
+        let whole = quad([-h, 0.5 - below, 0.0], DVec3::Y * (0.5 + below), DVec3::Z);
+        (whole, by_quad([0.0; 3], DVec3::new(-h, 0.5, 0.0), DVec3::Y * 0.5, DVec3::Z))
     };
     let ((near, by_near), (sunk, by_sunk)) = (wall(1e-4, 0.0), wall(0.5, 0.4));
     let tilted = (DVec3::new(0.6, 1.4, 0.2), DVec3::new(0.8, 0.3, 0.1), DVec3::new(-0.2, 0.3, 0.9));
-    let tilted_quad = format!(
-        "quad = {{ center = {:?}, u = {:?}, v = {:?} }}",
-        tilted.0.to_array(),
-        tilted.1.to_array(),
-        tilted.2.to_array()
-    );
+    let tilted_quad = quad(tilted.0, tilted.1, tilted.2);
     vec![
         case("G1 disc", &["disc = { center = [0, 2, 0], normal = [0, -1, 0], radius = 1 }"], high),
         case("disc close by", &["disc = { center = [0, 0.3, 0], normal = [0, 1, 0], radius = 1 }"], low),

@@ -1,7 +1,7 @@
 //! The `render` command, run in a folder of its own.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
 
@@ -20,12 +20,30 @@ impl Folder {
         Self(tempfile::tempdir().expect("a temporary folder can be made"))
     }
 
+    /// A folder with a file in it.
+    pub fn with(name: &str, content: impl AsRef<[u8]>) -> Self {
+        let folder = Self::new();
+        folder.write(name, content);
+        folder
+    }
+
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    pub fn write(&self, name: &str, text: &str) {
-        fs::write(self.path().join(name), text).expect("files can be written");
+    pub fn path_of(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// Writes a file, which may stand in folders that are not there yet.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let path = self.path_of(name);
+        fs::create_dir_all(path.parent().expect("a file stands in a folder")).expect("folders can be made");
+        fs::write(path, content).expect("files can be written");
+    }
+
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path_of(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     /// The names in the folder, in order.
@@ -35,6 +53,14 @@ impl Folder {
         let mut names: Vec<String> = entries.map(|entry| name(entry.expect("an entry can be read"))).collect();
         names.sort();
         names
+    }
+}
+
+impl Answer {
+    /// Refused with this text and nothing on stdout.
+    pub fn assert_refused(&self, code: i32, stderr: &str) {
+        assert_eq!(self.stderr, stderr);
+        assert_eq!((self.code, &*self.stdout), (Some(code), ""));
     }
 }
 

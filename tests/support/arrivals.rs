@@ -1,11 +1,11 @@
 //! Materials written as text, and light that arrives at them.
 
-use abbe::material::{Arrival, Index, Material};
+use abbe::material::{Arrival, Index, Material, Scatter};
 use abbe::math::{DVec3, Frame};
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
 
-use crate::support::scenes::{SINGLE_PATH, method, scene, view};
+use super::scenes::{SINGLE_PATH, method, scene, view};
 
 /// Materials that others are made of.
 pub const PARTS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
@@ -14,6 +14,9 @@ pub const PARTS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
     [material.smooth]\nplastic = { reflectance = 1 }\n\
     [material.rough]\nplastic = { reflectance = 1, roughness = 0.4 }\n\
     [material.silver]\nconductor = { n = 1e-6, k = 100, roughness = 0.6 }\n";
+
+/// A metal that takes less than 1e-9 of the light at right angles.
+pub const LOSSLESS: &str = "n = 1e-6, k = 100";
 
 /// The material of a text, in three bands.
 pub fn material(text: &str) -> Material<Table> {
@@ -27,12 +30,11 @@ pub const NORMAL: DVec3 = DVec3::new(0.6, -0.48, 0.64);
 
 /// A unit vector at a cosine to the normal.
 pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
-    let (sin, (y, x)) = ((1.0 - cos * cos).max(0.0).sqrt(), libm::sincos(azimuth));
-    Frame::about(NORMAL).to_world(DVec3::new(sin * x, sin * y, cos)).normalize()
+    Frame::about(NORMAL).to_world(about_z(cos, azimuth)).normalize()
 }
 
 /// Light from a surface under a medium of an index, toward `wo`.
-pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
+pub fn arrival<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Arrival<'_, N> {
     let [incident, beyond] = [Index::Same(index); 2];
     Arrival {
         wo,
@@ -47,6 +49,34 @@ pub fn arrival(draw: &Draw<4>, wo: DVec3, index: f64) -> Arrival<'_, 4> {
         direction_indices: [None; 2],
         together: 0.0,
     }
+}
+
+/// A unit vector at a cosine to the z axis.
+pub fn about_z(cos: f64, azimuth: f64) -> DVec3 {
+    let (sin, (y, x)) = ((1.0 - cos * cos).max(0.0).sqrt(), libm::sincos(azimuth));
+    DVec3::new(sin * x, sin * y, cos)
+}
+
+/// What each band shows of an even environment, whose radiance over n^2 is 1, with the standard error if draws are
+/// independent.
+pub fn furnace(material: &Material<Table>, arrival: &Arrival<4>, draws: u32) -> [[f64; 2]; 3] {
+    let (mut sums, mut branches) = ([[0.0; 2]; 3], Vec::new());
+    for u in points(draws) {
+        material.scatter(arrival, u, &mut branches);
+        let mut shown = [0.0; 3];
+        for branch in branches.drain(..) {
+            (0..3).for_each(|band| shown[band] += f64::from(branch.share[band]) / branch.eta_scale);
+        }
+        for (sum, shown) in sums.iter_mut().zip(shown) {
+            *sum = [sum[0] + shown / f64::from(draws), sum[1] + shown * shown / f64::from(draws)];
+        }
+    }
+    let straight =
+        material.straight(arrival).map_or([0.0; 3], |straight| [0, 1, 2].map(|band| straight.share()[band].into()));
+    std::array::from_fn(|band| {
+        let [mean, square] = sums[band];
+        [mean + straight[band], ((square - mean * mean).max(0.0) / f64::from(draws)).sqrt()]
+    })
 }
 
 /// The points of Hammersley in the unit square.
