@@ -3,7 +3,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use serde::Deserialize;
+
+/// Reads base 64 (RFC 4648, section 4) with its padding and without.
+const BASE_64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
 
 /// A block of bytes: in a file beside, in the text of its address, or in the binary chunk.
 #[derive(Deserialize)]
@@ -76,7 +87,8 @@ impl Store {
                 (Some(uri), _) => match uri.strip_prefix("data:") {
                     Some(data) => {
                         let text = data.split_once(";base64,").map(|(_, text)| text);
-                        text.and_then(base64).ok_or_else(|| format!("buffer {number} is not text in base 64"))?
+                        text.and_then(|text| BASE_64.decode(text).ok())
+                            .ok_or_else(|| format!("buffer {number} is not text in base 64"))?
                     }
                     None => {
                         let path = folder.join(unescaped(uri));
@@ -212,29 +224,6 @@ fn whole_number(component_type: u32) -> Option<fn(&[u8]) -> u32> {
         UNSIGNED_INT => Some(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
         _ => None,
     }
-}
-
-/// The bytes of a text in base 64 (RFC 4648, section 4); none if it is not.
-fn base64(text: &str) -> Option<Vec<u8>> {
-    let text = text.trim_end_matches('=');
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
-    let (mut bits, mut held) = (0_u32, 0);
-    for letter in text.bytes() {
-        let digit = match letter {
-            b'A'..=b'Z' => letter - b'A',
-            b'a'..=b'z' => letter - b'a' + 26,
-            b'0'..=b'9' => letter - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => return None,
-        };
-        (bits, held) = (bits << 6 | u32::from(digit), held + 6);
-        if held >= 8 {
-            held -= 8;
-            bytes.push((bits >> held) as u8);
-        }
-    }
-    Some(bytes)
 }
 
 /// An address with its %20 and the like as the bytes they stand for (RFC 3986, section 2.1).
