@@ -8,7 +8,7 @@ use crate::trace::{FIRST_LOOK, Stop};
 
 /// Fewest that replicates can share.
 const FEWEST: u32 = 8;
-/// Camera samples of a whole image that an error is believed of, at least: of a single pixel, 64 would often miss a lamp
+/// Camera samples of a whole image that an error is believed of, at least: 64 of a single pixel would often miss a lamp
 /// that fills a hundredth of it.
 const BELIEVED: u32 = 4096;
 /// Most samples where the scene does not say.

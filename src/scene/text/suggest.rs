@@ -78,7 +78,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 8] = [
     ),
 ];
 
-/// Sections whose keys are taken for each other's: a key that this one alone has, and others that are looked for elsewhere.
+/// Sections whose keys are looked for in others: a key that this one alone has, and those that are mistaken.
 const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
     ("camera", "look_at", &["position", "up", "vertical_fov", "lens", "projection", "shift", "polarizer", "near"]),
     ("film", "color_space", &["width", "filter", "crop", "overscan", "layers", "precision", "compression", "stokes"]),
