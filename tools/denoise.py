@@ -14,6 +14,7 @@ A denoised image looks clean but is biased: measure and compare the noisy one, w
 
 import argparse
 import os
+import shutil
 import sys
 from pathlib import Path
 
@@ -104,6 +105,8 @@ def write(parts, before, out):
         with OpenEXR.File(str(partial), separate_channels=True) as written:
             if lost := sorted(changed(before, written.parts)):
                 sys.exit(f"{out}: not written, for this would not stay as it is: {', '.join(lost)}")
+        if out.exists():
+            shutil.copymode(out, partial)
         os.replace(partial, out)
     except (OSError, RuntimeError) as error:
         sys.exit(f"{out}: cannot be written: {error}")

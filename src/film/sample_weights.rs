@@ -26,7 +26,10 @@ impl SampleWeights {
     /// Of so many samples that are added, and so many that are subtracted. Where none is added there is nothing to
     /// subtract from, and the others are the image.
     pub fn new(filter: Filter, counts: [u32; 2]) -> Self {
-        let absolute = filter.absolute_integral();
+        Self::by(filter.absolute_integral(), counts)
+    }
+
+    fn by(absolute: f64, counts: [u32; 2]) -> Self {
         let [added, subtracted] = counts.map(f64::from);
         let each = match counts {
             [_, 0] => [1.0, 0.0],
@@ -34,6 +37,21 @@ impl SampleWeights {
             _ => [(added + subtracted + absolute * subtracted) / added, absolute],
         };
         Self { counts, absolute, each }
+    }
+
+    /// The weights of a part of these samples by itself.
+    pub fn of_part(&self, counts: [u32; 2]) -> Self {
+        Self::by(self.absolute, counts)
+    }
+
+    /// The weights of those that are not in a part.
+    pub fn of_others(&self, counts: [u32; 2]) -> Self {
+        self.of_part([0, 1].map(|i| self.counts[i].saturating_sub(counts[i])))
+    }
+
+    /// Whether any sample is subtracted.
+    pub fn subtracts(&self) -> bool {
+        self.counts[1] > 0
     }
 
     /// How many samples there are.

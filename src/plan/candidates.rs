@@ -37,8 +37,8 @@ pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
 fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
-    let films = smooth.iter().filter(|tint| tint.has_fringes()).count();
-    let in_lanes = paths(&read(scattering), &read(smooth), films);
+    let films = films_of(smooth);
+    let in_lanes = paths(&read(scattering), &read(smooth), &films);
     let mut worst: f64 = 0.0;
     for (curve, light) in survey.judged() {
         let exact = exact_colors(light, scattering, smooth, basis);
@@ -60,14 +60,15 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
 fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis: &Basis) -> Vec<[f64; 3]> {
     let colors = light.film_colors();
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&colors.wavelengths_nm, basis)).collect::<Vec<_>>();
-    let films = smooth.iter().filter(|tint| tint.has_fringes()).count();
-    paths(&read(scattering), &read(smooth), films).iter().map(|path| colors.color(path)).collect()
+    let films = films_of(smooth);
+    paths(&read(scattering), &read(smooth), &films).iter().map(|path| colors.color(path)).collect()
 }
 
 /// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way
 /// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces, of which at most
-/// one is one of the `films`, the first ones: two never share their fringes as a film does with itself.
-fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: usize) -> Vec<Vec<f64>> {
+/// one is one of the `films`, the first ones: two never share their fringes as a film does with itself. What enters a
+/// body through its film leaves through it, so that one that light crosses is crossed twice.
+fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Vec<f64>> {
     let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
     let count = scattering.len().max(1) as f64;
     let mean: Vec<f64> = (0..length).map(|i| scattering.iter().map(|r| r[i]).sum::<f64>() / count).collect();
@@ -82,10 +83,18 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: usize) -> Vec<Vec<
         }
     }
     for (number, first) in smooth.iter().enumerate() {
-        paths.extend(smooth[number.max(films)..].iter().map(|second| product(first, second)));
+        paths.extend(smooth[number.max(films.len())..].iter().map(|second| product(first, second)));
+        if films.get(number) == Some(&true) {
+            paths.push(product(first, first));
+        }
         paths.push(first.clone());
     }
     paths
+}
+
+/// Of the first tints, in which light interferes, whether light crosses them.
+fn films_of(smooth: &[&Tint]) -> Vec<bool> {
+    smooth.iter().take_while(|tint| tint.has_fringes()).map(|tint| tint.is_crossed_film()).collect()
 }
 
 /// Mean reflectance beyond which a closed room is not followed.

@@ -70,7 +70,7 @@ const TOGETHER_PIXELS: f64 = 0.01;
 /// Decides how to render a scene.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
     let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
-    let (method, reason) = before_light(scene, basis);
+    let (method, reason) = before_light(scene, basis, model_error);
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
     let Lit { world, because, taught } = Lit::new(scene, &unlit);
@@ -114,10 +114,10 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
 }
 
 /// What does not depend on how light is found, and in words, which branches are followed.
-fn before_light(scene: &Scene<Curve>, basis: Basis) -> (Method, String) {
+fn before_light(scene: &Scene<Curve>, basis: Basis, model_error: f64) -> (Method, String) {
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
-    let stop = stopping::stop(&scene.render, scene.film.window());
+    let stop = stopping::stop(&scene.render, scene.film.window(), model_error);
     let samples = match (transport, scene.render.samples) {
         _ if stop.is_some() => stopping::COUNTED_FOR,
         (_, Some(samples)) => samples,

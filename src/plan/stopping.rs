@@ -15,18 +15,21 @@ const BELIEVED: u32 = 4096;
 const MOST: u32 = 65_536;
 /// Samples that photons are counted for: as many for each, however many there will be.
 pub(super) const COUNTED_FOR: u32 = 1024;
-/// The part of the error that is left for noise where a third of it is left for the model of color: squares add up.
+/// The least part of the error that is left for noise: where the model of color misses a third of it.
 const NOISE: f64 = 0.942_809_041_582_063_4;
 
 /// When a render has enough, if it does not take all samples whatever they show.
-pub(super) fn stop(render: &RenderText, window: Window) -> Option<Stop> {
+///
+/// The model of color may miss a third of the error; what it does not is left for noise, as squares add up.
+pub(super) fn stop(render: &RenderText, window: Window, model_error: f64) -> Option<Stop> {
     let RenderText { error, time, samples, is_part, .. } = *render;
     let most = samples.unwrap_or(MOST) / FEWEST * FEWEST;
     let fewest = if time.is_some() { FEWEST } else { FIRST_LOOK };
     let asked = error.is_some() || time.is_some();
     let pixels = window.width.saturating_mul(window.height).max(1);
     let least = BELIEVED.div_ceil(pixels).clamp(FIRST_LOOK.min(most), most);
-    (asked && most >= fewest && !is_part).then(|| Stop { noise: error.map(|error| NOISE * error), time, least, most })
+    let noise = error.map(|error| (error * error - model_error * model_error).max(0.0).sqrt().max(NOISE * error));
+    (asked && most >= fewest && !is_part).then_some(Stop { noise, time, least, most })
 }
 
 /// What a person is told of it.
@@ -42,15 +45,13 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
         });
     };
     let within = |error: f64| {
-        let noise = percent(NOISE * error);
+        let (all, noise) = (percent(error), stop.noise.map(percent).unwrap_or_default());
         let color = match model_error {
             alone if alone > error => format!("; color alone may be off by {}", percent(alone)),
             _ => String::new(),
         };
-        format!(
-            "when the error is at most {} in 95 of 100 renders (noise {noise}, the rest color{color})",
-            percent(error)
-        )
+        let parts = if noise == all { color } else { format!(" (noise {noise}, the rest color{color})") };
+        format!("when the error is at most {all} in 95 of 100 renders{parts}")
     };
     let after = |time: std::time::Duration| {
         format!("after {} and at least {FEWEST} samples per pixel", spoken(time.as_secs_f64()))

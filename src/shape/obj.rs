@@ -36,7 +36,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
                 lists.normals.push(normal.map(|x| x as f32));
             }
             "f" | "fo" => lists.face(line, words, smooth).map_err(|what| format!("the face in line {line} {what}"))?,
-            "mtllib" => lists.names_materials = true,
+            "mtllib" | "usemtl" => lists.names_materials = true,
             _ => {}
         }
     }

@@ -108,6 +108,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     unused(context, &placed, &drafts);
     contacts(context, &placed);
     faces_inward(context, &placed);
+    panes_of_glass(context, &placed);
     let mut others = light::Lights::default();
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;
@@ -190,10 +191,26 @@ fn is_clear(placed: &Placed, object: &Object) -> bool {
     placed.materials[object.material as usize].material.medium().is_some()
 }
 
+fn is_flat(object: &Object) -> bool {
+    matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
+}
+
 /// A lamp that has no inside.
 fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
-    let shines = matches!(placed.materials[object.material as usize].material, Material::Emissive(_));
-    shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
+    matches!(placed.materials[object.material as usize].material, Material::Emissive(_)) && is_flat(object)
+}
+
+/// Warns of a flat surface that is all there is of its clear material, so that nothing closes the body.
+fn panes_of_glass(context: &mut Context, placed: &Placed) {
+    let mut counts = vec![0; placed.materials.len()];
+    placed.objects.iter().for_each(|object| counts[object.material as usize] += 1);
+    let alone = |object: &&Object| is_flat(object) && is_clear(placed, object) && counts[object.material as usize] == 1;
+    for pane in placed.objects.iter().filter(alone) {
+        context.warn(format!(
+            "{}: a dielectric on one flat surface: light may enter it and never leave; a pane is thin = {{ index = 1.5 }}",
+            pane.name
+        ));
+    }
 }
 
 /// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp

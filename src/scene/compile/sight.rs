@@ -50,7 +50,7 @@ impl<'a> Sight<'a> {
         for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {
             let film = DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height));
             let mut places = Vec::new();
-            self.walk(self.scene.camera.ray(film), &Sampler::new(1, [i, 0], 0), |place| {
+            self.walk_from(true, self.scene.camera.ray(film), &Sampler::new(1, [i, 0], 0), |place| {
                 places.push(place);
                 false
             });
@@ -64,11 +64,18 @@ impl<'a> Sight<'a> {
 
     /// Follows a ray over surfaces that scatter evenly or mirror; `met` is told of each, and ends the walk by `true`,
     /// which is the answer then.
-    pub(super) fn walk(&self, mut ray: Ray, sampler: &Sampler, mut met: impl FnMut(Place) -> bool) -> bool {
+    pub(super) fn walk(&self, ray: Ray, sampler: &Sampler, met: impl FnMut(Place) -> bool) -> bool {
+        self.walk_from(false, ray, sampler, met)
+    }
+
+    /// The same of a ray from the camera or from elsewhere: the camera's goes straight through what it does not see.
+    fn walk_from(&self, is_camera: bool, mut ray: Ray, sampler: &Sampler, mut met: impl FnMut(Place) -> bool) -> bool {
         let (mut key, mut turns) = (BranchKey::CAMERA, 0);
         for _ in 0..LONGEST {
             self.rays.set(self.rays.get() + 1);
-            let Some(hit) = self.scene.intersect(&ray) else { return false };
+            let of_camera = is_camera && turns == 0;
+            let hit = if of_camera { self.scene.intersect_seen(&ray, None) } else { self.scene.intersect(&ray) };
+            let Some(hit) = hit else { return false };
             let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
             let material = self.scene.material_of(hit.object);
             let [u, v, pass, _] = sampler.four_plain(key, 0);
@@ -92,6 +99,18 @@ impl<'a> Sight<'a> {
             ray = point.leave(direction);
         }
         false
+    }
+
+    /// The objects that rays through all of the image meet first, each with whether it is met from its back.
+    pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
+        let film = self.scene.film;
+        let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
+        (0..SIDE * SIDE).map(move |i| {
+            let ray = self.scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height)));
+            let hit = self.scene.intersect_seen(&ray, None)?;
+            let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            Some((hit.object, point.normal.dot(ray.direction) > 0.0))
+        })
     }
 
     /// Whether light never crosses an object.

@@ -30,7 +30,10 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
         dark.retain(|id| !reaches(id));
         dark.is_empty() || sight.rays.get() > MOST_RAYS
     });
-    if sight.places.is_empty() || sight.rays.get() > MOST_RAYS {
+    if sight.places.is_empty() {
+        return empty_view(&sight).into_iter().collect();
+    }
+    if sight.rays.get() > MOST_RAYS {
         return Vec::new();
     }
     let mut found: Vec<String> = dark.iter().filter_map(|&id| what_is_wrong(&sight, id)).collect();
@@ -40,6 +43,23 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
         found.push(format!("{more} more lights light nothing that the camera sees"));
     }
     found
+}
+
+/// What is wrong with a camera that sees neither an object nor a sky.
+fn empty_view(sight: &Sight) -> Option<String> {
+    let Scene { lights, hidden_lights, .. } = sight.scene;
+    let shows_sky = (0..lights.len()).any(|id| lights[id].is_infinite() && !hidden_lights.contains(&id));
+    let is_empty = !lights.is_empty() && !shows_sky && sight.first_met().all(|met| met.is_none());
+    is_empty
+        .then(|| "the camera sees no object: none of 576 rays meets one; `look_at` is a point that it looks at".into())
+}
+
+/// The name of the opaque object that the camera is inside of, if all that it sees is the inside of one.
+fn around_the_camera(sight: &Sight) -> Option<String> {
+    let mut met = sight.first_met();
+    let (object, _) = met.next()??;
+    let is_inside = met.all(|met| met == Some((object, true)));
+    is_inside.then(|| sight.scene.objects[object as usize].name.clone())
 }
 
 /// What is wrong with a light that paths from the camera have not met.
@@ -54,7 +74,13 @@ fn what_is_wrong(sight: &Sight, id: LightId) -> Option<String> {
             Paths::Unseen => Some(unseen(light)),
         },
     }?;
-    Some(format!("{} {why}", name(sight.scene, id)))
+    let name = name(sight.scene, id);
+    Some(match around_the_camera(sight).filter(|_| light.is_infinite()) {
+        Some(body) => {
+            format!("{name} lights nothing that the camera sees: the camera is inside {body}, which is opaque")
+        }
+        None => format!("{name} {why}"),
+    })
 }
 
 /// What paths from a light found.

@@ -21,6 +21,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(|error| match error {
         // Of all that a file's head may ask for, this alone is what other programs read.
         exr::error::Error::NotSupported(what) if what.contains("subsampling") => Unreadable::Sparse,
+        exr::error::Error::NotSupported(what) if what.contains("deep") => Unreadable::Deep,
         other => other.into(),
     })?;
     for header in reader.headers() {

@@ -8,7 +8,7 @@ use crate::scene::share;
 use crate::spectrum::ColorSpace;
 
 /// Words of other renderers, and what is called so here.
-const ELSEWHERE: [(&str, &str); 34] = [
+const ELSEWHERE: [(&str, &str); 52] = [
     ("ior", "index"),
     ("eta", "index"),
     ("albedo", "reflectance"),
@@ -43,11 +43,29 @@ const ELSEWHERE: [(&str, &str); 34] = [
     ("light", "emissive"),
     ("spp", "samples"),
     ("max_depth", "max_bounces"),
+    ("samples_per_pixel", "samples"),
+    ("sample_count", "samples"),
+    ("noise_threshold", "error"),
+    ("int_ior", "index"),
+    ("strength", "scale"),
+    ("multiplier", "scale"),
+    ("intensity", "scale"),
+    ("rotation", "transform"),
+    ("factor", "amount"),
+    ("rectangle", "quad"),
+    ("cylinder", "mesh"),
+    ("envmap", "environment"),
+    ("infinite", "environment"),
+    ("roughplastic", "plastic"),
+    ("coateddiffuse", "plastic"),
+    ("principled", "plastic"),
+    ("roughdielectric", "dielectric"),
+    ("roughconductor", "conductor"),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 8] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 16] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -76,7 +94,35 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 8] = [
         "environment",
         "a surface that shines is an [[object]] whose material is `emissive`",
     ),
+    (
+        &["radiance", "intensity", "irradiance", "power", "color", "strength"],
+        "environment",
+        "write the kind of light around it, such as environment = { radiance = 1 }",
+    ),
+    (&["direction", "from"], "angular_diameter", "write `toward`, from the scene to the sun, not the way of its light"),
+    (
+        &["fov", "field_of_view"],
+        "vertical_fov",
+        "write vertical_fov, in degrees; elsewhere `fov` may be that of the width or of the shorter side",
+    ),
+    (
+        &["color", "tint"],
+        "priority",
+        "write transmittance = { rgb = [0.9, 0.5, 0.5] } for the color of its surface, or `absorption` for that of its depth",
+    ),
+    (&["a", "b", "first", "second"], "amount", "write materials = [\"one\", \"other\"]"),
+    (&["alpha"], "roughness", "write `roughness`, the square root of alpha"),
+    (&["diameter"], "radius", "write `radius`, half of it"),
+    (
+        &["diffuse", "emissive", "dielectric", "conductor", "mirror", "plastic", "thin", "color", "roughness"],
+        "shape",
+        "write it in a [material.NAME], and material = \"NAME\" here",
+    ),
 ];
+
+/// Keys of an object that stand in its shape by mistake, and keys of which a shape has one.
+const BESIDE_SHAPE: [&[&str]; 2] =
+    [&["material", "transform", "instances", "name", "visible_to_camera"], &["center", "normal", "file", "points"]];
 
 /// Sections whose keys are looked for in others: a key that this one alone has, and those that are mistaken.
 const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
@@ -111,7 +157,12 @@ fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
         let (key, _) = spectra.into_iter().find(|(key, fits)| is_kind && *fits && known.contains(key))?;
         Some(format!("write {key} = {{ {word} = .. }}"))
     };
-    help.map(|(.., help)| (*help).to_owned()).or_else(of_spectrum).or_else(|| in_another_section(word, known))
+    let [of_object, of_shape] = BESIDE_SHAPE;
+    let is_within = of_object.contains(&word) && of_shape.iter().any(|key| known.contains(key));
+    help.map(|(.., help)| (*help).to_owned())
+        .or_else(|| is_within.then(|| "write it beside `shape`, in its [[object]]".into()))
+        .or_else(of_spectrum)
+        .or_else(|| in_another_section(word, known))
 }
 
 /// Where a key belongs that one section has, and another, or the file outside of all of them, does not know.

@@ -218,6 +218,19 @@ impl Taken<'_> {
         self.weights.sum(sums) / self.weights.taken() + shown
     }
 
+    /// The mean of a channel over so many samples that are added and subtracted, of which these are the sums: by their own
+    /// weights, but so that this mean and that of all other samples have the mean of all.
+    fn half(&self, sums: [f64; 2], taken: [u32; 2], channel: usize) -> f64 {
+        let (weights, all) = (&self.weights, self.rgb.map(|rgb| rgb[channel]));
+        let [own, others] = [weights.of_part(taken), weights.of_others(taken)];
+        if !weights.subtracts() {
+            return own.sum(sums) / own.taken();
+        }
+        let rest = [0, 1].map(|i| all[i] - sums[i]);
+        let apart = own.sum(sums) / own.taken() - others.sum(rest) / others.taken();
+        weights.sum(all) / weights.taken() + apart * f64::from(others.kept()) / weights.taken()
+    }
+
     fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
         let (sums, shown) = self.number(at + channel);
         let weights = &self.weights;
@@ -232,7 +245,7 @@ impl Taken<'_> {
             Layer::HalfA | Layer::HalfB => {
                 let (taken, _) = self.number(at + OF_A_HALF - 1);
                 let counts = self.counts.halves[usize::from(layer == Layer::HalfB)];
-                weights.sum(sums) / (taken[0] + taken[1]).max(1.0) + counts * shown
+                self.half(sums, taken.map(|count| count as u32), channel) + counts * shown
             }
             _ if layer.is_light() => self.light(at + channel),
             _ => sums[0] / weights.added(),
