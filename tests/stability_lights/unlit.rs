@@ -103,9 +103,28 @@ fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
         ) + &light("point = { position = [0, 6, 0], intensity = 9 }"),
         light("sun = { toward = [0, 1, -0.2], irradiance = 9 }"),
         environment(1.0),
+        // Behind what the camera does not see.
+        lamp("quad = { center = [0, 5, -20], u = [9, 0, 0], v = [0, 9, 0] }")
+            + &body(
+                "gray",
+                "diffuse = { reflectance = 0.5 }",
+                &["disc = { center = [0, 5, -19], normal = [0, 0, 1], radius = 99 }\nvisible_to_camera = false"],
+            ),
     ] {
         assert_warns(&stage(&more), &[]);
     }
+}
+
+#[test]
+fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
+    let white = |shape: &str| body("white", "diffuse = { reflectance = 0.7 }", &[shape]);
+    let light = "[[light]]\npoint = { position = [0, 5, 0], intensity = 9 }\n";
+    let away = view([0.0, 2.0, 8.0], [0.0, 2.0, 20.0], 40.0, 16) + &white(BALL);
+    assert_warns(&(away.clone() + light), &["the camera sees no object"]);
+    assert_warns(&(away + &environment(1.0)), &[]);
+    let inside = view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16) + &white("cube = { center = [0, 0, 0], size = 40 }");
+    assert_warns(&(inside.clone() + &environment(1.0)), &["the camera is inside object 1, which is opaque"]);
+    assert_warns(&(inside + light), &[]);
 }
 
 #[test]

@@ -23,6 +23,7 @@ mod measures;
 mod mesh;
 mod object;
 mod on_surface;
+mod open_glass;
 mod parts;
 mod place;
 mod radiometry;
@@ -71,6 +72,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     }
     scene.warnings.extend(unlit::unlit(&scene));
     scene.warnings.extend(on_surface::on_surface(&scene));
+    scene.warnings.extend(open_glass::open_glass(&scene));
     scene.files = context.files;
     scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Some(scene)
@@ -108,7 +110,6 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     unused(context, &placed, &drafts);
     contacts(context, &placed);
     faces_inward(context, &placed);
-    panes_of_glass(context, &placed);
     let mut others = light::Lights::default();
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;
@@ -191,26 +192,10 @@ fn is_clear(placed: &Placed, object: &Object) -> bool {
     placed.materials[object.material as usize].material.medium().is_some()
 }
 
-fn is_flat(object: &Object) -> bool {
-    matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
-}
-
 /// A lamp that has no inside.
 fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
-    matches!(placed.materials[object.material as usize].material, Material::Emissive(_)) && is_flat(object)
-}
-
-/// Warns of a flat surface that is all there is of its clear material, so that nothing closes the body.
-fn panes_of_glass(context: &mut Context, placed: &Placed) {
-    let mut counts = vec![0; placed.materials.len()];
-    placed.objects.iter().for_each(|object| counts[object.material as usize] += 1);
-    let alone = |object: &&Object| is_flat(object) && is_clear(placed, object) && counts[object.material as usize] == 1;
-    for pane in placed.objects.iter().filter(alone) {
-        context.warn(format!(
-            "{}: a dielectric on one flat surface: light may enter it and never leave; a pane is thin = {{ index = 1.5 }}",
-            pane.name
-        ));
-    }
+    let shines = matches!(placed.materials[object.material as usize].material, Material::Emissive(_));
+    shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
 }
 
 /// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp

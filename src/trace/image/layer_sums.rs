@@ -218,8 +218,8 @@ impl Taken<'_> {
         self.weights.sum(sums) / self.weights.taken() + shown
     }
 
-    /// The mean of a channel over so many samples that are added and subtracted, of which these are the sums: by their own
-    /// weights, but so that this mean and that of all other samples have the mean of all.
+    /// The mean of a channel over so many samples that are added and subtracted, of which these are the sums: by their
+    /// own weights, but so that this mean and that of all other samples have the mean of all.
     fn half(&self, sums: [f64; 2], taken: [u32; 2], channel: usize) -> f64 {
         let (weights, all) = (&self.weights, self.rgb.map(|rgb| rgb[channel]));
         let [own, others] = [weights.of_part(taken), weights.of_others(taken)];
