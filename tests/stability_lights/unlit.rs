@@ -142,6 +142,30 @@ fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
     assert_warns(&stage(&glass(&[&mirrored])), &[]);
 }
 
+/// Flat glass is a half space of it, where nothing closes that.
+#[test]
+fn flat_glass_that_nothing_closes_is_told_of() {
+    let glass = |shapes: &[&str]| body("glass", "dielectric = { index = 1.5 }", shapes) + &environment(1.0);
+    let quad = |center: &str, u: &str, v: &str| format!("quad = {{ center = {center}, u = {u}, v = {v} }}");
+    let front = quad("[3, 2, 0.5]", "[0.5, 0, 0]", "[0, 0.5, 0]");
+    assert_warns(
+        &stage(&glass(&[&front])),
+        &["light that enters this dielectric by a flat surface may never leave it"],
+    );
+    let pond = quad("[3, 0.1, 0]", "[0, 0, 0.5]", "[0.5, 0, 0]");
+    assert_warns(&stage(&glass(&[&pond])), &[]);
+    let box_of_six = [
+        front,
+        quad("[3, 2, -0.5]", "[0, 0.5, 0]", "[0.5, 0, 0]"),
+        quad("[3.5, 2, 0]", "[0, 0.5, 0]", "[0, 0, 0.5]"),
+        quad("[2.5, 2, 0]", "[0, 0, 0.5]", "[0, 0.5, 0]"),
+        quad("[3, 2.5, 0]", "[0, 0, 0.5]", "[0.5, 0, 0]"),
+        quad("[3, 1.5, 0]", "[0.5, 0, 0]", "[0, 0, 0.5]"),
+    ];
+    let shapes: Vec<&str> = box_of_six.iter().map(String::as_str).collect();
+    assert_warns(&stage(&glass(&shapes)), &[]);
+}
+
 /// Where a light or the camera stands exactly in a surface, neither side of that is theirs.
 #[test]
 fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
