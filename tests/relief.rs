@@ -131,16 +131,43 @@ fn white_surfaces_with_dents_are_as_bright_as_the_sky_around_them() {
 
 /// A white patch under the sun, seen nearly from above; the brightness of its middle.
 fn sunlit(folder: &Path, object: &str, toward: DVec3) -> f64 {
+    sunlit_from(folder, object, toward, [0.1, 5.0, 0.2]).0
+}
+
+/// The same seen from anywhere, and the layer `N` there.
+fn sunlit_from(folder: &Path, object: &str, toward: DVec3, from: [f64; 3]) -> (f64, [f32; 3]) {
+    let view = view(from, [0.0; 3], 1.0, 2).replace("[film]\n", "[film]\nlayers = [\"N\"]\n");
     let text = format!(
-        "{}[render]\nsamples = 1\n[material.m]\ndiffuse.reflectance = 1\n[[object]]\n{object}\nmaterial = \"m\"\n\
+        "{view}[render]\nsamples = 1\n[material.m]\ndiffuse.reflectance = 1\n[[object]]\n{object}\nmaterial = \"m\"\n\
          [[light]]\nsun = {{ toward = {:?}, angular_diameter = 0, irradiance = {PI:?} }}\n",
-        view([0.1, 5.0, 0.2], [0.0; 3], 1.0, 2),
         toward.to_array()
     );
     let (film, _) = image_in(folder, &text, EVERY_BRANCH);
     let first = film.pixels[0].rgb[1];
     assert!(film.pixels.iter().all(|pixel| (pixel.rgb[1] - first).abs() < 1e-5));
-    f64::from(first)
+    (f64::from(first), film.layers[0].values[..3].try_into().expect("a normal"))
+}
+
+/// What is matte has one brightness and one normal for all viewers, also for those whom the normal is turned away from.
+#[test]
+fn a_matte_surface_of_bent_normals_looks_the_same_from_everywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for degrees in [10.0_f64, 30.0, 50.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        write_exr(folder, "tilted.exr", [2, 2], |_, _| [sin, 0.0, cos].map(|x| (0.5 + 0.5 * x) as f32));
+        let quad = "shape.quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 0, -1] }";
+        let (object, normal) =
+            (format!("{quad}\nnormal_map = {{ image = \"tilted.exr\" }}"), DVec3::new(sin, cos, 0.0));
+        let toward = DVec3::new(0.3, 2.0, 0.4).normalize();
+        for from in [[-5.0, 0.9, 0.2], [5.0, 0.9, 0.2], [-3.0, 3.0, 1.0], [0.3, 1.0, -5.0], [0.1, 5.0, 0.2]] {
+            let (found, shown) = sunlit_from(folder, &object, toward, from);
+            let expected = toward.dot(normal);
+            assert!((found - expected).abs() < 2e-4, "{degrees} from {from:?}: {found}, not {expected}");
+            let shown = DVec3::from(shown.map(f64::from));
+            assert!((shown - normal).length() < 1e-4, "{degrees} from {from:?}: {shown}, not {normal}");
+        }
+    }
 }
 
 /// Lambert's law by the normal of the map, on every kind of surface that faces up, u to +x and v to -z.

@@ -164,7 +164,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             return;
         }
         let Met { path, meeting, at, .. } = met;
-        layers.add_to(Layer::Normal, &mut self.row, (share * at.arrival.normal).to_array());
+        let normal = shading::plain_normal(at.point, at.arrival.wo);
+        layers.add_to(Layer::Normal, &mut self.row, (share * normal).to_array());
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
         let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);

@@ -196,7 +196,7 @@ fn scatter<const N: usize, P: Polarization<N>>(
 
 /// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
 fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
-    let [side, normal] = shading::normals(at.point, direction);
+    let [side, normal] = shading::normals_of(at.lobes, at.point, direction);
     let viewed = Arrival { wo: direction, normal, ..at.arrival };
     shading::evaluate(at.material, &viewed, side, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }

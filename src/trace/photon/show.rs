@@ -100,7 +100,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
     /// None where the camera does not see the place.
     fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>, sampler: &'v Sampler) -> Option<Self> {
         let Landing { path, at, .. } = landing;
-        let Interaction { arrival, flat, point, .. } = at;
+        let Interaction { arrival, flat, point, lobes, .. } = at;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
         let sight = world.sight(at.object);
@@ -118,7 +118,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
             return None;
         }
         let same = seen.direction.dot(*flat) > 0.0;
-        let [side, normal] = shading::normals(point, seen.direction);
+        let [side, normal] = shading::normals_of(*lobes, point, seen.direction);
         let turned = Arrival { wo: seen.direction, normal, ..*arrival };
         let viewed = if same { turned } else { turned.turned_around() };
         Some(Self { walker, landing, sampler, seen, places, same, viewed, side, sight })

@@ -61,7 +61,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         let object = &world.scene.objects[hit.object as usize];
         let (wo, uv, number) = (-arriving.ray.direction, object.uv(&hit.crossing, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
-        let [flat, normal] = shading::normals(point, wo);
+        let [flat, normal] = shading::normals_of(lobes, point, wo);
         let (sides, present) = (boundary.sides(), arriving.present);
         let mut at = Self {
             object: hit.object,

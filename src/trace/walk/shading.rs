@@ -2,12 +2,12 @@
 //! lost where its directions and those of the triangle disagree.
 //!
 //! Two things make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
-//! section 5.3, describes what goes wrong without): the shading normal is bent until the mirror image of the viewer's
-//! direction lies above the triangle, and a direction that leaves on the wrong side of the triangle is folded back
-//! through its plane. Folding moves light and takes none away: what a material gives to a direction is the sum over
-//! both directions that end there, and so is the density.
+//! section 5.3, describes what goes wrong without): where a material mirrors, the shading normal is bent until the
+//! mirror image of the viewer's direction lies above the triangle, and a direction that leaves on the wrong side of the
+//! triangle is folded back through its plane. Folding moves light and takes none away: what a material gives to a
+//! direction is the sum over both directions that end there, and so is the density.
 
-use crate::material::{Arrival, Branch, Material, Scatter, reflect};
+use crate::material::{Arrival, Branch, Lobes, Material, Scatter, reflect};
 use crate::math::{DVec3, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Table};
@@ -17,6 +17,15 @@ pub fn normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
     let front = point.normal.dot(-wo) < 0.0;
     let [flat, smooth] = [point.normal, point.shading].map(|normal| if front { normal } else { -normal });
     if flat == smooth { [flat; 2] } else { [flat, bent(wo, flat, smooth)] }
+}
+
+/// The same for a material of some lobes: what is matte looks the same to every viewer, by its shading normal as it is.
+pub fn normals_of(lobes: Lobes, point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
+    if lobes != Lobes::DIFFUSE_REFLECTION {
+        return normals(point, wo);
+    }
+    let smooth = plain_normal(point, wo);
+    [if point.normal.dot(wo) > 0.0 { point.normal } else { -point.normal }, smooth]
 }
 
 /// The shading normal on the side of the unit vector `wo`, as it is.
