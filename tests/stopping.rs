@@ -157,6 +157,19 @@ fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
     assert!(ratios[ratios.len() / 2] > 0.5, "median {:.2}", ratios[ratios.len() / 2]);
 }
 
+/// Where the model of color is exact, all of the error is left for noise; else no less than if it missed a third.
+#[test]
+fn what_the_model_of_color_does_not_miss_is_left_for_noise() {
+    for (model, is_exact) in [("", true), (", model = { bands = 8 }", false)] {
+        let asked = ROOM.replace("samples = 40", &format!("samples = 4096, error = 0.02{model}"));
+        let plan = abbe::plan::plan(&scene(&asked));
+        let noise = plan.method.stop.and_then(|stop| stop.noise).expect("an error is asked for");
+        assert_eq!(plan.model_error == 0.0, is_exact, "{}", plan.model_error);
+        let left = (0.02_f64 * 0.02 - plan.model_error * plan.model_error).max(0.0).sqrt();
+        assert!((noise - left.max(0.02 * (8.0_f64 / 9.0).sqrt())).abs() < 1e-12, "{noise}, model {}", plan.model_error);
+    }
+}
+
 /// A lamp of a 256th of the pixel gives half of its light: 64 samples miss it in three of four renders, all replicates
 /// alike.
 #[test]

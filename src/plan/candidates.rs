@@ -67,7 +67,7 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis:
 /// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way
 /// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces, of which at most
 /// one is one of the `films`, the first ones: two never share their fringes as a film does with itself. What enters a
-/// body through its film leaves through it, so that one that light crosses is crossed twice.
+/// body through its film leaves through it, so that one that light crosses is crossed twice, also to and fro in a slab.
 fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Vec<f64>> {
     let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
     let count = scattering.len().max(1) as f64;
@@ -86,6 +86,8 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Ve
         paths.extend(smooth[number.max(films.len())..].iter().map(|second| product(first, second)));
         if films.get(number) == Some(&true) {
             paths.push(product(first, first));
+            // Between two faces, with r = 1 - t: t^2 / (1 - r^2).
+            paths.push(first.iter().map(|t| t / (2.0 - t)).collect());
         }
         paths.push(first.clone());
     }

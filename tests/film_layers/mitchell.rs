@@ -94,6 +94,20 @@ fn an_even_image_has_no_noise() {
     }
 }
 
+/// Nor have its halves, of which each is an image of its own samples.
+#[test]
+fn halves_of_an_even_image_have_no_noise() {
+    let sky = corner("\"mitchell\"", "light = [{ environment = { radiance = 1 } }]\n");
+    for samples in [4, 16, 17, 100] {
+        let image = rendered(&format!("{sky}render.samples = {samples}\n"), &[Layer::HalfA, Layer::HalfB]);
+        for half in ["half_a.G", "half_b.G"] {
+            let worst =
+                image.layer(half).expect("a layer").into_iter().fold(0.0, |most: f32, x| most.max((x - 1.0).abs()));
+            assert!(worst <= 4.0 * f32::EPSILON, "{half} of {samples} samples: {worst}");
+        }
+    }
+}
+
 fn room() -> Image {
     rendered(&ROOM.replace("height = 28", "height = 28, filter = \"mitchell\""), &Layer::all())
 }
