@@ -44,13 +44,10 @@ impl<'a> Sight<'a> {
 
     /// Follows the camera's rays, far ones first, until `found` answers `true` to the places of one of them.
     pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[Place]) -> bool) {
-        let film = self.scene.film;
-        let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
         // A stride that is coprime to the number of rays visits them all.
         for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {
-            let film = DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height));
             let mut places = Vec::new();
-            self.walk_from(true, self.scene.camera.ray(film), &Sampler::new(1, [i, 0], 0), |place| {
+            self.walk_from(true, self.camera_ray(i), &Sampler::new(1, [i, 0], 0), |place| {
                 places.push(place);
                 false
             });
@@ -101,12 +98,17 @@ impl<'a> Sight<'a> {
         false
     }
 
-    /// The objects that rays through all of the image meet first, each with whether it is met from its back.
-    pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
+    /// One of the rays through all of the image, row by row.
+    fn camera_ray(&self, number: u32) -> Ray {
         let film = self.scene.film;
         let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
-        (0..SIDE * SIDE).map(move |i| {
-            let ray = self.scene.camera.ray(DVec2::new(at(i % SIDE, film.width), at(i / SIDE, film.height)));
+        self.scene.camera.ray(DVec2::new(at(number % SIDE, film.width), at(number / SIDE, film.height)))
+    }
+
+    /// The objects that rays through all of the image meet first, each with whether it is met from its back.
+    pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
+        (0..SIDE * SIDE).map(|i| {
+            let ray = self.camera_ray(i);
             let hit = self.scene.intersect_seen(&ray, None)?;
             let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
             Some((hit.object, point.normal.dot(ray.direction) > 0.0))
