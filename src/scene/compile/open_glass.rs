@@ -1,6 +1,7 @@
 //! Flat surfaces of clear bodies that nothing closes.
 
-use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, ball_surface, cosine_hemisphere, unit};
+use super::contact::ray_into;
+use crate::math::{BranchKey, DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::scene::Scene;
 use crate::shape::Shape;
 use crate::spectrum::Curve;
@@ -31,14 +32,11 @@ pub(super) fn open_glass(scene: &Scene<Curve>) -> Vec<String> {
 fn is_open(scene: &Scene<Curve>, object: usize) -> bool {
     let shape = &scene.objects[object].shape;
     let Some(bounds) = shape.bounds() else { return false };
-    let size = bounds.max - bounds.min;
     (0..RAYS).any(|number| {
         let sampler = Sampler::new(5, [number, 0], 0);
         let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 0);
         let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 1);
-        let direction = ball_surface([a, b]);
-        let within = bounds.min + size * DVec3::new(x, y, z);
-        let line = Ray { origin: within - direction * (2.0 * size.length()), direction };
+        let Some(line) = ray_into(&bounds, DVec3::new(x, y, z), [a, b]) else { return false };
         let Some(crossing) = shape.intersect(&line, f64::INFINITY) else { return false };
         let point = shape.point(&line, &crossing);
         let inward = unit(Frame::about(-point.normal).to_world(cosine_hemisphere([c, d])));
