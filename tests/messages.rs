@@ -218,6 +218,42 @@ error: paint.csv is not text in UTF-8: line 1 has the byte 0xFF in column 1
 }
 
 #[test]
+fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
+    let export = "export its meshes as PLY, OBJ or glTF, and write a scene in TOML around them";
+    let kinds = [
+        ("room.pbrt", "WorldBegin\nLightSource \"infinite\"\n", "a scene of pbrt", export),
+        ("room.XML", "<?xml version='1.0'?>\n<scene version='3.0.0'/>\n", "XML, as scenes of Mitsuba are", export),
+        ("room.blend", "BLENDER-v300\u{0}", "a file of Blender", export),
+        ("room.usda", "#usda 1.0\ndef Xform \"room\" {}\n", "a scene in USD", export),
+        (
+            "cup.obj",
+            "v 0 0 0\nf 1 1 1\n",
+            "a mesh",
+            "in a scene, which is a TOML file, it stands as shape.mesh = { file = \"cup.obj\" }; README.md begins with one",
+        ),
+        (
+            "wood.png",
+            "\u{1}PNG",
+            "an image",
+            "in a scene, which is a TOML file, it stands as { image = \"wood.png\" } in place of a color",
+        ),
+        ("old.exr", "v/1\u{1}", "an image", "`render view old.exr` shows it; a scene is a TOML file"),
+        (
+            "scene.json",
+            "{ \"camera\": {} }",
+            "JSON or YAML",
+            "a scene is a TOML file: keys = values, below headings such as [camera]",
+        ),
+    ];
+    for (name, text, what, help) in kinds {
+        let answer = render(&Folder::with(name, text), &[name, "--check"]);
+        answer.assert_refused(2, &format!("error: {name} is {what}, not a scene in TOML\nhelp: {help}\n"));
+        // A scene may be called anything.
+        assert_eq!(render(&Folder::with(name, BASE), &[name, "--check"]).code, Some(0), "{name}");
+    }
+}
+
+#[test]
 fn settings_and_variables_are_refused_where_they_stand() {
     check("settings.txt", 35);
 }

@@ -9,6 +9,7 @@ mod content;
 mod decode;
 mod duration;
 mod film;
+mod foreign;
 mod hit;
 mod index;
 mod object;
@@ -17,6 +18,7 @@ mod render_text;
 mod share;
 mod source;
 mod text;
+mod web_color;
 
 pub use camera::{Camera, Lens, PolarizingFilter, Projection, Seen};
 pub use content::{NamedMaterial, Scene};

@@ -10,12 +10,12 @@ use toml::de::DeTable;
 
 use super::Scene;
 use super::compile::{SECTIONS, compile};
+use super::foreign::{A_SCENE, foreign};
 use super::text::{Document, Fault, Included, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8};
 use crate::error::{Error, Result, nearest_file};
 
 /// What the text of settings is called in messages; each has a line of it.
 pub const SETTINGS: &str = "--set";
-const A_SCENE: &str = "a scene is a TOML file, such as scene.toml";
 /// Most bytes of a scene, as of a file that it includes. A device may never end.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -49,7 +49,12 @@ impl Source {
                 };
             }
         };
-        Ok(Self { path: path.to_owned(), text: text_of(bytes, &shown.to_string())? })
+        let text = text_of(bytes, &shown.to_string());
+        let is_toml = || text.as_ref().is_ok_and(|text| parsed(text, 0).is_ok());
+        match foreign(path).filter(|_| !is_toml()) {
+            Some((what, help)) => Error::refuse(format!("{shown} is {what}, not a scene in TOML"), help),
+            None => Ok(Self { path: path.to_owned(), text: text? }),
+        }
     }
 
     /// Reads a scene from standard input. Files that it names are looked for in the current folder.

@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::curve_name::{
-    illuminant_called, image_called, in_quotes, unknown_glass, unknown_illuminant, unknown_metal, unknown_reflectance,
+    color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
+    unknown_metal, unknown_reflectance,
 };
 use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, shown, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
 use crate::scene::text::{At, FileKind, Value, utf8};
+use crate::scene::web_color::of_bytes;
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach,
     reach_of_absorption, sellmeier_squared, visible::START_NM,
@@ -66,6 +68,10 @@ fn is_fit(kind: &KindText, quantity: Quantity) -> bool {
 fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
     let key = || format!("`{}`", text.place.key());
     let (form, help) = match text.kind {
+        KindText::Name(name) if quantity == Quantity::Emission => {
+            let light = color_called(name).or_else(|| temperature_called(name));
+            (format!("the name {name:?}"), in_quotes(name).or(light).or_else(|| illuminant_called(name)))
+        }
         KindText::Name(name) => (format!("the name {name:?}"), in_quotes(name).or_else(|| illuminant_called(name))),
         KindText::Image(_) | KindText::Checker(_) => (key(), Some(even(quantity).to_owned())),
         _ => (key(), None),
@@ -112,6 +118,7 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
             Some(CurveKind::Number(*number))
         }
         KindText::Rgb(rgb) => {
+            of_screen(text, quantity, *rgb)?;
             each(text, quantity, rgb.iter().copied())?;
             Some(CurveKind::Rgb(*rgb))
         }
@@ -143,6 +150,19 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
         KindText::Name(name) if !shines => named(context, text.value, name, quantity),
         _ => unfit(text, quantity),
     }
+}
+
+/// That a share is no color from 0 to 255, as screens have it.
+fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> {
+    let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
+    let first = rgb.iter().position(|x| *x > 1.0).filter(|_| is_share && text.scale.it == 1.0);
+    // What is at most 100 may be meant in percent.
+    let Some((first, color)) = first.filter(|_| rgb.iter().any(|x| *x > 100.0)).zip(of_bytes(rgb)) else {
+        return Some(());
+    };
+    let message = format!("{} is at most 1, not {}", article(quantity), shown(rgb[first]));
+    let help = format!("a color from 0 to 255 is sRGB: its linear value is {color}");
+    text.place.entry(first).advise(message, help)
 }
 
 /// That every value of a list is possible.

@@ -6,6 +6,7 @@ use super::curve_range::Refusal;
 use super::image_file::IMAGES;
 use crate::error::{ends_in, nearest};
 use crate::scene::share;
+use crate::scene::web_color::web_color;
 use crate::spectrum::data::{self, bare};
 
 const LISTS: &str = "lists the known names";
@@ -19,7 +20,7 @@ pub(super) fn unknown_metal(name: &str) -> Refusal {
 }
 
 pub(super) fn unknown_reflectance(name: &str) -> Refusal {
-    if let Some(help) = in_quotes(name) {
+    if let Some(help) = in_quotes(name).or_else(|| color_called(name)) {
         return Refusal::new(format!("there is no reflectance named {name:?}")).help(help);
     }
     let full = || data::reflectances().map(|patch| patch.name);
@@ -45,6 +46,18 @@ pub(super) fn in_quotes(text: &str) -> Option<String> {
 /// How to write an image by the name of its file.
 pub(super) fn image_called(file: &str) -> Option<String> {
     ends_in(Path::new(file), IMAGES).then(|| format!("write {{ image = {file:?} }}"))
+}
+
+/// How to write what is a color elsewhere.
+pub(super) fn color_called(text: &str) -> Option<String> {
+    web_color(text).map(|color| format!("write {{ rgb = {color} }}, in linear light"))
+}
+
+/// How to write a light by its temperature in kelvin, such as `3000K`.
+pub(super) fn temperature_called(text: &str) -> Option<String> {
+    let kelvin = text.strip_suffix(['K', 'k'])?.trim();
+    let is_light = kelvin.parse().is_ok_and(|kelvin: f64| (1000.0..=40_000.0).contains(&kelvin));
+    is_light.then(|| format!("write {{ blackbody = {kelvin} }}"))
 }
 
 pub(super) fn unknown_illuminant(name: &str) -> Refusal {

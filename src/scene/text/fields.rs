@@ -6,7 +6,7 @@ use toml::de::DeTable;
 
 use super::document::Document;
 use super::include::INCLUDE;
-use super::suggest::{TABLE, meant, suggestion};
+use super::suggest::{TABLE, color_elsewhere, meant, suggestion};
 use super::value::Value;
 use crate::error::nearest;
 
@@ -59,7 +59,12 @@ impl<'d> Fields<'d> {
                     "`include` is no key of a section".into(),
                     "write it before the first section, at the top of the file".into(),
                 ),
-                word => (format!("unknown key `{word}`"), suggestion(word, word, &self.known)),
+                word => {
+                    let value = self.table.get(word);
+                    let color = value.and_then(|node| color_elsewhere(word, node.get_ref(), &self.known));
+                    let help = color.unwrap_or_else(|| suggestion(word, word, &self.known));
+                    (format!("unknown key `{word}`"), help)
+                }
             };
             self.document.tell(span.clone(), message, Some(help));
         }

@@ -1,14 +1,17 @@
 //! What an author may have meant.
 
-use toml::de::DeValue;
+use std::path::Path;
 
-use crate::error::nearest;
+use toml::de::{DeArray, DeValue};
+
+use crate::error::{ends_in, nearest};
 use crate::film::layer_elsewhere;
 use crate::scene::share;
+use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 use crate::spectrum::ColorSpace;
 
 /// Words of other renderers, and what is called so here.
-const ELSEWHERE: [(&str, &str); 52] = [
+const ELSEWHERE: [(&str, &str); 61] = [
     ("ior", "index"),
     ("eta", "index"),
     ("albedo", "reflectance"),
@@ -27,6 +30,15 @@ const ELSEWHERE: [(&str, &str); 52] = [
     ("intensity", "irradiance"),
     ("intensity", "radiance"),
     ("target", "look_at"),
+    ("to", "look_at"),
+    ("from", "position"),
+    ("eye", "position"),
+    ("origin", "position"),
+    ("location", "position"),
+    ("path", "image"),
+    ("path", "file"),
+    ("filename", "image"),
+    ("filename", "file"),
     ("position", "center"),
     ("position", "point"),
     ("center", "point"),
@@ -65,7 +77,7 @@ const ELSEWHERE: [(&str, &str); 52] = [
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 16] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 24] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -77,6 +89,30 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 16] = [
         "include",
         "surfaces are [[object]]: write that, and below it shape.sphere = { center = [0, 1, 0], radius = 1 }",
     ),
+    (&["type", "kind"], "environment", "the kind is a key itself: point = { position = [0, 3, 0], intensity = 10 }"),
+    (&["type", "kind"], "shape", "the kind of a shape is a key: shape.sphere = { center = [0, 1, 0], radius = 1 }"),
+    (
+        &["center", "radius", "size", "normal", "points", "faces", "file", "u", "v"],
+        "shape",
+        "write it into the braces of a shape: shape.sphere = { center = [0, 1, 0], radius = 1 }",
+    ),
+    (
+        &["color", "albedo", "base_color", "reflectance", "roughness"],
+        "diffuse",
+        "write a kind around it, such as diffuse = { reflectance = { rgb = [0.7, 0.6, 0.5] } }",
+    ),
+    (
+        &["roughness"],
+        "fluorescence",
+        "what is `diffuse` is matte; under a coat it is plastic = { reflectance = 0.7, roughness = 0.3 }",
+    ),
+    (
+        &["emission", "emissive", "radiance"],
+        "fluorescence",
+        "a surface that shines has a material of its own: emissive = { radiance = 10 }",
+    ),
+    (&["color", "tint"], "intensity", "write intensity = { rgb = [10, 8, 6] } for a light of a color"),
+    (&["min", "max", "corner", "corners"], "size", "write its middle as `center`, and size = [2, 1, 3]"),
     (&["resolution", "size"], "color_space", "write width = 640 and height = 360"),
     (
         &["horizontal_fov", "fov_x", "focal_length"],
@@ -185,6 +221,83 @@ pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a 
     nearest(word, known.iter().copied()).or_else(part_of).or_else(elsewhere).or_else(space)
 }
 
+/// Tables of which people write the one value that matters most, and its key.
+const SHORT: [(&str, &str); 9] = [
+    ("diffuse", "reflectance"),
+    ("plastic", "reflectance"),
+    ("mirror", "reflectance"),
+    ("emissive", "radiance"),
+    ("environment", "radiance"),
+    ("dielectric", "index"),
+    ("thin", "index"),
+    ("conductor", "metal"),
+    ("point", "position"),
+];
+
+/// How to write a table in place of which its one value stands.
+fn in_short(key: &str, value: &DeValue, written: &str) -> Option<String> {
+    let (_, inner) = SHORT.iter().find(|short| short.0 == key)?;
+    let is_color = matches!(*inner, "reflectance" | "radiance");
+    let whole = |value: String| Some(format!("write {{ {inner} = {value} }}"));
+    match value {
+        DeValue::Integer(_) | DeValue::Float(_) if is_color || *inner == "index" => whole(written.into()),
+        DeValue::String(text) if is_color && ends_in(Path::new(&**text), &["png", "jpg", "jpeg", "exr", "hdr"]) => {
+            whole(format!("{{ image = {written} }}"))
+        }
+        DeValue::String(_) if matches!(*inner, "reflectance" | "index" | "metal") => whole(written.into()),
+        DeValue::Array(list) if list.len() != 3 || list.iter().any(|entry| !is_number(entry.get_ref())) => None,
+        DeValue::Array(_) if is_color => whole(format!("{{ rgb = {written} }}")),
+        DeValue::Array(_) if *inner == "position" => Some(format!("write {{ position = {written}, intensity = 10 }}")),
+        _ => None,
+    }
+}
+
+fn is_number(value: &DeValue) -> bool {
+    matches!(value, DeValue::Integer(_) | DeValue::Float(_))
+}
+
+/// How to write a point or a direction that is a text.
+fn vector(key: &str, text: &str) -> Option<String> {
+    let axes = [("x", "1, 0, 0"), ("y", "0, 1, 0"), ("z", "0, 0, 1")];
+    let axis = axes.iter().find(|(name, _)| matches!(key, "up" | "normal" | "axis" | "toward") && text == *name);
+    let parts: Vec<&str> = text.split([',', ' ', '[', ']', '(', ')']).filter(|part| !part.is_empty()).collect();
+    let is_list = parts.len() == 3 && parts.iter().all(|part| part.parse::<f64>().is_ok_and(f64::is_finite));
+    axis.map(|(_, list)| format!("write [{list}]")).or_else(|| is_list.then(|| format!("write [{}]", parts.join(", "))))
+}
+
+/// How to write a color whose key says that it is sRGB, or is otherwise one of other programs.
+pub(super) fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
+    let word = word.to_lowercase();
+    if !known.contains(&"rgb") || !COLORS.contains(&&*word) {
+        return None;
+    }
+    let number = |node: &DeValue| match node {
+        DeValue::Integer(integer) => integer.as_str().parse().ok(),
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    };
+    let listed = |list: &DeArray| {
+        let color = list.iter().map(|node| number(node.get_ref())).collect::<Option<Vec<f64>>>()?;
+        let color: [f64; 3] = color.try_into().ok()?;
+        if matches!(&*word, "hsv" | "hsl") {
+            return None;
+        }
+        let is_srgb = word == "srgb" && color.iter().all(|x| (0.0..=1.0).contains(x));
+        of_bytes(color).or_else(|| is_srgb.then(|| of_srgb(color)))
+    };
+    let color = match value {
+        DeValue::String(text) => web_color(text).or_else(|| web_color(&format!("#{text}"))),
+        DeValue::Array(list) => listed(list),
+        _ => None,
+    };
+    let is_other = !matches!(&*word, "color" | "rgba");
+    let color = color.or_else(|| is_other.then(|| "[red, green, blue]".into()))?;
+    Some(format!("write rgb = {color}, in linear light"))
+}
+
+/// Keys of colors in other programs.
+const COLORS: [&str; 11] = ["srgb", "hex", "html", "css", "web", "rgb255", "rgb8", "hsv", "hsl", "color", "rgba"];
+
 /// What is wanted where keys are read.
 pub(super) const TABLE: &str = "a table, { .. }";
 
@@ -204,6 +317,10 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             _ if key == "blackbody" => Some(format!("write {{ illuminant = {written} }} for a light by name")),
             _ => None,
         },
+        DeValue::String(_) | DeValue::Integer(_) if key == "rgb" && wanted == "a list of 3 numbers" => {
+            let color = web_color(value.as_str().unwrap_or(written));
+            color.map(|color| format!("write {color}, in linear light")).or_else(|| vector(key, value.as_str()?))
+        }
         DeValue::Integer(_) | DeValue::Float(_) if key == "illuminant" => {
             Some(format!("write {{ blackbody = {written} }} for a temperature"))
         }
@@ -229,9 +346,11 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::String(_) if wanted == TABLE && key.ends_with("_map") => {
             Some(format!("write {{ image = {written}, .. }}"))
         }
-        DeValue::Integer(_) | DeValue::Float(_) if wanted == TABLE && key == "environment" => {
-            Some(format!("write {{ radiance = {written} }}"))
+        DeValue::String(text) if wanted == "a list of 3 numbers" => vector(key, text),
+        DeValue::Table(table) if wanted == "a list of 3 numbers" && table.contains_key("x") => {
+            Some("write [x, y, z]".into())
         }
+        _ if wanted == TABLE && SHORT.iter().any(|short| short.0 == key) => in_short(key, value, written),
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
         DeValue::Table(_) if key == "roughness" => {
             Some("it is the same all over: two materials `mix` by an image".into())

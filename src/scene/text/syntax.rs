@@ -101,6 +101,8 @@ fn unquoted(written: &str) -> (String, Option<String>) {
         ("quotes are straight in TOML".into(), Some("write \"..\"".into()))
     } else if parts.iter().all(|part| part.parse::<f64>().is_ok()) {
         ("numbers in a list are separated by commas".into(), Some(format!("write {}", parts.join(", "))))
+    } else if written.contains(" //") {
+        ("a comment starts with #".into(), Some("write # in place of //".into()))
     } else if written.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) {
         ("this is no number".into(), Some("a number stands alone, without a unit or a calculation".into()))
     } else {
@@ -109,6 +111,12 @@ fn unquoted(written: &str) -> (String, Option<String>) {
 }
 
 fn after_value(line: &str, rest: &str) -> Option<String> {
+    if rest.trim_start().starts_with("//") {
+        return Some("a comment starts with #".into());
+    }
+    if line.split_once('=').is_some_and(|(_, value)| value.trim_start().starts_with('(')) {
+        return Some("a list stands in brackets: [0, 1, 6]".into());
+    }
     let digits = rest.strip_prefix(',')?;
     let decimal = line.ends_with(|c: char| c.is_ascii_digit()) && digits.starts_with(|c: char| c.is_ascii_digit());
     Some(if decimal { "a decimal point is written `.`" } else { "each key stands on a line of its own" }.to_owned())

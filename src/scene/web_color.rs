@@ -1,0 +1,63 @@
+//! Colors as they are written elsewhere, in linear light.
+
+use crate::spectrum::decode_srgb;
+
+/// Linear red, green and blue of a color as programs for painting and the web write it, in a text that shows it as a
+/// scene would: `#ff8800`, `#f80`, `0xff8800`, `rgb(255, 136, 0)` or `255, 136, 0`. None if the text is no such color.
+pub fn web_color(text: &str) -> Option<String> {
+    let text = text.trim().to_lowercase();
+    match text.strip_prefix('#').or_else(|| text.strip_prefix("0x")) {
+        Some(digits) => of_digits(digits),
+        None => {
+            let list = text.strip_prefix("rgb(").and_then(|list| list.strip_suffix(')')).unwrap_or(&text);
+            let parts = list.split([',', ' ']).filter(|part| !part.is_empty());
+            let parts: Vec<f64> = parts.map(|part| part.parse().ok()).collect::<Option<_>>()?;
+            of_bytes(parts.try_into().ok()?)
+        }
+    }
+}
+
+/// The same of numbers from 0 to 255, one above 1 at least.
+pub fn of_bytes(bytes: [f64; 3]) -> Option<String> {
+    let are_bytes = bytes.iter().all(|x| (0.0..=255.0).contains(x) && x.fract() == 0.0);
+    (are_bytes && bytes.iter().any(|x| *x > 1.0)).then(|| of_srgb(bytes.map(|x| x / 255.0)))
+}
+
+/// The same of shares of sRGB.
+pub fn of_srgb(color: [f64; 3]) -> String {
+    let three_digits = |x: f64| format!("{:.2e}", decode_srgb(x)).parse().unwrap_or(x);
+    let color: Vec<String> = color.map(three_digits).iter().map(f64::to_string).collect();
+    format!("[{}]", color.join(", "))
+}
+
+/// Two digits, or one that counts twice, for each of red, green and blue; what follows is how opaque it is.
+fn of_digits(digits: &str) -> Option<String> {
+    let width = match digits.len() {
+        3 | 4 => 1,
+        6 | 8 => 2,
+        _ => return None,
+    };
+    let all: Vec<u8> = digits.chars().map(|digit| Some(digit.to_digit(16)? as u8)).collect::<Option<_>>()?;
+    let byte = |part: &[u8]| f64::from(16 * part[0] + part[width - 1]);
+    let mut bytes = all.chunks(width).map(byte);
+    let color = [bytes.next()?, bytes.next()?, bytes.next()?];
+    Some(of_srgb(color.map(|x| x / 255.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 136 of 255 is 0.2462 of the light, 51 is 0.03310 (IEC 61966-2-1).
+    #[test]
+    fn a_color_of_the_web_is_told_in_linear_light() {
+        for orange in ["#ff8800", "#FF8800", "#f80", "#ff8800cc", "0xff8800", "rgb(255, 136, 0)", "255 136 0"] {
+            assert_eq!(web_color(orange).as_deref(), Some("[1, 0.246, 0]"), "{orange}");
+        }
+        assert_eq!(web_color("#330000").as_deref(), Some("[0.0331, 0, 0]"));
+        for other in ["red", "#ff88", "#é", "#ffé", "1, 1, 0", "0.5 0.2 0.1", "300, 0, 0", "1, 2", "ff8800", ""] {
+            let is_color = web_color(other).is_some();
+            assert_eq!(is_color, other == "#ff88", "{other}");
+        }
+    }
+}
