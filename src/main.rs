@@ -163,7 +163,11 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     });
     let spectral = spectral.as_deref().filter(|_| part.is_none());
     written.file(spectral, |spectral| image.write_spectral_exr(spectral));
-    written.file(png, |png| image.write_png(png, job.exposure));
+    written.file(png, |png| {
+        image.write_png(png, job.exposure)?;
+        messages::warn_of_exposure(&image, png, exr_file, job.exposure);
+        Ok(())
+    });
     messages::print_report(&image, rendering.plan(), took, expected);
     let images = written.files.clone();
     written.file(report, |report| {

@@ -254,6 +254,27 @@ fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
 }
 
 #[test]
+fn an_image_without_any_light_is_told_once_and_not_where_it_is_meant() {
+    let dim = BASE.replace("radiance = 1 }", "radiance = 1 }\nvisible_to_camera = false");
+    let dim = dim.replace("samples = 1", "samples = 1\nmax_bounces = 0").replace("[0, 4, 0]", "[0, 40, 0]");
+    let black = "warning: no light was found in any pixel within max_bounces = 0, so the image is black\n";
+    let told = |scene: &str, flags: &[&str]| {
+        let answer = render(&Folder::with("scene.toml", scene), &[&["scene.toml"], flags].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.stderr);
+        answer.stderr.matches("warning: ").count() == 1 && answer.stderr.contains(black)
+    };
+    assert!(told(&dim, &[]));
+    assert!(!told(&dim, &["--layers", "N"]));
+    assert!(!told(&dim.replace("material = \"gold\"", "material = \"gold\"\nholdout = true"), &[]));
+    assert!(!told(&dim.replace("max_bounces = 0", "max_bounces = 1"), &[]));
+    let dark = BASE.replace("radiance = 10 }", "radiance = 0 }").replace("radiance = 1 }", "radiance = 0 }");
+    let dark = Folder::with("scene.toml", dark.replace("intensity = 10 }", "intensity = 0 }"));
+    let warned = "warning: nothing shines, so the image will be black\nscene.toml is a valid scene: 7 objects\n";
+    render(&dark, &["scene.toml", "--check"]).assert_refused(0, warned);
+    assert_eq!(render(&dark, &["scene.toml"]).stderr.matches("warning: ").count(), 1);
+}
+
+#[test]
 fn settings_and_variables_are_refused_where_they_stand() {
     check("settings.txt", 35);
 }

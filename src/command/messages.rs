@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use abbe::film::Format;
-use abbe::look::percent;
+use abbe::look::{Misexposure, percent};
 use abbe::plan::Plan;
 use abbe::trace::FIRST_LOOK;
 use abbe::{Diagnostic, Error, Image, ImageError, Result};
@@ -145,6 +145,14 @@ pub fn warn_of_clamped(format: &Format, clamped: u64) {
             "{clamped} {values} too bright for 16 bits and became 65504: precision = \"float\"{lossless} keeps {them}"
         ));
     }
+}
+
+/// Says which exposure shows something, if nearly all of a picture is white or black; `exr` is the image's file.
+pub fn warn_of_exposure(image: &Image, png: &Path, exr: Option<&Path>, stops: f64) {
+    let Some(found) = Misexposure::of_film(image.film(), stops) else { return };
+    let (png, flag) = (png.display(), format!("--exposure {}", found.stops));
+    let again = exr.map_or(flag.clone(), |exr| format!("`render view {} --png {png} {flag}`", exr.display()));
+    warn(&format!("{}: {again} shows more", found.shows.told_of(&png.to_string())));
 }
 
 /// Whether lines for the program that listens were lost, which is said on stderr.

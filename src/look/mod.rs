@@ -2,6 +2,7 @@
 
 mod difference;
 mod mattes;
+mod misexposure;
 mod noise;
 mod picture;
 mod significance;
@@ -10,6 +11,7 @@ mod words;
 
 pub use difference::{AlphaDifference, ColorDifference, Difference, WorstPixel, compare};
 pub use mattes::Mattes;
+pub use misexposure::{Misexposure, Shows};
 pub use noise::Noise;
 pub use picture::{Exposure, Picture};
 pub use tone::Tone;

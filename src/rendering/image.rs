@@ -22,6 +22,8 @@ pub struct Image {
     pub(super) view: View,
     pub(super) format: Format,
     pub(super) provenance: Provenance,
+    /// What is said of it if there is no light in it.
+    pub(super) dark: Option<String>,
 }
 
 impl Image {
@@ -101,7 +103,9 @@ impl Image {
     pub fn warnings(&self) -> Vec<String> {
         let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
-        few.into_iter().chain(warnings(&self.report, self.error.as_ref())).collect()
+        let is_dark = self.report.light == 0.0 && self.error.as_ref().is_none_or(|error| error.asked.is_none());
+        let dark = self.dark.clone().filter(|_| is_dark);
+        few.into_iter().chain(dark).chain(warnings(&self.report, self.error.as_ref())).collect()
     }
 
     /// How its file is written.

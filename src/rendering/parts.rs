@@ -137,7 +137,7 @@ impl Parts {
         all.rows(0..self.film.height)?;
         let report = Report { non_finite: self.non_finite, ..Report::default() };
         let (view, format, provenance) = (self.view, self.format.clone(), self.provenance.clone());
-        Ok(Image { film: all.film, report, error: None, because: Vec::new(), view, format, provenance })
+        Ok(Image { film: all.film, report, error: None, because: Vec::new(), view, format, provenance, dark: None })
     }
 
     fn heading(&self) -> Heading<'_> {

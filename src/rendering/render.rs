@@ -13,6 +13,7 @@ use super::options::{Options, check_layers};
 use super::origin::{NON_FINITE, SAMPLES, origin};
 use super::part;
 use super::plan_file::read_plan;
+use super::warnings::dark;
 use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
@@ -64,6 +65,8 @@ pub struct Rendering {
     written: Vec<Written>,
     /// How much of the work an earlier run has done.
     resumed_at: u64,
+    /// What to say of an image without any light.
+    dark: Option<String>,
 }
 
 impl Rendering {
@@ -114,6 +117,7 @@ impl Rendering {
             began,
             written: Vec::new(),
             resumed_at: 0,
+            dark: dark(&scene).filter(|_| options.shard == Shard::WHOLE),
         })
     }
 
@@ -313,7 +317,8 @@ impl Rendering {
             provenance.facts.extend([("renderTime".into(), time), ("threads".into(), threads)]);
         }
         let (because, format) = (self.plan.because.clone(), self.format.clone());
-        Image { film, report, error, because, view: self.view, format, provenance }
+        let dark = self.dark.clone().filter(|_| self.passes.is_finished());
+        Image { film, report, error, because, view: self.view, format, provenance, dark }
     }
 
     /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).

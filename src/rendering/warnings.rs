@@ -3,12 +3,16 @@
 use super::image_error::ImageError;
 use crate::film::{Layer, TELL_VARIANCE};
 use crate::look::percent;
+use crate::scene::Scene;
 use crate::trace::{MOST_MEDIA, RareLight, Report};
 
 /// All that there is to warn of.
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
-    let mut warnings: Vec<String> =
-        error.into_iter().flat_map(|error| [outlier(error), missed(error), dark(report, error)]).flatten().collect();
+    let mut warnings: Vec<String> = error
+        .into_iter()
+        .flat_map(|error| [outlier(error), missed(error), unmeasured(report, error)])
+        .flatten()
+        .collect();
     let place = report.first_non_finite.map(|[x, y, sample]| format!("sample {sample} of pixel ({x}, {y})"));
     warnings.extend(match (report.non_finite, place) {
         (0, _) => None,
@@ -30,6 +34,17 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
         warnings.push(format!("{share} {what}"));
     }
     warnings
+}
+
+/// What to say of an image of a scene if there is no light in it; nothing where that is meant or told before.
+pub(super) fn dark(scene: &Scene) -> Option<String> {
+    let limits = [("max_bounces", scene.render.max_bounces), ("diffuse_bounces", scene.render.diffuse_bounces)];
+    let limits: Vec<String> = limits.iter().filter_map(|(key, limit)| Some(format!("{key} = {}", (*limit)?))).collect();
+    let why = match limits.is_empty() {
+        true => String::new(),
+        false => format!(" within {}", limits.join(" and ")),
+    };
+    scene.is_dark_by_surprise().then(|| format!("no light was found in any pixel{why}, so the image is black"))
 }
 
 /// Layers that tell nothing of so few samples per pixel.
@@ -69,7 +84,7 @@ fn missed(error: &ImageError) -> Option<String> {
 }
 
 /// An image without any light, of which no noise can be told.
-fn dark(report: &Report, error: &ImageError) -> Option<String> {
+fn unmeasured(report: &Report, error: &ImageError) -> Option<String> {
     let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
     is_dark.then(|| "no light was found in any pixel, so that nothing tells how far the image is off".into())
 }

@@ -46,6 +46,8 @@ pub struct Scene<S = Curve> {
     pub files: Vec<PathBuf>,
     /// Values that were put in place of those of the file, each as `KEY=VALUE`.
     pub settings: Vec<String>,
+    /// Whether the warnings say why there may be no light in the image.
+    pub(super) is_dark_told: bool,
     pub(super) index: Arc<Index>,
 }
 
@@ -79,8 +81,16 @@ impl<S> Scene<S> {
             hash: self.hash.clone(),
             files: self.files.clone(),
             settings: self.settings.clone(),
+            is_dark_told: self.is_dark_told,
             index: self.index.clone(),
         }
+    }
+
+    /// Whether an image without any light is neither meant nor explained by a warning.
+    pub fn is_dark_by_surprise(&self) -> bool {
+        let is_cut = |object: &Object| matches!(object.sight, Sight::ShadowCatcher | Sight::Holdout);
+        let is_whole = self.film.crop.is_none() && self.format.layers.is_empty();
+        is_whole && !self.is_dark_told && !self.objects.iter().any(is_cut)
     }
 
     /// Channels of the layers that are made beside the image, and of its spectra.

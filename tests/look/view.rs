@@ -178,3 +178,24 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     view(&["a.png", "--png", "a.png"]).assert_refused(2, itself);
     assert_eq!(folder.listing(), ["a.exr", "a.png"]);
 }
+
+/// A sky of 2^9 or of 2^-11 on a ball that reflects 0.7, 0.2 and 0.1 of it.
+#[test]
+fn a_picture_of_which_nearly_all_is_white_or_black_is_told_with_the_exposure_that_shows_more() {
+    for (radiance, what, stops) in [("512", "brighter than white", -11), ("0.00048828125", "too dark to be seen", 9)] {
+        let folder = Folder::with("ball.toml", SCENE.replace("radiance = 1", &format!("radiance = {radiance}")));
+        let warned = |arguments: &[&str]| {
+            let answer = render(&folder, &[&["ball.toml", "--png", "look.png"], arguments].concat());
+            let warnings = answer.stderr.lines().filter(|line| line.starts_with("warning: "));
+            warnings.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let flag = format!("--exposure {stops}");
+        assert_eq!(warned(&[]), [format!("warning: nearly all of look.png is {what}: {flag} shows more")]);
+        let again = format!("`render view a.exr --png look.png {flag}`");
+        let told = format!("warning: nearly all of look.png is {what}: {again} shows more");
+        assert_eq!(warned(&["--exr", "a.exr"]), [told]);
+        assert_eq!(warned(&["--exposure", &stops.to_string()]), [""; 0]);
+        assert_eq!(pixels(&folder, &[]).1, format!("nearly all of it is {what}: {flag} shows more\n"));
+        assert_eq!(pixels(&folder, &["--exposure", &stops.to_string()]).1, "");
+    }
+}

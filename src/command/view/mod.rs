@@ -5,7 +5,7 @@ mod terminal;
 use std::path::PathBuf;
 
 use abbe::film::{BEAUTY, ExrFile, ExrLayer, check_writable};
-use abbe::look::{Exposure, Mattes, Picture, Tone};
+use abbe::look::{Exposure, Mattes, Misexposure, Picture, Tone};
 use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
@@ -97,6 +97,9 @@ fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> 
     let exposure = Exposure { stops: query.exposure.unwrap_or(0.0), tone };
     let (picture, said) = Picture::of_layer(file, layer, exposure);
     said.iter().for_each(|line| say(line));
+    if let (None, Some(found)) = (&query.layer, Misexposure::of_layer(file, layer, exposure)) {
+        say(&format!("{}: --exposure {} shows more", found.shows.told_of("it"), found.stops));
+    }
     Ok(picture)
 }
 

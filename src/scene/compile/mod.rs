@@ -67,10 +67,12 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     }
     let mut scene = scene?;
     scene.warnings = context.warnings(document);
-    if scene.lights.is_empty() {
-        scene.warnings.push("nothing shines, so the image will be black".into());
-    }
-    scene.warnings.extend(unlit::unlit(&scene));
+    let dark = match scene.lights.iter().all(|light| light.emission().is_dark()) {
+        true => vec!["nothing shines, so the image will be black".into()],
+        false => unlit::unlit(&scene),
+    };
+    scene.is_dark_told = !dark.is_empty();
+    scene.warnings.extend(dark);
     scene.warnings.extend(on_surface::on_surface(&scene));
     scene.warnings.extend(open_glass::open_glass(&scene));
     scene.files = context.files;
@@ -131,6 +133,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         hash: String::new(),
         files: Vec::new(),
         settings: Vec::new(),
+        is_dark_told: false,
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);

@@ -1,0 +1,183 @@
+use super::picture::{Exposure, to_rec709};
+use crate::film::{ExrFile, ExrLayer, Film};
+use crate::spectrum::apply;
+
+/// A picture that shows nearly nothing but white, or nearly nothing, though there is light in the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Misexposure {
+    /// What it shows.
+    pub shows: Shows,
+    /// The exposure, in stops, by which most of that is neither white nor black.
+    pub stops: i32,
+}
+
+/// What a picture shows that is exposed too much or too little.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// Nothing but white.
+    White,
+    /// Nothing of objects but white, before a sky that is not.
+    WhiteObjects,
+    /// Nothing, though there is light.
+    Black,
+}
+
+impl Shows {
+    /// The same of a picture of some name, as a sentence begins.
+    pub fn told_of(self, picture: &str) -> String {
+        match self {
+            Self::White => format!("nearly all of {picture} is brighter than white"),
+            Self::WhiteObjects => format!("nearly all that objects show in {picture} is brighter than white"),
+            Self::Black => format!("nearly all of {picture} is too dark to be seen"),
+        }
+    }
+}
+
+/// Times of white from which on a pixel counts as cut off: noise about white is none.
+const CUT_OFF: f64 = 1.02;
+/// Light of which a screen shows less than five steps of 255 above black.
+const SEEN: f64 = 0.0015;
+/// The brightness of most of a picture, in stops: about that of middle gray, 0.18.
+const MIDDLE: i32 = -2;
+/// Stops of a pixel's luminance that are told apart.
+const STOPS: std::ops::RangeInclusive<i32> = -126..=127;
+
+impl Misexposure {
+    /// Of the picture that is written of a film, brightened by 2^`stops` and cut off at white; none of a film that is a
+    /// part of an image.
+    pub fn of_film(film: &Film, stops: f64) -> Option<Self> {
+        if film.width < film.full[0] || film.height < film.full[1] {
+            return None;
+        }
+        let to_rec709 = film.color_space.to_rec709();
+        let exposure = Exposure { stops, ..Exposure::default() };
+        Counts::of(exposure, film.pixels.iter().map(|pixel| (apply(&to_rec709, pixel.rgb.map(f64::from)), pixel.alpha)))
+            .misexposure()
+    }
+
+    /// Of a picture of a layer of a file; none if the layer has no colors.
+    pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> Option<Self> {
+        let (color, (to_rec709, _)) = (layer.color()?, to_rec709(file));
+        let alpha = layer.channels.iter().find(|channel| channel.name.eq_ignore_ascii_case("a"));
+        let count = layer.part.bounds.size[0] * layer.part.bounds.size[1];
+        let alpha = |at: usize| alpha.map_or(0.0, |alpha| alpha.at(at) as f32);
+        let pixels = (0..count).map(|at| (apply(&to_rec709, color.map(|channel| channel.at(at))), alpha(at)));
+        Counts::of(exposure, pixels).misexposure()
+    }
+}
+
+/// How many pixels there are of each sort.
+struct Counts {
+    all: u64,
+    lit: Lit,
+    /// Those of them that show objects.
+    covered: Lit,
+    /// Pixels in which a screen shows light.
+    seen: u64,
+}
+
+/// Pixels with light.
+struct Lit {
+    all: u64,
+    white: u64,
+    /// How many there are of each luminance.
+    by_stops: Vec<u64>,
+}
+
+impl Lit {
+    fn new() -> Self {
+        Self { all: 0, white: 0, by_stops: vec![0; STOPS.clone().count()] }
+    }
+
+    fn add(&mut self, is_white: bool, stops: i32) {
+        (self.all, self.white) = (self.all + 1, self.white + u64::from(is_white));
+        self.by_stops[(stops - STOPS.start()) as usize] += 1;
+    }
+
+    fn is_white(&self) -> bool {
+        100 * self.white >= 85 * self.all
+    }
+
+    /// The exposure by which three quarters of them are of middle gray at most.
+    fn fitting(&self) -> i32 {
+        let below = self.by_stops.iter().scan(0, |sum, count| {
+            *sum += count;
+            Some(*sum)
+        });
+        MIDDLE - STOPS.zip(below).find(|(_, below)| 4 * below >= 3 * self.all).map_or(0, |(stops, _)| stops)
+    }
+}
+
+impl Counts {
+    /// Of linear Rec.709 and alpha of all pixels.
+    fn of(exposure: Exposure, pixels: impl Iterator<Item = ([f64; 3], f32)>) -> Self {
+        let mut counts = Self { all: 0, lit: Lit::new(), covered: Lit::new(), seen: 0 };
+        let gain = libm::exp2(exposure.stops);
+        for (rgb, alpha) in pixels {
+            counts.all += 1;
+            let luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+            if !luminance.is_finite() || luminance <= 0.0 {
+                continue;
+            }
+            let is_white = rgb.iter().all(|x| exposure.tone.shown(x * gain / CUT_OFF) >= 1.0);
+            let stops = (libm::round(libm::log2(luminance)) as i32).clamp(*STOPS.start(), *STOPS.end());
+            counts.lit.add(is_white, stops);
+            if alpha > 0.5 {
+                counts.covered.add(is_white, stops);
+            }
+            counts.seen += u64::from(rgb.iter().any(|x| exposure.tone.shown(x * gain) >= SEEN));
+        }
+        counts
+    }
+
+    /// What is wrong with the picture, if it is clear: where a white sky is meant, objects before it are not white;
+    /// where black is, something is seen.
+    fn misexposure(&self) -> Option<Misexposure> {
+        let (lit, covered) = (&self.lit, &self.covered);
+        let (shows, of) = match covered.is_white() {
+            true if lit.is_white() && 2 * lit.white > self.all => (Shows::White, lit),
+            true if 3 * covered.all > self.all => (Shows::WhiteObjects, covered),
+            _ if 20 * lit.all > self.all && 1000 * self.seen <= self.all => (Shows::Black, lit),
+            _ => return None,
+        };
+        Some(Misexposure { shows, stops: of.fitting() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A picture of grays, each with its alpha.
+    fn told(grays: &[(f64, f32)], stops: f64) -> Option<Misexposure> {
+        let exposure = Exposure { stops, ..Exposure::default() };
+        Counts::of(exposure, grays.iter().map(|&(gray, alpha)| ([gray; 3], alpha))).misexposure()
+    }
+
+    #[test]
+    fn a_picture_that_is_white_or_black_as_a_whole_is_told_with_the_exposure_of_middle_gray() {
+        let [white, objects, black] = [Shows::White, Shows::WhiteObjects, Shows::Black]
+            .map(|shows| move |stops| Some(Misexposure { shows, stops }));
+        assert_eq!(told(&[(8.0, 1.0), (16.0, 1.0), (8.0, 0.0), (4.0, 0.0)], 0.0), white(-5));
+        assert_eq!(told(&[(1.5, 1.0)], 0.0), white(-3));
+        assert_eq!(told(&[(0.2, 1.0)], 4.0), white(0));
+        assert_eq!(told(&[(64.0, 1.0), (64.0, 1.0), (0.3, 0.0), (0.4, 0.0)], 0.0), objects(-8));
+        assert_eq!(told(&[(1e-5, 1.0), (2e-5, 1.0), (0.0, 0.0)], 0.0), black(14));
+        assert_eq!(told(&[(0.2, 1.0)], -10.0), black(0));
+    }
+
+    #[test]
+    fn white_and_black_that_may_be_meant_are_not_told() {
+        let mostly = |gray: f64, (other, alpha): (f64, f32)| {
+            let mut all = vec![(gray, 0.0); 99];
+            all.push((other, alpha));
+            told(&all, 0.0)
+        };
+        // A thing before a white sky, a white furnace, a lamp and a star in the dark, no light at all.
+        assert_eq!(mostly(3.0, (0.4, 1.0)), None);
+        assert_eq!(told(&[(1.01, 1.0), (1.0, 1.0)], 0.0), None);
+        assert_eq!(mostly(0.0, (50.0, 1.0)), None);
+        assert_eq!(mostly(1e-5, (0.5, 0.0)), None);
+        assert_eq!(told(&[(0.0, 1.0), (f64::NAN, 1.0), (-1.0, 0.0)], 0.0), None);
+    }
+}
