@@ -240,6 +240,16 @@ impl Camera {
         }
     }
 
+    /// The diameter of the image of a point at a depth, in heights of the whole image: 0 in focus, and of a pinhole.
+    pub fn blur(&self, depth: f64) -> f64 {
+        let Some(lens) = self.lens else { return 0.0 };
+        let spread = match self.projection {
+            Projection::Orthographic { .. } => 1.0 - depth * lens.inverse_focus,
+            _ => 1.0 / depth - lens.inverse_focus,
+        };
+        lens.radius * spread.abs() / self.half.y
+    }
+
     /// Where the camera is.
     pub fn position(&self) -> DVec3 {
         self.position

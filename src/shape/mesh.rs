@@ -3,6 +3,7 @@ use std::sync::OnceLock;
 use super::edges::open_edges;
 use super::packed::Packed;
 use super::triangle::{Facet, tangents_over};
+use super::turned::turned;
 use super::{Attributes, Crossing, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
@@ -71,7 +72,8 @@ impl Mesh {
         self.triangles.len() as u32
     }
 
-    pub(super) fn is_closed(&self) -> bool {
+    /// Whether it encloses a volume.
+    pub fn is_closed(&self) -> bool {
         self.closed
     }
 
@@ -135,6 +137,24 @@ impl Mesh {
     /// Whether it has texture coordinates.
     pub fn has_coordinates(&self) -> bool {
         !self.attributes.coordinates.is_empty()
+    }
+
+    /// How many triangles are to be turned over to close the mesh; 0 if it is closed, or that does not close it.
+    pub fn turned(&self) -> usize {
+        if self.closed { 0 } else { turned(&self.vertices, &self.triangles) }
+    }
+
+    /// The largest angle in degrees between a triangle and a normal by which it is shaded; 0 if the mesh is not smooth.
+    pub fn bend(&self) -> f64 {
+        let normals = &self.attributes.normals;
+        let cosine = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| self.vertices.at(corner));
+            let flat = (b - a).cross(c - a).try_normalize()?;
+            let normal = |corner: &u32| DVec3::from(normals[*corner as usize].map(f64::from)).try_normalize();
+            triangle.iter().filter_map(normal).map(|normal| normal.dot(flat)).min_by(f64::total_cmp)
+        };
+        let least = self.triangles.iter().filter(|_| self.is_smooth()).filter_map(cosine).min_by(f64::total_cmp);
+        least.map_or(0.0, |cosine| libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees())
     }
 
     /// How many triangles have no texture coordinates, in a mesh of which others have.

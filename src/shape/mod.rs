@@ -37,6 +37,7 @@ mod sides;
 mod sphere;
 mod textured;
 mod triangle;
+mod turned;
 mod vertices;
 
 pub use attributes::{Attributes, vertex_normals};

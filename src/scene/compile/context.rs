@@ -1,6 +1,6 @@
 //! What the reading of one part of a scene leaves for that of others.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,6 +30,8 @@ pub(super) struct Context {
     pub(super) images: BTreeMap<(PathBuf, Meaning, Option<Channel>), Arc<Image>>,
     /// By file and whether it is smooth.
     pub(super) meshes: HashMap<(PathBuf, bool), Arc<Mesh>>,
+    /// Meshes whose normals are means of those of their faces.
+    pub(super) averaged: HashSet<*const Mesh>,
 }
 
 /// What the author should know, and where the reason stands.

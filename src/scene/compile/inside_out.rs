@@ -52,7 +52,7 @@ fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
 
 /// How often the inside of a shape, by its normals, lies around the start of a ray: left more often than entered on the
 /// way out.
-fn bodies_around(shape: &Shape, ray: &Ray) -> i32 {
+pub(super) fn bodies_around(shape: &Shape, ray: &Ray) -> i32 {
     let (mut ray, mut bodies) = (*ray, 0);
     for _ in 0..MOST {
         let Some(crossing) = shape.intersect(&ray, f64::INFINITY) else { break };

@@ -117,7 +117,8 @@ fn face(value: Value) -> Option<[u32; 3]> {
 
 fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: bool) -> Option<Arc<Mesh>> {
     let Parts { vertices, faces, mut attributes } = parts;
-    if smooth && attributes.normals.is_empty() {
+    let is_averaged = smooth && attributes.normals.is_empty();
+    if is_averaged {
         attributes.normals = vertex_normals(&vertices, &faces);
     }
     let Some((mesh, report)) = Mesh::new(vertices, faces) else {
@@ -129,7 +130,11 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
             count => format!("{name}: {count} triangles without area were dropped"),
         });
     }
-    Some(Arc::new(mesh.with(attributes)))
+    let mesh = Arc::new(mesh.with(attributes));
+    if is_averaged {
+        context.averaged.insert(Arc::as_ptr(&mesh));
+    }
+    Some(mesh)
 }
 
 impl Inline<'_> {

@@ -24,6 +24,7 @@ mod mesh;
 mod object;
 mod on_surface;
 mod open_glass;
+mod out_of_focus;
 mod parts;
 mod place;
 mod radiometry;
@@ -33,6 +34,7 @@ mod shape;
 mod shining;
 mod sight;
 mod spectrum_file;
+mod swallowed;
 mod transform;
 mod unlit;
 
@@ -75,6 +77,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     scene.warnings.extend(dark);
     scene.warnings.extend(on_surface::on_surface(&scene));
     scene.warnings.extend(open_glass::open_glass(&scene));
+    scene.warnings.extend(out_of_focus::out_of_focus(&scene));
     scene.files = context.files;
     scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Some(scene)
@@ -112,6 +115,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     unused(context, &placed, &drafts);
     contacts(context, &placed);
     faces_inward(context, &placed);
+    swallowed::swallowed(&placed).into_iter().for_each(|warning| context.warn(warning));
     let mut others = light::Lights::default();
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;

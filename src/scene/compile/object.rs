@@ -1,6 +1,7 @@
 //! Objects, each by itself.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::context::Context;
 use super::parts::{Materials, unknown_material};
@@ -11,7 +12,7 @@ use crate::material::Material;
 use crate::math::Transform;
 use crate::scene::Sight;
 use crate::scene::text::{At, Fields, Value, at};
-use crate::shape::Shape;
+use crate::shape::{Mesh, Shape};
 use crate::spectrum::Curve;
 
 /// ```toml
@@ -86,9 +87,10 @@ pub(super) fn object<'d>(
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
         let (group, sight, relief) = (group?, sight?, relief?);
         let written = &shape.it.shape;
-        if named.it.medium().is_some() && matches!(written, Shape::Mesh(_)) && !written.is_closed() {
-            let warning = format!("{name}: a dielectric on an open mesh: light may enter it and never leave");
-            context.warn(warning);
+        if let (Some(_), Shape::Mesh(mesh)) = (named.it.medium(), written) {
+            glass_on(mesh, context.averaged.contains(&Arc::as_ptr(mesh)))
+                .into_iter()
+                .for_each(|what| context.warn(format!("{name}: {what}")));
         }
         if let (Shape::Mesh(mesh), Some(file)) = (written, shape.it.file)
             && mesh.bare() > 0
@@ -102,6 +104,31 @@ pub(super) fn object<'d>(
         }
         Some(Draft { name, material: named.place.text()?, shape, map, instances, relief, group, sight })
     })
+}
+
+/// Degrees between a face and its normals beyond which an edge is sharp: more than those of an icosahedron, and fewer
+/// than those of a box.
+const SHARP: f64 = 40.0;
+
+/// What is wrong with a mesh as the surface of a clear body; its normals may be means of those of its faces.
+fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
+    let mut found = Vec::new();
+    if !mesh.is_closed() {
+        let reverse = "reverse the order of the corners, or recalculate the normals where it was made";
+        found.push(match mesh.turned() {
+            0 => "a dielectric on an open mesh: light may enter it and never leave".into(),
+            1 => format!("1 triangle of this closed mesh is turned over: {reverse}"),
+            turned => format!("{turned} triangles of this closed mesh are turned over: {reverse}"),
+        });
+    }
+    let bend = if is_averaged { mesh.bend() } else { 0.0 };
+    if bend > SHARP {
+        found.push(format!(
+            "this mesh has no normals, and `smooth` bends those of its faces by up to {bend:.0} degrees, so that sharp edges look \
+             round, and glass may catch light: leave it out, or save the mesh with normals"
+        ));
+    }
+    found
 }
 
 /// What the camera sees of an object.

@@ -115,6 +115,15 @@ impl<'a> Sight<'a> {
         })
     }
 
+    /// How far along the viewing direction that lies which rays through all of the image meet first.
+    pub(super) fn depths(&self) -> impl Iterator<Item = f64> {
+        (0..SIDE * SIDE).filter_map(|i| {
+            let ray = self.camera_ray(i);
+            let hit = self.scene.intersect_seen(&ray, None)?;
+            Some(self.scene.camera.depth(ray.origin + ray.direction * hit.crossing.t))
+        })
+    }
+
     /// Whether light never crosses an object.
     fn is_opaque(&self, object: u32) -> bool {
         let material = self.scene.material_of(object);

@@ -1,0 +1,35 @@
+//! Lenses by which nothing that the camera sees is in focus.
+
+use super::curve_range::shown;
+use super::sight::Sight;
+use crate::scene::Scene;
+use crate::spectrum::Curve;
+
+/// Least rays that meet something, of 576.
+const LEAST: usize = 144;
+/// Diameter of a point's image, in heights of the image, from which on nothing of it can be told.
+const BLURRED: f64 = 0.25;
+/// A radius of this part of the distance in focus is that of no lens: a fast one has a twentieth.
+const WIDE: f64 = 0.25;
+
+/// What is wrong with a lens that blurs nearly all that the camera sees beyond recognition.
+pub(super) fn out_of_focus(scene: &Scene<Curve>) -> Option<String> {
+    let camera = &scene.camera;
+    let lens = camera.lens?;
+    let mut depths: Vec<f64> = Sight::new(scene).depths().collect();
+    if depths.len() < LEAST {
+        return None;
+    }
+    depths.sort_by(f64::total_cmp);
+    let middle = depths[depths.len() / 2];
+    let focus = if lens.inverse_focus > 0.0 { 1.0 / lens.inverse_focus } else { middle };
+    let blurred = depths.iter().filter(|depth| camera.blur(**depth) > BLURRED).count();
+    let is_blurred = 20 * blurred >= 19 * depths.len() && lens.radius > WIDE * focus;
+    is_blurred.then(|| {
+        let middle = shown(format!("{middle:.2e}").parse().unwrap_or(middle));
+        format!(
+            "nearly nothing that the camera sees is in focus: `radius` and `focus_distance` of its lens are in scene units, \
+             in which half of what it sees is nearer than {middle}"
+        )
+    })
+}

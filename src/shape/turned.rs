@@ -1,0 +1,107 @@
+//! Triangles that face the other way than those around them.
+
+use super::Vertices;
+
+/// One side of a triangle between two vertices, the lower one first, and whether it runs that way.
+struct Side {
+    ends: [u32; 2],
+    rises: bool,
+    triangle: u32,
+}
+
+/// How many triangles are to be turned over so that all of them enclose a volume, vertices at the same place counting
+/// as one: the fewer ones of each piece. 0 if each edge is not shared by two triangles, or no turning closes them.
+pub(super) fn turned(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
+    let merged = vertices.merged();
+    let side = |triangle: usize, [a, b]: [u32; 2]| {
+        let [a, b] = [a, b].map(|corner| merged[corner as usize]);
+        Side { ends: [a.min(b), a.max(b)], rises: a < b, triangle: triangle as u32 }
+    };
+    let sides = triangles.iter().enumerate();
+    let sides = sides.flat_map(|(at, t)| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].map(|ends| side(at, ends)));
+    let mut sides: Vec<Side> = sides.collect();
+    sides.sort_unstable_by_key(|side| side.ends);
+    let mut neighbors = vec![Vec::<Neighbor>::new(); triangles.len()];
+    for edge in sides.chunk_by(|a, b| a.ends == b.ends) {
+        let [a, b] = edge else { return 0 };
+        let is_opposed = a.rises == b.rises;
+        neighbors[a.triangle as usize].push(Neighbor { triangle: b.triangle, is_opposed });
+        neighbors[b.triangle as usize].push(Neighbor { triangle: a.triangle, is_opposed });
+    }
+    of_pieces(&neighbors).unwrap_or_default()
+}
+
+/// A triangle on the other side of an edge.
+#[derive(Clone, Copy)]
+struct Neighbor {
+    triangle: u32,
+    /// Whether one of both is turned over.
+    is_opposed: bool,
+}
+
+/// The triangles of each piece that are turned over; none if there is a piece with one side only.
+fn of_pieces(neighbors: &[Vec<Neighbor>]) -> Option<usize> {
+    let (mut is_turned, mut all) = (vec![None; neighbors.len()], 0);
+    for first in 0..neighbors.len() {
+        if is_turned[first].is_some() {
+            continue;
+        }
+        is_turned[first] = Some(false);
+        let (mut open, mut count, mut turned) = (vec![first], 0, 0);
+        while let Some(triangle) = open.pop() {
+            let own = is_turned[triangle] == Some(true);
+            (count, turned) = (count + 1, turned + usize::from(own));
+            for neighbor in &neighbors[triangle] {
+                let (other, way) = (neighbor.triangle as usize, own != neighbor.is_opposed);
+                match is_turned[other] {
+                    None => {
+                        is_turned[other] = Some(way);
+                        open.push(other);
+                    }
+                    Some(known) if known != way => return None,
+                    Some(_) => {}
+                }
+            }
+        }
+        all += turned.min(count - turned);
+    }
+    Some(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::DVec3;
+
+    #[test]
+    fn triangles_of_a_tetrahedron_that_are_turned_over_are_counted() {
+        let vertices = Vertices::Double(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z]);
+        let closed = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        assert_eq!(turned(&vertices, &closed), 0);
+        for at in 0..4 {
+            let mut one = closed;
+            one[at].swap(0, 1);
+            assert_eq!(turned(&vertices, &one), 1);
+        }
+        assert_eq!(turned(&vertices, &closed[..3]), 0);
+    }
+
+    #[test]
+    fn a_strip_with_one_side_only_has_no_triangle_that_is_turned_over() {
+        // The projective plane of six vertices: each edge is shared by two triangles.
+        let plane = [
+            [0, 1, 2],
+            [0, 2, 3],
+            [0, 3, 4],
+            [0, 4, 5],
+            [0, 5, 1],
+            [1, 2, 4],
+            [2, 3, 5],
+            [3, 4, 1],
+            [4, 5, 2],
+            [5, 1, 3],
+        ];
+        let at = |index: u32| DVec3::new(f64::from(index), f64::from(index * index), f64::from(index % 2));
+        assert_eq!(turned(&Vertices::Double((0..6).map(at).collect()), &plane), 0);
+    }
+}
