@@ -138,9 +138,12 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let _folders = Folders::of_files(&all)?;
     let way = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
     let mut keep = Keep::new(&job.keep, main, checkpoint, way)?;
+    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
+    if keep.has_finished(scene, &job.options, &files) {
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut rendering = Rendering::new(scene, &job.options)?.since(began);
     messages::print_plan(rendering.plan());
-    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
     if !keep.resume(&mut rendering, &files)? {
         return Ok(ExitCode::SUCCESS);
     }
