@@ -83,6 +83,8 @@ pub struct Channel {
     pub layer: String,
     /// What stands behind it, such as R.
     pub name: String,
+    /// How many columns and rows of pixels share a value; 1 and 1 where values are read.
+    pub sampling: [usize; 2],
     pub(super) samples: FlatSamples,
 }
 
@@ -98,7 +100,7 @@ impl Channel {
             FlatSamples::F32(values) => FlatSamples::F32(places.map(|at| values[at]).collect()),
             FlatSamples::U32(values) => FlatSamples::U32(places.map(|at| values[at]).collect()),
         };
-        Self { layer: self.layer.clone(), name: self.name.clone(), samples }
+        Self { layer: self.layer.clone(), name: self.name.clone(), sampling: self.sampling, samples }
     }
 
     /// `half`, `float` or `uint`.
