@@ -89,6 +89,11 @@ pub struct Channel {
 }
 
 impl Channel {
+    /// One at the root that is in no file.
+    pub(crate) fn of_values(name: &str, values: Vec<f32>) -> Self {
+        Self { layer: String::new(), name: name.to_owned(), sampling: [1, 1], samples: FlatSamples::F32(values) }
+    }
+
     /// Layer and name, as the file has them.
     pub fn full_name(&self) -> String {
         if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
