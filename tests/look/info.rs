@@ -40,7 +40,8 @@ fn a_render_says_its_overscan() {
 #[test]
 fn a_render_says_size_crop_color_camera_origin_and_channels() {
     let folder = Folder::with("ball.toml", SCENE);
-    assert_eq!(render(&folder, &["ball.toml", "--crop", "4,2,6,5"]).code, Some(0));
+    let rate = ["--set", "film.metadata.frames_per_second=23.976"];
+    assert_eq!(render(&folder, &[&["ball.toml", "--crop", "4,2,6,5"], &rate[..]].concat()).code, Some(0));
     let lines = lines(&folder, "ball.exr");
     assert_says(
         &lines,
@@ -54,6 +55,7 @@ fn a_render_says_size_crop_color_camera_origin_and_channels() {
             // 2 atan(1.5 tan(17.5 degrees)).
             "field of view 50.62 degrees across, 35.00 up",
             "colorInteropID lin_ap1_scene",
+            "framesPerSecond 24000/1001",
             "render/samples 3",
             "render/seed 0",
             "layer channel type min mean max",
@@ -103,8 +105,6 @@ fn overscan_and_parts_of_other_programs_are_told() {
     );
 }
 
-#[test]
-fn a_file_that_cannot_be_read_is_told_in_one_line() {
 /// A file of a channel with this sampling and another one up to its pixels, which are not there.
 fn head(is_deep: bool, sampling: Vec2<usize>) -> Vec<u8> {
     let mut channels = ["BY", "Y"].map(|name| ChannelDescription::new(name, SampleType::F16, false));
@@ -135,6 +135,8 @@ fn of_a_file_whose_values_are_not_read_all_else_is_told() {
     assert_eq!((viewed.code, viewed.stderr), (Some(1), format!("{refusal}{why}\n")));
 }
 
+#[test]
+fn a_file_that_cannot_be_read_is_told_in_one_line() {
     let folder = Folder::new();
     folder.write("ramp.exr", ramp().bytes());
     folder.write("text.exr", "no image");
