@@ -285,7 +285,7 @@ impl Rendering {
 
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
-        self.image_of(self.passes.film())
+        self.image_of(self.threads.install(|| self.passes.film()))
     }
 
     /// All that is known of the image so far, without its pixels and the values of its layers: it takes little memory.
