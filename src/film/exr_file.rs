@@ -242,7 +242,7 @@ fn unread(headers: &[Header]) -> Option<String> {
     let of_part = |header: &Header| match header {
         Header { deep: true, .. } => Some("a deep image, which has many values to a pixel".into()),
         Header { channels, .. } if channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) => {
-            Some("a subsampled channel, of which several pixels share a value".into())
+            Some("channel subsampling, by which several pixels share a value".into())
         }
         Header { layer_size, .. } => too_large(layer_size.width(), layer_size.height(), MOST_PIXELS),
     };
