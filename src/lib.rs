@@ -70,7 +70,7 @@ mod rendering;
 pub use error::{Diagnostic, Error, Result, nearest};
 pub use rendering::{
     ErrorAccount, Image, ImageError, Options, Parts, PlanAccount, RenderAccount, Rendering, Resumed, Timer,
-    is_checkpoint, merge, render, write_plan,
+    has_finished, is_checkpoint, merge, render, write_plan,
 };
 pub use scene::Scene;
 pub use toml;

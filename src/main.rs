@@ -8,7 +8,6 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use abbe::film::check_writable;
 use abbe::plan::plan;
 use abbe::scene::Source;
 use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
@@ -16,7 +15,7 @@ use abbe::{Error, Image, Rendering, Result, Scene, write_plan};
 use command::cli::{self, Job, Jobs, Output, Request};
 use command::events::{Event, write_account};
 use command::keep::Keep;
-use command::outputs::{check_outputs, check_standard, check_words, is_standard, spare};
+use command::outputs::{Folders, check_outputs, check_standard, check_words, is_standard, spare};
 use command::{catalog, diff, info, merge, messages, progress, signals, view};
 
 fn main() -> ExitCode {
@@ -96,7 +95,7 @@ fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<Ex
 fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
     check_outputs(scene, &Vec::from_iter(file))?;
     check_words("--plan-file", "frame.plan", file)?;
-    file.map_or(Ok(()), check_writable)?;
+    let _folders = Folders::of_files(&Vec::from_iter(file))?;
     let plan = plan(scene);
     messages::answer_plan(&plan)?;
     if let Some(file) = file {
@@ -136,12 +135,15 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let plan = job.options.plan.as_deref();
     all.iter().try_for_each(|output| plan.map_or(Ok(()), |plan| spare(plan, "plan that is followed", output)))?;
     check_words("--report", "frame.json", report)?;
-    all.iter().try_for_each(|output| check_writable(output))?;
+    let _folders = Folders::of_files(&all)?;
     let way = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
     let mut keep = Keep::new(&job.keep, main, checkpoint, way)?;
+    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
+    if keep.has_finished(scene, &job.options, &files) {
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut rendering = Rendering::new(scene, &job.options)?.since(began);
     messages::print_plan(rendering.plan());
-    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
     if !keep.resume(&mut rendering, &files)? {
         return Ok(ExitCode::SUCCESS);
     }

@@ -208,6 +208,8 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--layers", "light_key", of_a_light);
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
     is_refused("--layers", "albdo,N,varianc", both);
+    let both = "there are no layers `normal` (normals are in N), `depth` (leave it out: Z is in every file)";
+    is_refused("--layers", "albedo,normal,depth", both);
     let frames = "frames are a whole number from 0 to 4294967295, or a range such as 1-24 or 1-24x2";
     (["-3", "1.5", "1-24x0"]).iter().for_each(|wrong| is_refused("--frame", wrong, frames));
     is_refused("--frame", "24-1", "24-1 ends before it begins: write 1-24");

@@ -177,6 +177,34 @@ fn a_link_that_leads_nowhere_is_refused_before_anything_is_rendered() {
 }
 
 #[test]
+fn a_render_that_is_refused_leaves_no_folders() {
+    let folder = folder();
+    let new = |more: &[&str]| render(&folder, &[&["ball.toml", "--exr", "new/deep/a.exr"], more].concat());
+    for refused in [&["--png", "ball.toml/a.png"][..], &["--plan-file", "no.plan", "--png", "new/other/a.png"]] {
+        let answer = new(refused);
+        assert!(matches!(answer.code, Some(1 | 2)), "{}", answer.stderr);
+        assert_eq!(folder.listing(), ["ball.toml"]);
+    }
+    // Those in which something stands are kept.
+    folder.write("new/notes", "of today");
+    assert_eq!(new(&["--png", "ball.toml/a.png"]).code, Some(1));
+    assert!(!folder.path_of("new/deep").exists() && folder.path_of("new/notes").exists());
+    assert_eq!(new(&[]).code, Some(0));
+    assert!(is_image(&folder.path_of("new/deep/a.exr")));
+}
+
+/// Another render that is refused may have removed it.
+#[test]
+fn a_folder_that_is_gone_when_the_image_is_written_is_made_again() {
+    let folder = folder();
+    let path = folder.path_of("gone/a.exr");
+    abbe::film::check_writable(&path).expect("the folder can be made");
+    fs::remove_dir(folder.path_of("gone")).expect("it is empty");
+    abbe::film::replace_file(&path, b"an image").expect("the folder can be made");
+    assert_eq!(folder.read("gone/a.exr"), b"an image");
+}
+
+#[test]
 fn permissions_of_an_image_survive_and_a_protected_one_is_left_alone() {
     let folder = folder();
     let path = folder.path_of("ball.exr");

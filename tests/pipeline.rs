@@ -326,6 +326,10 @@ fn frames_are_rendered_one_after_another() {
     assert!(bytes("t.4.exr") == fourth);
     let piped = fed(&folder, &["-", "--frame", "3-4", "--exr", "p.%d.exr", "--quiet"], &bytes("turn.toml"));
     assert!(piped.status.code() == Some(0) && bytes("p.3.exr") == bytes("t.3.exr"), "{}", text(&piped.stderr));
+    // Each frame follows its own plan.
+    assert_eq!(frames(&["--frame", "3-4", "--plan", "--plan-file", "p.%d.plan"]).code, Some(0));
+    let planned = frames(&["--frame", "3-4", "--plan-file", "p.%d.plan", "--exr", "q.%d.exr"]);
+    assert!(planned.code == Some(0) && bytes("q.4.exr") == fourth, "{}", planned.stderr);
     assert_eq!(frames(&["--check", "--frame", "1-3"]).stderr.matches("is a valid scene").count(), 3);
     for (arguments, message) in [
         (
@@ -339,7 +343,10 @@ fn frames_are_rendered_one_after_another() {
         ),
         (&["--report", "one.json"], "one.json would be the name of every frame"),
         (&["--progress", "openjd"], "--progress is of one frame"),
-        (&["--plan-file", "p.%d.plan"], "--plan-file is of one frame"),
+        (
+            &["--plan-file", "p.plan"],
+            "p.plan would be the name of every frame\nhelp: put its number into it: p.%04d.plan",
+        ),
     ] {
         let refused = frames(&[&["--frame", "1-2"], arguments].concat());
         let said = refused.stdout + &refused.stderr;

@@ -242,15 +242,12 @@ impl Jobs {
 
     /// Refuses what several frames cannot have.
     fn check(&self) -> Result<()> {
-        let Arguments { exr, png, report, plan, plan_file, progress, scene, .. } = &*self.0;
+        let Arguments { exr, png, report, plan_file, progress, scene, .. } = &*self.0;
         if self.count() == 1 {
             return Ok(());
         }
         if progress.is_some() {
             return Error::refuse("--progress is of one frame", "give the farm a task for each: --frame 1");
-        }
-        if !plan && plan_file.is_some() {
-            return Error::refuse("--plan-file is of one frame, and each has a plan of its own", "leave it out");
         }
         // Without a scene of its own, --exr has the scene.
         let exr = exr.iter().flatten().filter(|_| scene.is_some());

@@ -18,7 +18,8 @@ and that of each channel's mean, is within what chance exceeds in one of a hundr
 Other files agree if all values are equal, or relMSE is at most --tolerance. \
 Images that are equal do not agree if a layer that both files have is not, such as Z; \
 nor does alpha that is 0 in one and 1 in the other more often than chance makes it so. \
-If one file is a crop of the other, only the pixels that both have are compared.
+If one file is a crop of the other, only the pixels that both have are compared. \
+What only one of the files has is told, and makes no difference.
 
 Examples:
   render diff old.exr new.exr                       do they agree, and if not, where
@@ -40,7 +41,8 @@ pub struct Query {
     #[arg(value_name = "B.exr")]
     b: PathBuf,
 
-    /// A layer such as albedo or Z instead of the image itself
+    /// A layer such as albedo or Z, mattes such as CryptoObject, or one of them such as CryptoObject.ball, instead of
+    /// the image itself
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
 
@@ -85,7 +87,10 @@ fn compared(query: &Query) -> Result<bool> {
     }
     lines[0].push_str(&of_equal(&found));
     let gathers = files.iter().any(|file| file.attribute("render/photonRadius").is_some());
-    lines.extend(figures(&found, query.tolerance, gathers));
+    let mut rows = figures(&found, query.tolerance, gathers);
+    let only = names.iter().zip(&found.only_in).filter(|(_, only)| !only.is_empty());
+    rows.extend(only.map(|(name, only)| vec![format!("only in {name}"), only.join(", ")]));
+    lines.extend(aligned(&rows));
     if let Some(png) = &query.png {
         let (picture, white) = found.picture();
         check_writable(png)?;
@@ -116,7 +121,7 @@ fn of_equal(found: &Difference) -> String {
 }
 
 /// What is told of a difference; `gathers` says that an image has a photon map.
-fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<String> {
+fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     let mut put = |key: &str, text: String| rows.push(vec![key.to_owned(), text]);
     let most = tolerance.map_or(String::new(), |most| format!(", {} is tolerated", number(most)));
@@ -168,7 +173,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Str
     if let Some(torn) = &found.first_torn {
         put("first of them", of_pixel(torn));
     }
-    aligned(&rows)
+    rows
 }
 
 /// A pixel with its values in both images.

@@ -12,7 +12,8 @@ use super::messages::aligned;
 
 const HELP: &str = "\
 It says the size and the part of it that is there, the color space, the camera, all that the file says of itself, \
-and of each channel its type, least, mean and largest value, and how many values are not finite.
+and of each channel its type, least, mean and largest value, and how many values are not finite. Of deep images and \
+subsampled channels it says all but the values.
 
 Examples:
   render info rainbow.exr            files of other programs as well
@@ -37,9 +38,16 @@ const MOST_SHOWN: usize = 200;
 /// # Errors
 /// If the file cannot be read.
 pub fn lines(query: &Query) -> Result<Vec<String>> {
-    let file = ExrFile::read(&query.file)?;
+    let (file, unread) = match ExrFile::read(&query.file) {
+        Ok(file) => (file, None),
+        Err(error) => match ExrFile::outline(&query.file) {
+            Ok(Some((file, why))) => (file, Some(why)),
+            _ => return Err(error),
+        },
+    };
     let parts = if file.parts.len() == 1 { "1 part".into() } else { format!("{} parts", file.parts.len()) };
-    let mut lines = vec![format!("{}: OpenEXR, {parts}, {} bytes", query.file.display(), file.length)];
+    let unread = unread.map_or(String::new(), |why| format!("; its values are not read: {why}"));
+    let mut lines = vec![format!("{}: OpenEXR, {parts}, {} bytes{unread}", query.file.display(), file.length)];
     for (number, part) in file.parts.iter().enumerate() {
         if file.parts.len() > 1 {
             let name = part.name.as_deref().map_or(String::new(), |name| format!(" {}", short(name)));
@@ -172,7 +180,12 @@ fn line(layer: &ExrLayer, channel: &Channel) -> Vec<String> {
     let Statistics { nan, infinite, finite, min, max, mean } = channel.statistics();
     let [min, mean, max] = [min, mean, max].map(|x| if finite > 0 { number(x) } else { "-".into() });
     let broken = [(nan, "NaN"), (infinite, "infinite")].into_iter().filter(|(count, _)| *count > 0);
-    let broken: Vec<String> = broken.map(|(count, what)| format!("{count} {what}")).collect();
+    let mut told: Vec<String> = broken.map(|(count, what)| format!("{count} {what}")).collect();
+    if let [across, down] = channel.sampling
+        && [across, down] != [1, 1]
+    {
+        told.push(format!("a value for {across} x {down} pixels"));
+    }
     let [layer, name] = [&layer.name, &channel.name].map(|text| short(text));
-    vec![layer, name, channel.kind().into(), min, mean, max, broken.join(", ")]
+    vec![layer, name, channel.kind().into(), min, mean, max, told.join(", ")]
 }

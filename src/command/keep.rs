@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use abbe::film::Shard;
 use abbe::scene::duration;
-use abbe::{Advance, Error, ImageError, Rendering, Result, Resumed, Timer, is_checkpoint};
+use abbe::{Advance, Error, ImageError, Options, Rendering, Result, Resumed, Scene, Timer};
+use abbe::{has_finished, is_checkpoint};
 use clap::Args;
 
 use super::messages::{say, so_far, warn};
@@ -158,6 +159,15 @@ impl Keep {
         })
     }
 
+    /// Whether an earlier run has finished the same render and written its files, which is said. It takes no plan to
+    /// know.
+    pub fn has_finished(&self, scene: &Scene, options: &Options, outputs: &[&Path]) -> bool {
+        // A plan that is followed is looked at in any case.
+        let path = self.checkpoint.as_deref().filter(|_| self.resume && options.plan.is_none());
+        let finished = path.filter(|path| has_finished(path, scene, options.shard, outputs, &self.way));
+        finished.inspect(|path| say_finished(path)).is_some()
+    }
+
     /// Goes on from the checkpoint, if it shall and there is one. Answers whether anything is left to be done:
     /// `outputs` are the files that shall be there in the end.
     ///
@@ -180,9 +190,7 @@ impl Keep {
                 Ok(true)
             }
             Resumed::Finished if missing.is_none() => {
-                say(&format!(
-                    "{name} has all samples that are needed, and the image is written: nothing is left to be done"
-                ));
+                say_finished(path);
                 Ok(false)
             }
             Resumed::Finished => Ok(true),
@@ -306,6 +314,11 @@ impl Keep {
         }
         say(&format!("stopped; {} keeps what is done. Go on with\n  {}", path.display(), words.join(" ")));
     }
+}
+
+fn say_finished(checkpoint: &Path) {
+    let name = checkpoint.display();
+    say(&format!("{name} has all samples that are needed, and the image is written: nothing is left to be done"));
 }
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.

@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use abbe::film::check_writable;
 use abbe::{Error, Parts, Result, is_checkpoint};
 use clap::Parser;
 
 use super::messages::{Listener, Protocol, print_written, speak_to, warn, warn_of_clamped};
-use super::outputs::{ends_in, spare};
+use super::outputs::{Folders, ends_in, spare};
 use super::problem::problem;
 use super::signals::catch_plainly;
 
@@ -59,7 +58,7 @@ pub fn run(query: &Query) -> Result<()> {
     parts.iter().try_for_each(|part| spare(part, "part", path))?;
     catch_plainly()?;
     let image = Parts::open(parts)?;
-    check_writable(path)?;
+    let _folders = Folders::of_files(&[path])?;
     warn_of_clamped(image.format(), image.write_exr(path)?);
     print_written(path);
     let path = path.with_extension("spectral.exr");

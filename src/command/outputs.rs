@@ -1,8 +1,11 @@
 //! What the command may write.
 
+use std::cmp::Reverse;
+use std::fs;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
+use abbe::film::check_writable;
 use abbe::{Error, Result, Scene};
 
 pub fn ends_in(path: &Path, ending: &str) -> bool {
@@ -52,7 +55,7 @@ pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()>
 
 /// Refuses an output that is the input itself, by another name or a link.
 pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let real = |path: &Path| fs::canonicalize(path).ok();
     match real(output).filter(|output| real(input).as_ref() == Some(output)) {
         Some(_) => Error::refuse(format!("{} is the {what} itself", output.display()), "name another file"),
         None => Ok(()),
@@ -84,10 +87,10 @@ pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
 fn full(path: &Path) -> PathBuf {
     let in_folder = || {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let folder = std::fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).ok();
+        let folder = fs::canonicalize(folder).or_else(|_| std::path::absolute(folder)).ok();
         folder.zip(path.file_name()).map(|(folder, name)| folder.join(name))
     };
-    std::fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
+    fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
 /// Refuses what is no number of stops.
@@ -95,5 +98,31 @@ pub fn check_exposure(stops: Option<f64>) -> Result<()> {
     match stops.filter(|stops| !stops.is_finite()) {
         Some(_) => Error::refuse("an exposure is a finite number of stops", "for instance: --exposure 1"),
         None => Ok(()),
+    }
+}
+
+/// Folders that are made for files; those in which nothing stands in the end are removed.
+#[derive(Default)]
+pub struct Folders(Vec<PathBuf>);
+
+impl Folders {
+    /// Finds out before a long render whether files can be written, and makes the folders that are missing.
+    pub fn of_files(files: &[&Path]) -> Result<Self> {
+        let mut made = Self::default();
+        for file in files {
+            let folders = file.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
+            let missing = folders.take_while(|folder| !folder.exists());
+            made.0.extend(missing.map(Path::to_owned));
+            check_writable(file)?;
+        }
+        Ok(made)
+    }
+}
+
+impl Drop for Folders {
+    fn drop(&mut self) {
+        self.0.sort_by_key(|folder| Reverse(folder.components().count()));
+        // One that is not empty stays.
+        self.0.iter().for_each(|folder| drop(fs::remove_dir(folder)));
     }
 }

@@ -251,6 +251,7 @@ pub(super) fn attributes(heading: Heading) -> LayerAttributes {
         owner: format.owner.as_deref().map(utf8),
         white_luminance: format.white_luminance.map(|luminance| luminance as f32),
         comments: format.comments.as_deref().map(utf8),
+        frames_per_second: format.frames_per_second.map(|[frames, seconds]| (frames as i32, seconds)),
         // Readers take the data window of an environment for the full sphere, which crops and overscan are not.
         environment_map: (view.latlong && film.corner == [0, 0] && film.full == [film.width, film.height])
             .then_some(EnvironmentMap::LatitudeLongitude),

@@ -5,10 +5,11 @@ use std::fs::File;
 use std::io::{Cursor, ErrorKind, Read};
 use std::path::Path;
 
-use exr::meta::MetaData;
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::{
-    AnyChannels, Blocks, Compression, Encoding, FlatImage, FlatSamples, IntegerBounds, LineOrder, ReadChannels,
-    ReadLayers, read,
+    AnyChannel, AnyChannels, Blocks, ChannelDescription, Compression, Encoding, FlatImage, FlatSamples, IntegerBounds,
+    LineOrder, ReadChannels, ReadLayers, SampleType, Vec2, read,
 };
 
 use super::exr_attributes::{attributes, primaries, text};
@@ -65,16 +66,13 @@ impl ExrFile {
 
     fn decode(bytes: &[u8]) -> exr::error::Result<Self> {
         let described = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
-        if described.headers.iter().any(|header| header.deep) {
-            return Err(exr::error::Error::NotSupported("a deep image, which has many values to a pixel".into()));
+        if let Some(said) = unread(&described.headers) {
+            return Err(exr::error::Error::NotSupported(said.into()));
         }
         let invalid = |said: String| exr::error::Error::Invalid(said.into());
         let mut all = 0u64;
         for header in &described.headers {
             let [width, height] = [header.layer_size.width(), header.layer_size.height()];
-            if let Some(said) = too_large(width, height, MOST_PIXELS) {
-                return Err(exr::error::Error::NotSupported(said.into()));
-            }
             all = all
                 .saturating_add((width as u64 * height as u64).saturating_mul(header.channels.bytes_per_pixel as u64));
             fits(width, height, all, bytes).map_err(invalid)?;
@@ -83,6 +81,28 @@ impl ExrFile {
         let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
         let image = reader.non_parallel().from_buffered(Cursor::new(bytes))?;
         Ok(Self::of_image(image, bytes.len()))
+    }
+
+    /// All that a file of a kind which is not read says before its pixels, and why they are not: its channels have no
+    /// values. None of any other file.
+    ///
+    /// # Errors
+    /// As of [`read`](Self::read).
+    pub fn outline(path: &Path) -> Result<Option<(Self, String)>> {
+        let bytes = bytes(path)?;
+        let described = guarded(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
+        let headers = described.map_err(|said| decode_error(path, &said))?.headers;
+        let [first, ..] = &headers[..] else { return Ok(None) };
+        let Some(why) = unread(&headers) else { return Ok(None) };
+        let (shared, mut taken) = (&first.shared_attributes, BTreeSet::new());
+        let file = Self {
+            parts: headers.iter().map(|header| outlined(header, &mut taken)).collect(),
+            length: bytes.len(),
+            display: PixelBounds::new(shared.display_window.position, shared.display_window.size),
+            pixel_aspect: shared.pixel_aspect,
+            chromaticities: shared.chromaticities.map(primaries),
+        };
+        Ok(Some((file, why)))
     }
 
     fn of_image(image: FlatImage, length: usize) -> Self {
@@ -217,13 +237,55 @@ fn decode_error(path: &Path, said: &str) -> Error {
     Error::Decode { path: path.to_owned(), message: format!("it is no complete OpenEXR image ({said})") }
 }
 
+/// Why the pixels of a file are not read, if they are not.
+fn unread(headers: &[Header]) -> Option<String> {
+    let of_part = |header: &Header| match header {
+        Header { deep: true, .. } => Some("a deep image, which has many values to a pixel".into()),
+        Header { channels, .. } if channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) => {
+            Some("channel subsampling, by which several pixels share a value".into())
+        }
+        Header { layer_size, .. } => too_large(layer_size.width(), layer_size.height(), MOST_PIXELS),
+    };
+    headers.iter().find_map(of_part)
+}
+
+/// A part without the values of its pixels.
+fn outlined(header: &Header, taken: &mut BTreeSet<String>) -> Part {
+    let blocks = match header.blocks {
+        BlockDescription::ScanLines => Blocks::ScanLines,
+        BlockDescription::Tiles(tiles) => Blocks::Tiles(tiles.tile_size),
+    };
+    let encoding = Encoding { compression: header.compression, blocks, line_order: header.line_order };
+    let channel = |channel: &ChannelDescription| AnyChannel {
+        name: channel.name.clone(),
+        sample_data: match channel.sample_type {
+            SampleType::F16 => FlatSamples::F16(Vec::new()),
+            SampleType::F32 => FlatSamples::F32(Vec::new()),
+            SampleType::U32 => FlatSamples::U32(Vec::new()),
+        },
+        quantize_linearly: channel.quantize_linearly,
+        sampling: channel.sampling,
+    };
+    let (own, list) = (&header.own_attributes, header.channels.list.iter().map(channel).collect());
+    let name = own.layer_name.as_ref().map(text);
+    Part {
+        bounds: PixelBounds::new(own.layer_position, header.layer_size),
+        storage: storage(&encoding),
+        attributes: attributes(own, &header.shared_attributes.other),
+        camera: own.world_to_camera,
+        channels: channels(AnyChannels { list }, name.as_deref(), taken),
+        name,
+    }
+}
+
 /// The channels of a part. Where an earlier part has one of the same name, the part's name tells them apart.
 fn channels(list: AnyChannels<FlatSamples>, part: Option<&str>, taken: &mut BTreeSet<String>) -> Vec<Channel> {
     let mut channels: Vec<Channel> = (list.list.into_iter())
         .map(|channel| {
             let full = text(&channel.name);
             let (layer, name) = full.rsplit_once('.').unwrap_or(("", &full));
-            Channel { layer: layer.to_owned(), name: name.to_owned(), samples: channel.sample_data }
+            let sampling = [channel.sampling.x(), channel.sampling.y()];
+            Channel { layer: layer.to_owned(), name: name.to_owned(), sampling, samples: channel.sample_data }
         })
         .collect();
     if let Some(part) = part.filter(|_| channels.iter().any(|channel| taken.contains(&channel.full_name()))) {

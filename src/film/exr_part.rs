@@ -83,10 +83,17 @@ pub struct Channel {
     pub layer: String,
     /// What stands behind it, such as R.
     pub name: String,
+    /// How many columns and rows of pixels share a value; 1 and 1 where values are read.
+    pub sampling: [usize; 2],
     pub(super) samples: FlatSamples,
 }
 
 impl Channel {
+    /// One at the root that is in no file.
+    pub(crate) fn of_values(name: &str, values: Vec<f32>) -> Self {
+        Self { layer: String::new(), name: name.to_owned(), sampling: [1, 1], samples: FlatSamples::F32(values) }
+    }
+
     /// Layer and name, as the file has them.
     pub fn full_name(&self) -> String {
         if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
@@ -98,7 +105,7 @@ impl Channel {
             FlatSamples::F32(values) => FlatSamples::F32(places.map(|at| values[at]).collect()),
             FlatSamples::U32(values) => FlatSamples::U32(places.map(|at| values[at]).collect()),
         };
-        Self { layer: self.layer.clone(), name: self.name.clone(), samples }
+        Self { layer: self.layer.clone(), name: self.name.clone(), sampling: self.sampling, samples }
     }
 
     /// `half`, `float` or `uint`.

@@ -18,7 +18,8 @@ pub(super) trait Place: Write + Seek {}
 
 impl<P: Write + Seek> Place for P {}
 
-/// Writes a file under a temporary name beside the target, then renames it: a reader never sees half of it.
+/// Writes a file under a temporary name beside the target, then renames it: a reader never sees half of it. Missing
+/// folders are made.
 ///
 /// A symbolic link stays and its target is replaced; permissions are kept, and other names of the same file (hard
 /// links) keep what they had. What is there but no file, such as a pipe, is written to as it is.
@@ -44,7 +45,12 @@ pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Place) -> R
         }
         Target::File(target) => target,
     };
-    let (mut file, temporary) = Temporary::beside(&target).map_err(failed)?;
+    let begun = Temporary::beside(&target).or_else(|error| match error.kind() {
+        // The folder may have been removed while the image was rendered.
+        io::ErrorKind::NotFound => make_folder(&target).and_then(|()| Temporary::beside(&target)),
+        _ => Err(error),
+    });
+    let (mut file, temporary) = begun.map_err(failed)?;
     write(&mut file)?;
     let become_file = || {
         if let Ok(before) = fs::metadata(&target) {
@@ -71,13 +77,17 @@ pub fn check_writable(path: &Path) -> Result<()> {
         Target::Device if is_pipe(path) => Ok(()),
         Target::Device => File::options().write(true).open(path).map(drop),
         Target::File(target) => {
-            if let Some(folder) = target.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-                fs::create_dir_all(folder)?;
-            }
+            make_folder(&target)?;
             Temporary::beside(&target).map(drop)
         }
     });
     tried.map_err(|source| cannot_write(path, source))
+}
+
+/// Makes the folder of a file, if it is missing.
+fn make_folder(file: &Path) -> io::Result<()> {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.map_or(Ok(()), fs::create_dir_all)
 }
 
 /// What a path stands for.

@@ -30,6 +30,8 @@ pub struct Format {
     pub owner: Option<String>,
     /// What there is to say about it.
     pub comments: Option<String>,
+    /// Frames of the sequence to which it belongs, in so many seconds.
+    pub frames_per_second: Option<[u32; 2]>,
 }
 
 /// Last parts of the names of channels that DWA packs with loss (OpenEXR 3.3, ImfDwaCompressor.cpp).

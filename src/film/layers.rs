@@ -229,27 +229,25 @@ pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
 
 /// What is told of names that no layer has, at least one.
 fn unknown_layers(unknown: &[&str]) -> String {
-    if let [name] = unknown
-        && let Some(help) = layer_elsewhere(name)
-    {
-        return format!("there is no layer `{name}` ({help})");
-    }
     let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
-    let meant: Vec<Option<&str>> = unknown.iter().map(|name| nearest(name, known())).collect();
-    let list = known().collect::<Vec<_>>().join(", ");
-    let told = |(name, near): (&&str, &Option<&str>)| match near {
-        Some(near) => format!("`{name}` (did you mean {near}?)"),
+    let list = || known().collect::<Vec<_>>().join(", ");
+    let near = |name: &str| nearest(name, known()).map(|near| format!("did you mean {near}?"));
+    if let [name] = unknown {
+        return match (layer_elsewhere(name), near(name)) {
+            (Some(help), _) => format!("there is no layer `{name}` ({help})"),
+            (None, Some(near)) => format!("there is no layer `{name}`: {near}"),
+            (None, None) => format!("there is no layer `{name}`: known are {}", list()),
+        };
+    }
+    let meant = |name: &&str| layer_elsewhere(name).map(str::to_owned).or_else(|| near(name));
+    let meant: Vec<Option<String>> = unknown.iter().map(meant).collect();
+    let told = |(name, meant): (&&str, &Option<String>)| match meant {
+        Some(meant) => format!("`{name}` ({meant})"),
         None => format!("`{name}`"),
     };
-    match (unknown, meant.as_slice()) {
-        ([name], [Some(near)]) => format!("there is no layer `{name}`: did you mean {near}?"),
-        ([name], _) => format!("there is no layer `{name}`: known are {list}"),
-        _ => {
-            let told = unknown.iter().zip(&meant).map(told).collect::<Vec<_>>().join(", ");
-            let list = if meant.contains(&None) { format!("; known are {list}") } else { String::new() };
-            format!("there are no layers {told}{list}")
-        }
-    }
+    let told = unknown.iter().zip(&meant).map(told).collect::<Vec<_>>().join(", ");
+    let list = if meant.contains(&None) { format!("; known are {}", list()) } else { String::new() };
+    format!("there are no layers {told}{list}")
 }
 
 /// The degree of polarization of light, the degree of its linear polarization, both 0 to 1, and the angle of the latter

@@ -1,6 +1,7 @@
 use palette::color_difference::Ciede2000;
 use palette::{FromColor, Lab, LinSrgb};
 
+use super::mattes::Mattes;
 use super::noise::{FAMILY, Noise, Noisy};
 use super::picture::{Picture, percentile, to_rec709};
 use super::tone::shown;
@@ -27,6 +28,9 @@ pub struct Difference {
     pub is_equal: bool,
     /// If all of both images is equal: the other layers of both files that are not.
     pub layers_apart: Vec<String>,
+    /// The layers, or channels of a layer of both, that the first or the second file alone has, if no layer is asked
+    /// for.
+    pub only_in: [Vec<String>; 2],
     /// Pixels that are left out.
     pub left_out: usize,
     /// Those of them whose values differ: finite in one image only, or infinite with another sign.
@@ -85,27 +89,76 @@ pub struct WorstPixel {
     pub values: [Vec<f64>; 2],
 }
 
-/// Compares a layer of two files, without a name the beauty. `shown` are the files' names in messages. Of a crop or an
-/// overscan beside the image, the pixels that both have are compared.
+/// Compares a layer of two files, without a name the beauty; of mattes such as `CryptoObject`, or one of them such as
+/// `CryptoObject.ball`, the coverage. `shown` are the files' names in messages. Of a crop or an overscan beside the
+/// image, the pixels that both have are compared.
 ///
 /// # Errors
 /// [`Error::Arguments`] if one of them has no such layer, or their sizes, channels or color spaces differ, or they
 /// have no pixel in common.
 pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
-    let layers = [files[0].layer(layer, shown[0])?, files[1].layer(layer, shown[1])?];
-    let of_each = layers.each_ref().map(|layer| layer.part.bounds);
-    let common = of_each[0].common(&of_each[1]).filter(|_| files[0].display == files[1].display);
-    if let Some(common) = common.filter(|_| of_each[0] != of_each[1]) {
-        let [a, b] = files.map(|file| file.cut(common));
-        return Ok(Difference { is_part: true, ..compare([&a, &b], layer, shown)? });
+    let layers = match [0, 1].map(|i| files[i].layer(layer, shown[i])) {
+        [Ok(a), Ok(b)] => [a, b],
+        [Err(missing), _] | [_, Err(missing)] => {
+            return compare_mattes(files, layer.unwrap_or_default(), shown, missing);
+        }
+    };
+    let bounds = layers.each_ref().map(|layer| layer.part.bounds);
+    let mut found = match of_common(files, bounds, layer, shown) {
+        Some(found) => found?,
+        None => of_layers(files, &layers, layer, shown)?,
+    };
+    if layer.is_none() {
+        found.only_in = [only_in(files), only_in([files[1], files[0]])];
     }
-    comparable(files, &layers, shown)?;
+    Ok(found)
+}
+
+/// The same of mattes; `missing` is told if these are none either.
+fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
+    let all = files.map(Mattes::all);
+    let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, wanted)) else {
+        let lacks =
+            |at: &usize| files[*at].layer(Some(wanted), "").is_err() && Mattes::named(&all[*at], wanted).is_none();
+        let names = |at: usize| all[at].iter().map(Mattes::name).collect::<Vec<_>>();
+        let told = (0..2).find(lacks).filter(|at| !all[*at].is_empty());
+        return Err(told.map_or(missing, |at| files[at].no_layer(wanted, shown[at], &names(at))));
+    };
+    if let Some(found) = of_common(files, [a, b].map(|mattes| mattes.part.bounds), Some(wanted), shown) {
+        return found;
+    }
+    let channels = Mattes::coverages([a, b], one, shown)?;
+    let layer = |part, channel| ExrLayer { name: wanted.to_owned(), part, channels: vec![channel] };
+    of_layers(files, &[layer(a.part, &channels[0]), layer(b.part, &channels[1])], Some(wanted), shown)
+}
+
+/// Compares the pixels that both files have, if one of them has others as well.
+fn of_common(
+    files: [&ExrFile; 2],
+    bounds: [PixelBounds; 2],
+    layer: Option<&str>,
+    shown: [&str; 2],
+) -> Option<Result<Difference>> {
+    let common = bounds[0].common(&bounds[1]).filter(|_| files[0].display == files[1].display);
+    let common = common.filter(|_| bounds[0] != bounds[1])?;
+    let [a, b] = files.map(|file| file.cut(common));
+    Some(compare([&a, &b], layer, shown).map(|found| Difference { is_part: true, ..found }))
+}
+
+/// Compares two layers of the same pixels.
+fn of_layers(
+    files: [&ExrFile; 2],
+    layers: &[ExrLayer; 2],
+    layer: Option<&str>,
+    shown: [&str; 2],
+) -> Result<Difference> {
+    comparable(files, layers, shown)?;
     let [a, b] = layers.each_ref().map(ExrLayer::values);
     let bounds = layers[0].part.bounds;
     let mut found = measured([&a, &b], bounds);
     if layers.iter().all(|layer| layer.color().is_some()) {
         found.color = Some(color_difference(files, [&a, &b], &found));
-        found.alpha = alpha_difference(&layers, bounds);
+        found.alpha = alpha_difference(layers, bounds);
         found.is_equal &= found.alpha.is_none();
     }
     if let [Some(first), Some(second)] = [0, 1].map(|i| Noisy::new(files[i], &layers[i]))
@@ -124,6 +177,30 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     Ok(found)
 }
 
+/// What the first file has and the second has not: layers, and channels of layers that both have.
+fn only_in([own, other]: [&ExrFile; 2]) -> Vec<String> {
+    let others = other.layers();
+    let mut only = Vec::new();
+    for layer in own.layers() {
+        let Some(same) = others.iter().find(|other| other.name == layer.name) else {
+            only.push(layer.name);
+            continue;
+        };
+        let is_missing = |channel: &&&Channel| !same.channels.iter().any(|other| other.name == channel.name);
+        only.extend(layer.channels.iter().filter(is_missing).map(|channel| channel.full_name()));
+    }
+    by_kind(own, only)
+}
+
+/// Names of layers, those of mattes by what they are asked for.
+fn by_kind(file: &ExrFile, names: Vec<String>) -> Vec<String> {
+    let mattes = Mattes::all(file);
+    let kind = |name: String| mattes.iter().find(|kind| kind.is_in(&name)).map_or(name, |kind| kind.name().to_owned());
+    let mut told: Vec<String> = names.into_iter().map(kind).collect();
+    told.dedup();
+    told
+}
+
 /// The layers of both files that have other values in the channels that both have.
 fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     let [first, second] = files.map(ExrFile::layers);
@@ -139,7 +216,7 @@ fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
             apart.push(a.name.clone());
         }
     }
-    apart
+    by_kind(files[0], apart)
 }
 
 /// Refuses images that do not show the same pixels in the same way.
@@ -187,6 +264,7 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         channels: a.iter().map(|channel| channel.name.clone()).collect(),
         is_equal: true,
         layers_apart: Vec::new(),
+        only_in: [Vec::new(), Vec::new()],
         left_out: 0,
         torn: 0,
         relative_mse: 0.0,

@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use super::picture::Picture;
 use crate::error::{Error, Result, nearest};
-use crate::film::{Channel, ExrFile, ExrLayer, id};
+use crate::film::{Channel, ExrFile, ExrLayer, Part, id};
 
 /// Most names that are listed where one is not known.
 const MOST_LISTED: usize = 20;
@@ -14,7 +14,8 @@ const MOST_LISTED: usize = 20;
 #[derive(Debug)]
 pub struct Mattes<'f> {
     name: &'f str,
-    width: usize,
+    /// The part in which they are.
+    pub(super) part: &'f Part,
     /// Channels with the number of a name, and its coverage.
     ranks: Vec<[&'f Channel; 2]>,
     /// Names and their numbers; none in a file that keeps them elsewhere.
@@ -38,7 +39,7 @@ impl<'f> Mattes<'f> {
             let ranks: Vec<_> = found.iter().flat_map(|layer| pairs(layer)).collect();
             if let Some(first) = found.first().filter(|first| found.iter().all(|layer| same_size(first, layer))) {
                 let names = file.attribute(&format!("{start}/manifest")).map_or_else(BTreeMap::new, names);
-                all.push(Self { name, width: first.part.bounds.size[0], ranks, names });
+                all.push(Self { name, part: first.part, ranks, names });
             }
         }
         all
@@ -49,6 +50,12 @@ impl<'f> Mattes<'f> {
         self.name
     }
 
+    /// Whether a layer holds some of them, such as `CryptoObject00`.
+    pub(super) fn is_in(&self, layer: &str) -> bool {
+        let number = layer.strip_prefix(self.name);
+        number.is_some_and(|number| number.len() == 2 && number.bytes().all(|digit| digit.is_ascii_digit()))
+    }
+
     /// Every name in a color of its own, weighted by its coverage; black where there is nothing.
     pub fn picture(&self) -> Picture {
         let pixel = |at: usize| {
@@ -57,7 +64,7 @@ impl<'f> Mattes<'f> {
                 std::array::from_fn(|i| sum[i] + covered * color[i])
             })
         };
-        Picture::of_light(self.width, (0..self.pixels()).map(pixel))
+        Picture::of_light(self.width(), (0..self.pixels()).map(pixel))
     }
 
     /// The coverage of one name, black where it is not and white where nothing else is.
@@ -70,11 +77,48 @@ impl<'f> Mattes<'f> {
             None if self.names.is_empty() => id(wanted),
             None => return Err(self.unknown(wanted, shown)),
         };
-        let covered = |at: usize| {
-            let of_it = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
-            of_it.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
+        Ok(Picture::of_grays(self.width(), (0..self.pixels()).map(|at| self.covered(known, at))))
+    }
+
+    /// Those of several that are asked for, and the name of a single one of them: of `CryptoObject.ball` it is `ball`.
+    pub fn named<'m, 'w>(all: &'m [Self], wanted: &'w str) -> Option<(&'m Self, Option<&'w str>)> {
+        all.iter().find_map(|mattes| {
+            let rest = wanted.strip_prefix(mattes.name)?;
+            (rest.is_empty() || rest.starts_with('.')).then_some((mattes, rest.get(1..)))
+        })
+    }
+
+    /// How much of each pixel a name covers in two images of one size; without a name, that which is furthest apart.
+    ///
+    /// # Errors
+    /// [`Error::Arguments`] if neither image has such a name.
+    pub(super) fn coverages([a, b]: [&Self; 2], one: Option<&str>, shown: [&str; 2]) -> Result<[Channel; 2]> {
+        if let Some(wanted) = one
+            && [a, b].iter().all(|own| !own.names.is_empty() && !own.names.contains_key(wanted))
+        {
+            return Err(a.unknown(wanted, shown[0]));
+        }
+        let both = |known: u32, at: usize| [a, b].map(|own| own.covered(known, at));
+        let furthest = |at: usize| {
+            let numbers = [a, b].into_iter().flat_map(|own| own.ranks.iter().map(|[numbers, _]| number(numbers, at)));
+            let pairs = numbers.filter(|known| *known != 0).map(|known| both(known, at));
+            let apart = |[a, b]: [f64; 2]| (a - b).abs();
+            pairs.reduce(|most, next| if apart(next) > apart(most) { next } else { most }).unwrap_or_default()
         };
-        Ok(Picture::of_grays(self.width, (0..self.pixels()).map(covered)))
+        let known = one.map(id);
+        let pairs = (0..a.pixels()).map(|at| known.map_or_else(|| furthest(at), |known| both(known, at)));
+        let (first, second) = pairs.map(|pair| pair.map(|covered| covered as f32)).map(Into::into).unzip();
+        Ok([first, second].map(|values| Channel::of_values(one.unwrap_or("coverage"), values)))
+    }
+
+    /// How much of a pixel a number covers.
+    fn covered(&self, known: u32, at: usize) -> f64 {
+        let of_it = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
+        of_it.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
+    }
+
+    fn width(&self) -> usize {
+        self.part.bounds.size[0]
     }
 
     fn unknown(&self, wanted: &str, shown: &str) -> Error {

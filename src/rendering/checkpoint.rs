@@ -6,13 +6,14 @@ use std::time::SystemTime;
 
 use serde::{Deserialize, Serialize};
 
-use super::identity::Identity;
+use super::identity::{Identity, digest};
 use crate::error::{Error, Result};
-use crate::film::{BlockReader, Kind, write_blocks};
+use crate::film::{BlockReader, Kind, Shard, write_blocks};
+use crate::scene::{RenderText, Scene};
 use crate::trace;
 
 /// The first bytes of a checkpoint.
-const CHECKPOINT: Kind = *b"AbbeCkp3";
+const CHECKPOINT: Kind = *b"AbbeCkp4";
 
 /// What came of a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +44,36 @@ impl Written {
     }
 }
 
+/// What the checkpoint of a finished render knows beside its sums; empty before its end.
+#[derive(Default, Serialize, Deserialize)]
+pub(super) struct Finished {
+    /// What stands for all that was asked for.
+    asked: String,
+    written: Vec<Written>,
+}
+
+impl Finished {
+    pub(super) fn new(render: &RenderText, written: Vec<Written>) -> Self {
+        Self { asked: digest(&format!("{render:?}")), written }
+    }
+}
+
+/// Whether a file is the checkpoint of a finished render of a scene with the options in it, which has written `files`
+/// in some `way`, and nobody has changed them since. It is found out without a plan.
+pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], way: &str) -> bool {
+    let read = || -> Result<bool> {
+        let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else { return Ok(false) };
+        if !blocks.block::<Identity>()?.is_of(scene, shard) {
+            return Ok(false);
+        }
+        let Finished { asked, written } = blocks.block()?;
+        let is_there = |file: &&Path| Written::of(file, way).is_some_and(|file| written.contains(&file));
+        Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_there))
+    };
+    // Whatever is wrong with it is told when the render would go on from it.
+    read().unwrap_or(false)
+}
+
 /// Whether a file is a checkpoint, which may be damaged or of another render.
 ///
 /// # Errors
@@ -56,10 +87,10 @@ pub fn is_checkpoint(path: &Path) -> Result<bool> {
 ///
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched.
-pub(super) fn save(path: &Path, identity: &Identity, written: &[Written], passes: &trace::Rendering) -> Result<()> {
+pub(super) fn save(path: &Path, identity: &Identity, finished: &Finished, passes: &trace::Rendering) -> Result<()> {
     write_blocks(path, CHECKPOINT, &|blocks| {
         blocks.block(identity)?;
-        blocks.block(&written)?;
+        blocks.block(finished)?;
         passes.save(blocks)
     })
 }
@@ -80,7 +111,7 @@ pub(super) fn resume(
     if let Some(difference) = identity.difference(&saved) {
         return refuse(path, &difference, "delete it to begin anew, or name another image");
     }
-    let written = blocks.block()?;
+    let Finished { written, .. } = blocks.block()?;
     let resumed = match passes.restore(blocks)? {
         trace::Restored::Continues if passes.is_finished() => Resumed::Finished,
         trace::Restored::Continues => Resumed::Continues,

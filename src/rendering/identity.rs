@@ -15,11 +15,21 @@ pub(super) struct Identity(Vec<(String, String)>);
 
 const VERSION: &str = "version";
 const SCENE: &str = "scene";
+const STOP: &str = "stop rule";
 const PLAN: &str = "plan";
 
 impl Identity {
     /// Of a scene with the options in it. The number of samples is no part of it, unless the plan depends on that.
     pub(super) fn new(scene: &Scene, method: &Method, shard: Shard) -> Self {
+        let spectral = scene.format.spectral;
+        let stop = if method.stop.is_some() { "error or time" } else { "samples alone" };
+        let plan = digest(&format!("{:?} {spectral:?} {:?}", of_camera(method), scene.film.filter));
+        let of_method = [(STOP, stop.to_owned()), (PLAN, plan)].map(|(name, value)| (name.to_owned(), value));
+        Self(Self::without_plan(scene, shard).0.into_iter().chain(of_method).collect())
+    }
+
+    /// What of it is known before a scene is planned.
+    fn without_plan(scene: &Scene, shard: Shard) -> Self {
         let FilmSettings { width, height, filter, color_space, overscan, crop } = scene.film;
         let Overscan { left, top, right, bottom } = overscan;
         let crop_text = |Window { left, top, width, height }| format!("{left},{top},{width},{height}");
@@ -37,11 +47,15 @@ impl Identity {
             ("list of layers", if names.is_empty() { "empty".into() } else { names.join(",") }),
             ("first surface", format!("{first:?}").to_lowercase()),
             ("number of spectral bands", spectral.map_or(0, |bands| bands.count()).to_string()),
-            ("stop rule", if method.stop.is_some() { "error or time" } else { "samples alone" }.to_owned()),
             ("part", format!("{} of {}", shard.number(), shard.count())),
-            (PLAN, digest(&format!("{:?} {spectral:?} {filter:?}", of_camera(method)))),
         ];
         Self(facts.map(|(name, value)| (name.to_owned(), value)).into())
+    }
+
+    /// Whether it is of a scene, by whatever plan.
+    pub(super) fn is_of(&self, scene: &Scene, shard: Shard) -> bool {
+        let own = self.0.iter().filter(|(name, _)| ![STOP, PLAN].contains(&name.as_str()));
+        own.eq(&Self::without_plan(scene, shard).0)
     }
 
     /// The same of all parts of an image.
@@ -83,7 +97,7 @@ fn of_camera(method: &Method) -> Method {
 }
 
 /// 64 hexadecimal digits that stand for a text.
-fn digest(text: &str) -> String {
+pub(super) fn digest(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().fold(String::new(), |mut digits, byte| {
         let _ = write!(digits, "{byte:02x}");
         digits

@@ -15,7 +15,7 @@ mod timer;
 mod warnings;
 
 pub use account::{ErrorAccount, PlanAccount, RenderAccount};
-pub use checkpoint::{Resumed, is_checkpoint};
+pub use checkpoint::{Resumed, has_finished, is_checkpoint};
 pub use image::Image;
 pub use image_error::ImageError;
 pub use options::Options;

@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
-use super::checkpoint::{self, Resumed, Written};
+use super::checkpoint::{self, Finished, Resumed, Written};
 use super::identity::Identity;
 use super::image::Image;
 use super::image_error::ImageError;
@@ -17,7 +17,7 @@ use super::warnings::dark;
 use crate::error::{Error, Result};
 use crate::film::{Fact, Film, Format, Provenance, Shard, View};
 use crate::plan::{Plan, plan};
-use crate::scene::{Projection, Scene};
+use crate::scene::{Projection, RenderText, Scene};
 use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare};
 
 /// Renders a scene.
@@ -57,8 +57,8 @@ pub struct Rendering {
     /// What a render has to be to go on from this one.
     identity: Identity,
     shard: Shard,
-    /// The error that is asked for, if one is.
-    asked: Option<f64>,
+    /// What is asked for.
+    render: RenderText,
     /// When it began, if the file says that.
     began: Option<Instant>,
     /// Files of the finished render from which it was resumed.
@@ -113,7 +113,7 @@ impl Rendering {
             view,
             format: scene.format.clone(),
             threads,
-            asked: scene.render.error,
+            render: scene.render.clone(),
             began,
             written: Vec::new(),
             resumed_at: 0,
@@ -220,7 +220,7 @@ impl Rendering {
     /// # Errors
     /// If it cannot be written; a file that was there before is then untouched.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        checkpoint::save(path.as_ref(), &self.identity, &[], &self.passes)
+        checkpoint::save(path.as_ref(), &self.identity, &Finished::default(), &self.passes)
     }
 
     /// Writes the checkpoint of a finished render that has written its files: so [`has_written`](Self::has_written)
@@ -230,7 +230,7 @@ impl Rendering {
     /// As of [`save`](Self::save).
     pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
         let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file, way)).collect();
-        checkpoint::save(path.as_ref(), &self.identity, &written, &self.passes)
+        checkpoint::save(path.as_ref(), &self.identity, &Finished::new(&self.render, written), &self.passes)
     }
 
     /// Whether the finished render that this was resumed from has written a file in the same way, and nobody has
@@ -284,12 +284,12 @@ impl Rendering {
         let &Measured { noise, blur, alpha } = self.passes.measured()?;
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
         let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
-        Some(ImageError { asked: self.asked, noise, blur, alpha, rare_light, model, stopped_by })
+        Some(ImageError { asked: self.render.error, noise, blur, alpha, rare_light, model, stopped_by })
     }
 
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
-        self.image_of(self.passes.film())
+        self.image_of(self.threads.install(|| self.passes.film()))
     }
 
     /// All that is known of the image so far, without its pixels and the values of its layers: it takes little memory.

@@ -100,10 +100,8 @@ fn a_block_that_claims_more_than_the_image_is_refused_before_memory_is_asked_for
     }
 }
 
-/// Luminance in full size beside chroma in half of it, as other programs write it.
-#[test]
-fn channels_in_half_the_size_are_told_of_as_what_they_are() {
-    let folder = Folder::new();
+/// A ramp whose first channel says that it has half the size.
+pub fn subsampled() -> Vec<u8> {
     let mut bytes = ramp().bytes();
     let name = b"channels\0chlist\0";
     let list = bytes.windows(name.len()).position(|window| window == name).expect("channels") + name.len() + 4;
@@ -111,7 +109,13 @@ fn channels_in_half_the_size_are_told_of_as_what_they_are() {
     for axis in [0, 4] {
         bytes[list + 10 + axis..list + 14 + axis].copy_from_slice(&2_i32.to_le_bytes());
     }
-    let said = look(&folder, &bytes).expect_err("not every pixel has a number");
+    bytes
+}
+
+/// Luminance in full size beside chroma in half of it, as other programs write it.
+#[test]
+fn channels_in_half_the_size_are_told_of_as_what_they_are() {
+    let said = look(&Folder::new(), &subsampled()).expect_err("not every pixel has a number");
     assert!(said.starts_with("it is an OpenEXR image of a kind that is not read: channel subsampling"), "{said}");
 }
 

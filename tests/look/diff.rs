@@ -323,6 +323,21 @@ fn a_layer_is_compared_by_its_name_and_a_picture_shows_where() {
 }
 
 #[test]
+fn what_only_one_of_the_files_has_is_told() {
+    let folder = Folder::new();
+    let (mut a, mut b) = (ramp(), ramp());
+    a.parts[0].1.extend([("N.X", vec![0.0; 8]), ("N.Y", vec![0.0; 8]), ("Z", vec![1.0; 8])]);
+    b.parts[0].1.extend([("A", vec![1.0; 8]), ("N.X", vec![0.0; 8])]);
+    let lines = ["a.exr and b.exr agree: all values are equal", "only in a.exr Z, N.Y", "only in b.exr A"];
+    assert_says(&diff(&folder, &a, &b, &[]), 0, &lines);
+    b.channel("R")[3] = 0.9;
+    assert_says(&diff(&folder, &a, &b, &[]), 1, &["a.exr and b.exr differ", "only in a.exr Z, N.Y", "only in b.exr A"]);
+    let crop = |image: &Exr| Exr { corner: [-1, 0], ..image.clone() };
+    assert!(diff(&folder, &a, &crop(&a), &[]).stdout.find("only in").is_none());
+    assert!(diff(&folder, &a, &a, &["--layer", "Z"]).stdout.find("only in").is_none());
+}
+
+#[test]
 fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
     let folder = Folder::new();
     let (a, mut b) = (ramp(), ramp());

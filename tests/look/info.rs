@@ -1,3 +1,4 @@
+use super::damaged::subsampled;
 use super::files::{Exr, ramp};
 use crate::support::run::{Folder, render};
 
@@ -37,7 +38,8 @@ fn a_render_says_its_overscan() {
 #[test]
 fn a_render_says_size_crop_color_camera_origin_and_channels() {
     let folder = Folder::with("ball.toml", SCENE);
-    assert_eq!(render(&folder, &["ball.toml", "--crop", "4,2,6,5"]).code, Some(0));
+    let rate = ["--set", "film.metadata.frames_per_second=23.976"];
+    assert_eq!(render(&folder, &[&["ball.toml", "--crop", "4,2,6,5"], &rate[..]].concat()).code, Some(0));
     let lines = lines(&folder, "ball.exr");
     assert_says(
         &lines,
@@ -51,6 +53,7 @@ fn a_render_says_size_crop_color_camera_origin_and_channels() {
             // 2 atan(1.5 tan(17.5 degrees)).
             "field of view 50.62 degrees across, 35.00 up",
             "colorInteropID lin_ap1_scene",
+            "framesPerSecond 24000/1001",
             "render/samples 3",
             "render/seed 0",
             "layer channel type min mean max",
@@ -98,6 +101,24 @@ fn overscan_and_parts_of_other_programs_are_told() {
             "Z Z half 7 7 7",
         ],
     );
+}
+
+/// The deep image is written by OpenEXR 3.5.3.
+#[test]
+fn of_a_file_whose_values_are_not_read_all_else_is_told() {
+    let folder = Folder::new();
+    folder.write("deep.exr", include_bytes!("deep.exr"));
+    folder.write("chroma.exr", subsampled());
+    let told = lines(&folder, "deep.exr");
+    assert!(told[0].ends_with("; its values are not read: a deep image, which has many values to a pixel"), "{told:?}");
+    assert_says(&told, &["size 8 x 4 pixels", "storage zips, ", "R R half - - -", "Z Z float - - -"]);
+    let told = lines(&folder, "chroma.exr");
+    let why = "channel subsampling, by which several pixels share a value";
+    assert!(told[0].ends_with(&format!("; its values are not read: {why}")), "{told:?}");
+    assert_says(&told, &["size 4 x 2 pixels", "beauty B float - - - a value for 2 x 2 pixels"]);
+    let refusal = "error: cannot read chroma.exr: it is an OpenEXR image of a kind that is not read: ";
+    let viewed = render(&folder, &["view", "chroma.exr"]);
+    assert_eq!((viewed.code, viewed.stderr), (Some(1), format!("{refusal}{why}\n")));
 }
 
 #[test]

@@ -6,11 +6,16 @@ use crate::support::run::{Folder, render};
 
 /// Four pixels: all ball, half ball and a quarter each of floor and nothing, all of what no name is of, and nothing.
 fn mattes(folder: &Folder) {
+    mattes_with(folder, "a.exr", 0.5);
+}
+
+/// The same, of whose second pixel the ball covers so much in the first rank.
+fn mattes_with(folder: &Folder, file: &str, covered: f32) {
     let of = |name: &str| f32::from_bits(id(name));
     let (ball, floor, other) = (of("ball"), of("floor.left"), of("another"));
     let channels = vec![
         ("CryptoObject00.r", vec![ball, ball, other, 0.0]),
-        ("CryptoObject00.g", vec![1.0, 0.5, 1.0, 0.0]),
+        ("CryptoObject00.g", vec![1.0, covered, 1.0, 0.0]),
         ("CryptoObject00.b", vec![0.0, floor, 0.0, 0.0]),
         ("CryptoObject00.a", vec![0.0, 0.25, 0.0, 0.0]),
         ("CryptoObject01.r", vec![0.0, 0.0, 0.0, 0.0]),
@@ -26,7 +31,7 @@ fn mattes(folder: &Folder) {
         ("cryptomatte/3ae39a5/name", "CryptoObject".to_owned()),
         ("cryptomatte/3ae39a5/manifest", manifest.json()),
     ];
-    folder.write("a.exr", Exr { texts, ..Exr::new([4, 1], channels) }.bytes());
+    folder.write(file, Exr { texts, ..Exr::new([4, 1], channels) }.bytes());
 }
 
 #[test]
@@ -84,4 +89,33 @@ fn a_matte_that_there_is_not_is_refused_with_the_nearest_name() {
     let other = view(&["CryptoMaterial"]);
     assert!(other.stderr.starts_with("error: a.exr has no layer CryptoMaterial\n"), "{}", other.stderr);
     assert_eq!(folder.listing(), ["a.exr"]);
+}
+
+#[test]
+fn mattes_are_compared_by_what_they_cover() {
+    let folder = Folder::new();
+    mattes(&folder);
+    mattes_with(&folder, "b.exr", 0.25);
+    let diff = |layer: &str, more: &[&str]| {
+        let answer = render(&folder, &[&["diff", "a.exr", "b.exr", "--layer", layer], more].concat());
+        let words = answer.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        (answer.code, words, answer.stderr)
+    };
+    let hint = "the image is equal, the layer CryptoObject is not; --layer CryptoObject compares it";
+    let plain = render(&folder, &["diff", "a.exr", "b.exr"]);
+    assert!(plain.code == Some(1) && plain.stdout.contains(hint), "{}", plain.stdout);
+    let worst = "worst pixel (1, 0): 0.5 and 0.25";
+    for layer in ["CryptoObject", "CryptoObject.ball"] {
+        let (code, said, _) = diff(layer, &[]);
+        // 0.25^2 / (0.25^2 + 0.01), of four pixels.
+        assert!(code == Some(1) && said.contains("relMSE 0.21552") && said.ends_with(worst), "{layer}: {said}");
+        assert_eq!(diff(layer, &["--tolerance", "0.216"]).0, Some(0));
+    }
+    let same = (Some(0), "a.exr and b.exr agree: all values are equal".to_owned(), String::new());
+    assert_eq!(diff("CryptoObject.floor.left", &[]), same);
+    let near = "error: a.exr has no bal in CryptoObject\nhelp: did you mean ball? it has ball, floor.left\n";
+    assert_eq!(diff("CryptoObject.bal", &[]), (Some(2), String::new(), near.to_owned()));
+    let (code, _, said) = diff("CryptObject", &[]);
+    let near = "error: a.exr has no layer CryptObject\nhelp: did you mean CryptoObject? it has ";
+    assert!(code == Some(2) && said.starts_with(near), "{said}");
 }

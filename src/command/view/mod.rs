@@ -107,11 +107,7 @@ fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> 
 fn of_mattes(query: &Query, file: &ExrFile, shown: &str, unknown: Error) -> Result<Picture> {
     let Some(wanted) = query.layer.as_deref() else { return Err(unknown) };
     let all = Mattes::all(file);
-    let found = all.iter().find_map(|mattes| {
-        let rest = wanted.strip_prefix(mattes.name())?;
-        (rest.is_empty() || rest.starts_with('.')).then_some((mattes, rest.get(1..)))
-    });
-    let Some((mattes, one)) = found else {
+    let Some((mattes, one)) = Mattes::named(&all, wanted) else {
         let names: Vec<&str> = all.iter().map(Mattes::name).collect();
         return Err(if names.is_empty() { unknown } else { file.no_layer(wanted, shown, &names) });
     };

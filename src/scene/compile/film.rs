@@ -23,7 +23,7 @@ use crate::spectrum::ColorSpace;
 /// spectral = true                    # or { from = 380, to = 780, step = 5 }, in nm: a spectral image beside it
 /// radiometry = "absolute"            # lights are given in cd/m2, lx, cd, or in watts per nm
 /// white_luminance = 100              # cd/m2 of red, green and blue of 1
-/// metadata = { owner = "Ernst Abbe", comments = "shot 12" }
+/// metadata = { owner = "Ernst Abbe", comments = "shot 12", frames_per_second = 24 }
 /// ```
 pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
     Fields::read(value, |film| {

@@ -19,14 +19,15 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     let multipart = film.or("multipart", false, Value::yes_or_no);
     let stokes = film.or("stokes", false, Value::yes_or_no);
     let spectral = film.or("spectral", None, spectral);
-    let metadata = film.or("metadata", [None, None], |value| {
+    let metadata = film.or("metadata", ([None, None], None), |value| {
         Fields::read(value, |metadata| {
             let [owner, comments] = ["owner", "comments"].map(|key| metadata.maybe(key, line));
-            Some([owner?, comments?])
+            let rate = metadata.maybe("frames_per_second", rate);
+            Some(([owner?, comments?], rate?))
         })
     });
     let white_luminance = white_luminance(film);
-    let [owner, comments] = metadata?;
+    let ([owner, comments], frames_per_second) = metadata?;
     let (layers, first, compressed, multipart, stokes) = (layers?, first?, compression?, multipart?, stokes?);
     let (place, compression) = compressed.map_or((None, Compression::default()), |at| (Some(at.place), at.it));
     let precision = precision?.unwrap_or(match compression.is_of_16_bits() {
@@ -45,6 +46,7 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
         white_luminance,
         owner,
         comments,
+        frames_per_second,
     };
     format.ask_for(&layers);
     match place.and_then(|place| Some((place, format.objection()?))) {
@@ -124,6 +126,21 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
             }
         });
     layers.map(|layers| layers.concat())
+}
+
+/// Whole rates of frames that television has at 1000 / 1001 of their speed, and says with two or three digits.
+const OF_TELEVISION: [u32; 5] = [24, 30, 48, 60, 120];
+
+/// A rate of frames, as frames in so many seconds.
+fn rate(value: Value) -> Option<[u32; 2]> {
+    let help = Some("for instance: 24, or 23.976");
+    let rate = value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 to 1000", help)?;
+    let is_slowed = |whole: &u32| (rate - f64::from(*whole) / 1.001).abs() < 0.005;
+    Some(match OF_TELEVISION.into_iter().find(is_slowed) {
+        Some(whole) => [1000 * whole, 1001],
+        None if rate.fract() == 0.0 => [rate as u32, 1],
+        None => [(1000.0 * rate).round().max(1.0) as u32, 1000],
+    })
 }
 
 /// Text for the header of the file, which a 0 would end.

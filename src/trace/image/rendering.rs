@@ -19,7 +19,7 @@ use super::values::Values;
 use super::{light_pass, saved};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Film, Shard, TilePlace, Window};
-use crate::trace::parallel::for_each_in_parallel;
+use crate::trace::parallel::{for_each_in_parallel, in_parallel};
 use crate::trace::photon::PassLight;
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::replicates::REPLICATES;
@@ -28,6 +28,9 @@ use crate::trace::walk::Polarization;
 use crate::trace::watch::Watch;
 use crate::trace::width::in_lanes_of_layers;
 use crate::trace::{World, media};
+
+/// Tiles whose values are made before they are put into the image.
+const TILES_AT_A_TIME: usize = 256;
 
 /// What rendering noticed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -248,8 +251,12 @@ impl<'a> Rendering<'a> {
         let window = self.world().scene.film.window();
         let mut values = Values::new(&self.world().layers, window.pixels() as usize);
         let counts = self.progress.shown_counts(self.world());
-        for (tile, at) in self.places() {
-            values.write(self.world(), tile, counts, |place| at.pixel(window, place as u32));
+        let places: Vec<(&Tile, TilePlace)> = self.places().collect();
+        for some in places.chunks(TILES_AT_A_TIME) {
+            let made = in_parallel(some.len(), &|number| Values::of_tile(self.world(), some[number].0, counts));
+            for (of_tile, (_, at)) in made.iter().zip(some) {
+                values.put(of_tile, &|place| at.pixel(window, place as u32));
+            }
         }
         self.film_of(values)
     }
@@ -262,11 +269,7 @@ impl<'a> Rendering<'a> {
     /// The values of each tile that is made, row by row.
     pub fn tiles(&self) -> impl Iterator<Item = Values> {
         let counts = self.progress.shown_counts(self.world());
-        self.places().map(move |(tile, at)| {
-            let mut values = Values::new(&self.world().layers, at.pixels());
-            values.write(self.world(), tile, counts, |place| place);
-            values
-        })
+        self.places().map(move |(tile, _)| Values::of_tile(self.world(), tile, counts))
     }
 
     fn film_of(&self, Values { pixels, layers, spectral }: Values) -> Film {

@@ -27,18 +27,34 @@ impl Values {
         Self { pixels: vec![BLANK; count], layers, spectral }
     }
 
-    /// Writes a tile's pixels, of which each has a number here.
-    pub(super) fn write(&mut self, world: &World, tile: &Tile, counts: ShownCounts, number: impl Fn(usize) -> usize) {
-        (0..tile.sums.len()).for_each(|place| self.write_pixel(world, tile, counts, place, number(place)));
+    /// Of a tile's pixels, row by row.
+    pub(super) fn of_tile(world: &World, tile: &Tile, counts: ShownCounts) -> Self {
+        let mut values = Self::new(&world.layers, tile.sums.len());
+        (0..tile.sums.len()).for_each(|place| values.write_pixel(world, tile, counts, place));
+        values
     }
 
-    fn write_pixel(&mut self, world: &World, tile: &Tile, counts: ShownCounts, place: usize, number: usize) {
+    /// Puts in the values of a tile, of whose pixels each has a number here.
+    pub(super) fn put(&mut self, tile: &Self, number: &dyn Fn(usize) -> usize) {
+        let numbers: Vec<usize> = (0..tile.pixels.len()).map(number).collect();
+        numbers.iter().zip(&tile.pixels).for_each(|(&at, pixel)| self.pixels[at] = *pixel);
+        let layers = self.layers.iter_mut().zip(&tile.layers).map(|(to, from)| (&mut to.values, &from.values));
+        let spectral = self.spectral.iter_mut().zip(&tile.spectral).map(|(to, from)| (&mut to.values, &from.values));
+        for (to, from) in layers.chain(spectral) {
+            let size = from.len() / numbers.len().max(1);
+            for (&at, values) in numbers.iter().zip(from.chunks_exact(size.max(1))) {
+                to[size * at..][..size].copy_from_slice(values);
+            }
+        }
+    }
+
+    fn write_pixel(&mut self, world: &World, tile: &Tile, counts: ShownCounts, place: usize) {
         let (filter, layers) = (world.scene.film.filter, &world.layers);
         let (sum, none) = (&tile.sums[place], PixelSum::default());
         let subtracted = tile.subtracted.get(place).unwrap_or(&none);
         let weights = SampleWeights::new(filter, [sum.kept(), subtracted.kept()]);
         let shown = tile.shown_at(place).map(|x| x * counts.image);
-        self.pixels[number] = sum.pixel(subtracted, &weights, shown);
+        self.pixels[place] = sum.pixel(subtracted, &weights, shown);
         if layers.is_empty() {
             return;
         }
@@ -47,13 +63,13 @@ impl Values {
         let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
         let variance = counts.samples.and_then(|each| tile.replicates.variance(place, filter, each));
         let taken = Taken { sums, shown, counts, variance, rgb, weights, covered, place };
-        write(layers, &taken, number, &mut self.layers);
+        write(layers, &taken, place, &mut self.layers);
         if let (Some(image), Some(spectrum)) = (&mut self.spectral, &layers.spectrum) {
-            taken.write_spectrum(spectrum, number, image);
+            taken.write_spectrum(spectrum, place, image);
         }
         if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
-            let alpha = f64::from(self.pixels[number].alpha) + layers.luminance_caught(&caught).coverage();
-            self.pixels[number].alpha = alpha.min(1.0) as f32;
+            let alpha = f64::from(self.pixels[place].alpha) + layers.luminance_caught(&caught).coverage();
+            self.pixels[place].alpha = alpha.min(1.0) as f32;
         }
     }
 }
