@@ -10,7 +10,7 @@ use std::sync::Arc;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The scene does not mean anything that could be rendered: its mistakes, in the order of the file.
-    #[error("{}", .0.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n"))]
+    #[error("{}", told(.0))]
     Scene(Vec<Diagnostic>),
     /// The command line asks for something impossible.
     #[error("{message}")]
@@ -91,28 +91,67 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Line and column of the mistake, counted from 1, the column in characters.
+    /// Line and column of the mistake, counted from 1, the column in characters. Those of many mistakes are told by
+    /// [`Lines`].
     pub fn line_and_column(&self) -> (usize, usize) {
-        let before = &self.text[..self.span.start.min(self.text.len())];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        Lines::default().place_of(self)
+    }
+
+    fn told_by(&self, lines: &mut Lines) -> String {
+        let what = match &self.key {
+            Some(key) if key.is_empty() => self.message.clone(),
+            Some(key) => format!("{key}: {}", self.message),
+            None => {
+                let (line, column) = lines.place_of(self);
+                format!("{}:{line}:{column}: {}", self.file.display(), self.message)
+            }
+        };
+        self.help.iter().fold(what, |what, help| format!("{what} ({help})"))
     }
 }
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        match &self.key {
-            Some(key) if key.is_empty() => write!(formatter, "{}", self.message)?,
-            Some(key) => write!(formatter, "{key}: {}", self.message)?,
-            None => {
-                let (line, column) = self.line_and_column();
-                write!(formatter, "{}:{line}:{column}: {}", self.file.display(), self.message)?;
-            }
+        formatter.write_str(&self.told_by(&mut Lines::default()))
+    }
+}
+
+/// All mistakes, each in a line.
+fn told(mistakes: &[Diagnostic]) -> String {
+    let mut lines = Lines::default();
+    mistakes.iter().map(|mistake| mistake.told_by(&mut lines)).collect::<Vec<_>>().join("\n")
+}
+
+/// Tells lines and columns of one mistake after another. In the order of their text, that takes the time of reading it
+/// once.
+#[derive(Clone, Debug)]
+pub struct Lines {
+    text: Arc<str>,
+    /// Bytes that were read, and the place behind them.
+    read: usize,
+    line: usize,
+    column: usize,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self { text: "".into(), read: 0, line: 1, column: 1 }
+    }
+}
+
+impl Lines {
+    /// Line and column of a mistake, counted from 1, the column in characters.
+    pub fn place_of(&mut self, mistake: &Diagnostic) -> (usize, usize) {
+        let at = mistake.span.start.min(mistake.text.len());
+        if !Arc::ptr_eq(&self.text, &mistake.text) || at < self.read {
+            *self = Self { text: mistake.text.clone(), ..Self::default() };
         }
-        match &self.help {
-            Some(help) => write!(formatter, " ({help})"),
-            None => Ok(()),
-        }
+        let passed = &self.text[self.read..at];
+        let line_start = passed.rfind('\n').map(|newline| newline + 1);
+        self.line += passed.matches('\n').count();
+        self.column = line_start.map_or(self.column, |_| 1) + passed[line_start.unwrap_or(0)..].chars().count();
+        self.read = at;
+        (self.line, self.column)
     }
 }
 

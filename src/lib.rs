@@ -67,7 +67,7 @@ pub mod plan;
 // Floor 6
 mod rendering;
 
-pub use error::{Diagnostic, Error, Result, nearest};
+pub use error::{Diagnostic, Error, Lines, Result, nearest};
 pub use rendering::{
     ErrorAccount, Image, ImageError, Options, Parts, PlanAccount, RenderAccount, Rendering, Resumed, Timer,
     has_finished, is_checkpoint, merge, render, write_plan,

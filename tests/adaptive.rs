@@ -53,6 +53,24 @@ fn the_plan_asks_for_more_samples_where_the_noise_is() {
     assert_eq!(of(64), of(256));
 }
 
+/// The light of a lamp on a shadow catcher is noisy, but not seen: only what takes some of it makes noise.
+#[test]
+fn light_on_shadow_catchers_asks_for_samples_only_where_there_are_shadows() {
+    let noisy = |floor: &str, ball: &str| {
+        let text = large_view([256, 256])
+            + &body("lamp", LAMP, &["quad = { center = [0, 1, 1.5], u = [0.3, 0, 0], v = [0, -0.3, 0] }"])
+            + ball
+            + &body("floor", "diffuse = { reflectance = 0.6 }", &[GROUND])
+            + floor;
+        let scene = scene(&text);
+        adaptive(&World::new(&scene, method(&scene, SPLITTING)), false).is_some()
+    };
+    let ball = body("ball", "diffuse = { reflectance = 0 }", &[BALL]);
+    assert!(noisy("", ""));
+    assert!(!noisy("shadow_catcher = true\n", ""));
+    assert!(noisy("shadow_catcher = true\n", &ball));
+}
+
 /// At most 4096 cells are looked at, and 16 at least.
 #[test]
 fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {

@@ -10,6 +10,7 @@ use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, apply, visible};
 use abbe::trace::{Method, Transport};
 
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{assert_near, film_of, scene};
 
@@ -96,11 +97,11 @@ fn a_measured_scene_is_the_same_xyz_in_every_color_space() {
                 let film = films.iter().find(|film| film.color_space == space).expect("one film for each space");
                 apply(&space.to_xyz(), film.pixels[at].rgb.map(f64::from))
             });
-            let most = expected.iter().fold(0.0, |most: f64, x| most.max(*x));
+            let most = expected.iter().fold(0.0, |most: f64, x| larger(most, *x));
             assert!(most > 1e-3, "{model}: pixel {at} is dark");
             for (space, xyz) in SPACES[1..].iter().zip(others) {
-                let off = (0..3).fold(0.0, |off: f64, c| off.max((xyz[c] - expected[c]).abs())) / most;
-                worst = worst.max(off);
+                let off = (0..3).fold(0.0, |off: f64, c| larger(off, (xyz[c] - expected[c]).abs())) / most;
+                worst = larger(worst, off);
                 assert!(off <= 1e-6, "{model}, {space:?}, pixel {at}: {xyz:?} for {expected:?}, off by {off:.2e}");
             }
         }
@@ -206,7 +207,7 @@ fn integrated(space: ColorSpace, reflectance: impl Fn(f64) -> f64) -> [f64; 3] {
 }
 
 fn largest(found: [f64; 3], expected: [f64; 3]) -> f64 {
-    (0..3).fold(0.0, |most: f64, c| most.max((found[c] - expected[c]).abs()))
+    (0..3).fold(0.0, |most: f64, c| larger(most, (found[c] - expected[c]).abs()))
 }
 
 /// Random colors all have a smooth spectrum. That of a nearly pure color is nearly a step, or bends beyond the
@@ -231,7 +232,7 @@ fn rgb_reflectances_come_back_as_themselves_under_the_films_white() {
             assert!(table.bins().iter().all(|x| (0.0..=1.0).contains(x)), "{rgb:?}: {:?}", table.bins());
             let found = apply(&space.to_rec709(), seen(&basis, &surface, &1.0.into()));
             let off = largest(found, rgb);
-            worst = worst.max(off);
+            worst = larger(worst, off);
             missed += usize::from(off > 1e-4);
         }
         println!("{space:?}: {missed} of {COLORS} are off by more than 1e-4, {worst:.1e} at most");

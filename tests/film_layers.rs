@@ -12,6 +12,7 @@ use abbe::film::{Film, FirstSurface, Layer, Window, id};
 use abbe::plan::plan;
 use abbe::{Image, Options, Scene};
 
+use crate::support::larger::larger;
 use crate::support::scenes::{films_of, moments, rendered_with};
 
 /// Glass that disperses, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot:
@@ -412,7 +413,7 @@ fn an_image_with_shadow_catcher_over_its_plate_is_the_whole_picture() {
             assert!(!is_catcher || (0..3).all(|i| shadow[pixel][i] <= 1.0));
         }
         for channel in 0..3 {
-            worst = worst.max((laid[channel] / expected[channel] - 1.0).abs());
+            worst = larger(worst, (laid[channel] / expected[channel] - 1.0).abs());
         }
     }
     assert!(shaded > 8, "{shaded} pixels lie in the shadow");

@@ -15,6 +15,7 @@ use abbe::scene::Scene;
 use abbe::spectrum::{Basis, ColorSpace, Curve, CurveKind, Emission, apply, visible};
 use abbe::trace::Method;
 
+use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, assert_near, film_of, method, scene};
 
 /// A dye that absorbs a bell of light and shines another, in photons, over white paper.
@@ -104,8 +105,8 @@ pub fn pixel(text: &str) -> [f64; 3] {
 
 /// Each channel within a share of the strongest.
 pub fn near(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
-    let strongest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, f64::max);
+    let strongest = expected.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
+    let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, larger);
     println!("{what}: {off:.1e}");
     assert_near(found, expected, share * strongest, what);
 }

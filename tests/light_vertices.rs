@@ -13,6 +13,7 @@ use abbe::film::{Film, Layer};
 use abbe::plan::plan;
 use abbe::trace::{Method, World, pilot_noise, prepare, render, with_light_vertices};
 
+use crate::support::larger::larger;
 use crate::support::scenes::{
     SPLITTING, body, environment, film_of, method, moments, quad, scene, standard_errors, view,
 };
@@ -327,7 +328,7 @@ fn assert_same(
             off < 1.25 * standard_errors(12 * claims),
             "{what}: quarter {quarter}, band {band}: {b} for {a} +- {error:.1e}, off by {off:.1} sigma"
         );
-        worst = worst.max(off);
+        worst = larger(worst, off);
     }
     worst
 }

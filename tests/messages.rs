@@ -18,6 +18,9 @@
 use std::fs;
 use std::path::Path;
 
+use abbe::scene::Source;
+use abbe::{Error, Lines};
+
 use crate::support::run::{Folder, render};
 
 const BASE: &str = include_str!("messages/base.toml");
@@ -313,6 +316,44 @@ fn of_many_mistakes_the_first_twenty_are_shown_and_all_are_counted() {
     let told = answer.stderr.matches("error: a radius is a length above 0, not 0\n").count();
     assert_eq!((answer.code, told), (Some(2), 20), "{}", answer.stderr);
     assert!(answer.stderr.ends_with("\n\n27 mistakes in scene.toml: these and 7 more\n"), "{}", answer.stderr);
+}
+
+#[test]
+fn of_very_many_mistakes_each_has_its_place_and_the_first_hundred_say_what_was_meant() {
+    let ball = |i: usize| {
+        let sphere = format!("{{ \"\u{e9}\" = 1, center = [0, 1, 0], radius = \"$wide-lens{i}\" }}");
+        format!("[[object]]\nshape.sphere = {sphere}\nmaterial = \"white\"\n")
+    };
+    let text = format!("set.wide-lens = 1\n{BASE}{}", (0..300).map(ball).collect::<String>());
+    let Err(error) = (Source { path: "scene.toml".into(), text: text.clone() }).compile() else { panic!("a mistake") };
+    let told = error.to_string();
+    let Error::Scene(mistakes) = error else { panic!("{error}") };
+    let lines: Vec<&str> = told.lines().collect();
+    assert_eq!((lines.len(), mistakes.len()), (300, 300));
+    let mut backward = Lines::default();
+    for (i, mistake) in mistakes.iter().enumerate().rev() {
+        let at = text.find(&format!("\"$wide-lens{i}\"")).expect("it stands there");
+        let place = (text[..at].lines().count(), text[..at].lines().last().map_or(0, |line| line.chars().count()) + 1);
+        assert_eq!([mistake.line_and_column(), backward.place_of(mistake)], [place; 2], "{i}");
+        let help = if i < 100 { " (did you mean \"$wide-lens\"?)" } else { "" };
+        let (line, column) = place;
+        assert_eq!(lines[i], format!("scene.toml:{line}:{column}: there is no variable `wide-lens{i}`{help}"));
+    }
+}
+
+#[test]
+fn of_very_many_materials_a_hundred_are_named() {
+    let more: String = (0..200).map(|i| format!("[material.x{i}]\ndiffuse = {{ reflectance = 0.5 }}\n")).collect();
+    let ball = "[[object]]\nshape.sphere = { center = [0, 1, 0], radius = 1 }\n";
+    let count = BASE.matches("[material.").count() + 200 - 100;
+    for (material, help) in [("material = \"porcelain\"\n", "the scene defines "), ("", "give it one, as in ")] {
+        let folder = Folder::with("scene.toml", format!("{BASE}{more}{ball}{material}"));
+        let told = render(&folder, &["--check", "scene.toml"]).stderr;
+        let line =
+            told.lines().find_map(|line| line.strip_prefix("   = help: ").or(line.trim().strip_prefix("= help: ")));
+        let line = line.unwrap_or_else(|| panic!("{told}"));
+        assert!(line.starts_with(help) && line.ends_with(&format!(" and {count} more")), "{told}");
+    }
 }
 
 /// Twice as many parts with every material, and a chain of thousands: they are told once, and take no time.

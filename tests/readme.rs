@@ -1,5 +1,7 @@
 //! Every piece of TOML that the pages show is TOML, and means what they say; every link leads somewhere.
 
+mod limits;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -7,6 +7,7 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use crate::support::larger::larger;
 use crate::support::pictures::{L8, RGB8, RGB16, write_png};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image_in, scene_in, view};
@@ -265,7 +266,7 @@ fn normals_under_heights_are_those_of_a_displaced_sphere() {
         let along = displaced(u + STEP, v) - displaced(u - STEP, v);
         let up = displaced(u, v + STEP) - displaced(u, v - STEP);
         let expected = along.cross(up).normalize();
-        most = most.max(expected.cross(found.normal).length());
+        most = larger(most, expected.cross(found.normal).length());
         // Blinn leaves out the height itself, up to 2.3 % of the radius, and so it misses that much of a tilt up to
         // 0.03.
         assert!((found.shading - expected).length() < 1e-3, "{u} {v}: {} not {expected}", found.shading);

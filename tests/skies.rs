@@ -12,6 +12,7 @@ use abbe::plan::plan;
 use abbe::scene::Source;
 use exr::prelude::write_rgb_file;
 
+use crate::support::larger::larger;
 use crate::support::pictures::radiance;
 use crate::support::random::Random;
 use crate::support::scenes::{Mean, film_of, films_of, scene_in, view};
@@ -157,7 +158,7 @@ fn an_even_image_is_the_sky_of_its_color() {
             };
             let [found, expected] = [see("{ image = \"even.exr\" }"), see(&format!("{{ rgb = {rgb:?} }}"))];
             for (found, expected) in [(found[0], expected[0]), (found[1], expected[1])] {
-                let brightest = expected.into_iter().fold(0.0, f64::max);
+                let brightest = expected.into_iter().fold(0.0, larger);
                 for c in 0..3 {
                     let off = (found[c] - expected[c]).abs() / brightest;
                     assert!(off <= tolerance, "{rgb:?} in {model}: {found:?}, not {expected:?}");

@@ -294,6 +294,28 @@ material = "lamp"
     assert!(outliers.len() >= 4, "{} of 12 renders met it", outliers.len());
 }
 
+/// All light that the pixel shows is that of a speck; the catcher behind it, which is as bright, shows none.
+#[test]
+fn rare_light_is_told_beside_shadow_catchers_however_bright_they_are() {
+    let scene = scene(
+        "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 30 }\n\
+         film = { width = 16, height = 16 }\n\
+         [material]\nwall.diffuse.reflectance = 0.8\nlamp.emissive.radiance = 100\n\
+         [[object]]\nshape.quad = { center = [0, 0, -1], u = [9, 0, 0], v = [0, 9, 0] }\n\
+         material = \"wall\"\nshadow_catcher = true\n\
+         [[object]]\nname = \"speck\"\nshape.sphere = { center = [0, 0, 0], radius = 0.012 }\nmaterial = \"lamp\"\n\
+         [[light]]\nenvironment.radiance = 100\n",
+    );
+    let told = |seed: u64| {
+        let image = render(&scene, &Options { seed: Some(seed), ..asks(0.9, 64) }).expect("it can be rendered");
+        let error = image.error().expect("there are replicates").clone();
+        error.noise.outlier.map(|_| error.rare_light.map(|light| (light.name, light.bounces)))
+    };
+    let found: Vec<_> = (0..6).filter_map(told).collect();
+    assert!(found.len() >= 3, "{found:?}");
+    assert!(found.iter().all(|light| *light == Some((Some("speck".into()), 0))), "{found:?}");
+}
+
 #[test]
 fn the_first_of_error_time_and_samples_ends_a_render() {
     let scene = scene(ROOM);

@@ -8,6 +8,7 @@ mod radiance;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::support::larger::larger;
 use crate::support::pictures::{RGB8, write_png};
 use crate::support::random::Random;
 use crate::support::scenes::{assert_near, film_of, refusal_in, scene_in, view};
@@ -94,7 +95,7 @@ fn a_film_is_as_thick_as_its_image_says() {
         let found = [-0.5, 0.5].map(|x| seen(&image(x)));
         let expected = [(-0.5, "100"), (0.5, "300")].map(|(x, nm)| seen(&of(x, nm)));
         for (found, expected) in found.iter().zip(&expected) {
-            let strongest = expected.iter().fold(0.0, |most: f32, x| most.max(x.abs()));
+            let strongest = expected.iter().fold(0.0, |most: f32, x| larger(most, x.abs()));
             let is_near = (0..3).all(|i| (found[i] - expected[i]).abs() < 5e-4 * strongest);
             assert!(is_near, "{material}: {found:?}, not {expected:?}");
         }

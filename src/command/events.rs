@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use abbe::film::replace_file;
 use abbe::plan::Plan;
-use abbe::{Diagnostic, Error, Image, PlanAccount, RenderAccount, Result};
+use abbe::{Diagnostic, Error, Image, Lines, PlanAccount, RenderAccount, Result};
 use serde::{Serialize, Serializer};
 
 use super::problem::problem;
@@ -78,8 +78,9 @@ impl<'e> Event<'e> {
 
     /// All that an error says.
     pub fn errors(error: &'e Error) -> Vec<Self> {
+        let mut lines = Lines::default();
         let mistake = |mistake: &'e Diagnostic| {
-            let (line, column) = mistake.line_and_column();
+            let (line, column) = lines.place_of(mistake);
             let file = Some(mistake.file.display().to_string());
             let (message, help) = (mistake.message.clone(), mistake.help.as_deref());
             Self::Error { message, file, line: Some(line), column: Some(column), help }

@@ -46,7 +46,8 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let spectral = scene.format.spectral.is_some();
     let candidates = candidates(&survey, &seen, if hero { heroes } else { 0 });
     let tolerance = tolerance(scene);
-    let chosen = candidates.iter().position(|candidate| candidate.bound() <= tolerance).unwrap_or(candidates.len() - 1);
+    let fewest = if hero { bands_beside(&survey, bands, heroes).fixed_lanes() } else { 0 };
+    let chosen = choice(&candidates, tolerance, fewest);
 
     let is_exact = survey.is_plain() && candidates[0].error == 0.0;
     let with_heroes = |bands| bands_beside(&survey, bands, heroes).with_heroes(heroes, &survey.emissions());
@@ -65,9 +66,11 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
-    let mut because = vec![format!("model {}: {}; {why}", basis.name(), lanes(&basis))];
     let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&candidates, &basis, &survey, &seen, tolerance));
     let error = if missed.is_some() { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
+    let is_for_spectra = spectral && scene.render.model == ModelText::Auto;
+    let beyond = if is_for_spectra && error > tolerance { format!("; {BEYOND}") } else { String::new() };
+    let mut because = vec![format!("model {}: {}; {why}{beyond}", basis.name(), lanes(&basis))];
     because.extend(lines_without_lane(&survey, &basis));
     because.extend(dispersion.map(|d| spoken(&d, visible, hero)));
     let basis = if together { basis.kept_together() } else { basis };
@@ -75,6 +78,15 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     because.extend(materials(scene, &basis));
     let next = next.map(|next| if together || hero { next.kept_together() } else { next });
     Model { basis, missed, error, because, next, candidates }
+}
+
+/// The number of the first candidate that misses no color by more than is tolerated. Where none does, of the one that
+/// misses least among those of so many fixed lanes at least.
+fn choice(candidates: &[Candidate], tolerance: f64, fewest: usize) -> usize {
+    let within = candidates.iter().position(|candidate| candidate.bound() <= tolerance);
+    let many = (0..candidates.len()).filter(|&number| candidates[number].basis.fixed_lanes() >= fewest);
+    let nearest = many.min_by(|&a, &b| candidates[a].bound().total_cmp(&candidates[b].bound()));
+    within.or(nearest).unwrap_or(candidates.len() - 1)
 }
 
 /// What a sample carries.
@@ -99,13 +111,17 @@ fn three_bands(survey: &Survey) -> Basis {
     }
 }
 
+/// What is said where no number of lanes is enough.
+const BEYOND: &str = "some color may be missed by more than is tolerated";
+
 fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
     match candidates[chosen].bound() {
         _ if plain => {
             "every color is a number or rgb under the film's white, so more lanes would show nothing more".into()
         }
         bound if bound <= tolerance => "the fewest lanes that miss no color by more than is tolerated".into(),
-        _ => "the most lanes there are; some color may be missed by more than is tolerated".into(),
+        _ if chosen + 1 == candidates.len() => format!("the most lanes there are; {BEYOND}"),
+        _ => format!("more lanes would miss no less; {BEYOND}"),
     }
 }
 

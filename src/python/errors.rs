@@ -4,7 +4,7 @@ use std::fs::create_dir_all;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use abbe::{Diagnostic, Error};
+use abbe::{Diagnostic, Error, Lines};
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
 use pyo3::prelude::*;
 
@@ -21,9 +21,10 @@ const NO_SUCH_FILE: i32 = 2;
 /// The exception that an error is.
 pub(super) fn raised(error: Error) -> PyErr {
     match error {
-        Error::Scene(mistakes) => {
-            let told = mistakes.iter().map(Diagnostic::to_string).collect::<Vec<_>>().join("\n");
-            SceneError::new_err((told, mistakes.into_iter().map(mistake).collect::<Vec<_>>()))
+        Error::Scene(ref mistakes) => {
+            let mut lines = Lines::default();
+            let all: Vec<_> = mistakes.iter().map(|found| mistake(found, &mut lines)).collect();
+            SceneError::new_err((error.to_string(), all))
         }
         Error::Arguments { message, help } => OptionsError::new_err((message, help.map(|help| for_python(&help)))),
         Error::Io { doing, path, source } => match source.raw_os_error() {
@@ -79,9 +80,10 @@ pub(super) fn defect(what: &str) -> PyErr {
     RenderError::new_err((format!("this is a defect of Abbe: {what}"), None::<String>))
 }
 
-fn mistake(found: Diagnostic) -> Mistake {
-    let (line, column) = found.line_and_column();
-    (found.key, found.message, found.help, found.file.display().to_string(), line, column)
+fn mistake(found: &Diagnostic, lines: &mut Lines) -> Mistake {
+    let (line, column) = lines.place_of(found);
+    let Diagnostic { file, key, message, help, .. } = found.clone();
+    (key, message, help, file.display().to_string(), line, column)
 }
 
 /// The flags of a command line are arguments of the same name.

@@ -60,6 +60,6 @@ impl BandResponse {
         };
         let band = self.bands.of(nm)?;
         let (a, b) = (self.fine[hero.below], self.fine[hero.below + 1]);
-        Some((band, weight * (a + hero.fraction * (b - a)) / self.bands.step_nm()))
+        Some((band, weight * (a + hero.fraction * (b - a)) / self.bands.known_nm(band)))
     }
 }

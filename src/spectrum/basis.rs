@@ -404,7 +404,7 @@ impl Basis {
         let unit = if level == 0.0 { 0.0 } else { emission.unit() / level };
         let mut columns = vec![0.0; self.fixed_lanes() * bands.count()];
         let mut add = |lane: usize, band: usize, light: f64| {
-            columns[lane * bands.count() + band] += light * unit / bands.step_nm();
+            columns[lane * bands.count() + band] += light * unit / bands.known_nm(band);
         };
         let lines = emission.lines();
         self.spread(functions, lines, |part, lane, weight| match part.checked_sub(COUNT) {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::visible::{LAST_NM, START_NM};
+
 /// Bands of wavelengths, each around its center.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WavelengthBands {
@@ -39,6 +41,14 @@ impl WavelengthBands {
     /// From center to center, which is also the width of each, in nm.
     pub fn step_nm(&self) -> f64 {
         self.step_nm
+    }
+
+    /// How much of a band, in nm, lies where light is known: 0.5 nm beyond the [grid](super::visible) is the end.
+    pub(super) fn known_nm(&self, band: usize) -> f64 {
+        let middle = self.first_nm + band as f64 * self.step_nm;
+        let [below, above] = [-0.5, 0.5].map(|half| middle + half * self.step_nm);
+        let [from, to] = [below.max(START_NM - 0.5), above.min(LAST_NM + 0.5)];
+        if [from, to] == [below, above] { self.step_nm } else { to - from }
     }
 
     /// The centers, in nm, ascending.

@@ -207,6 +207,11 @@ impl Layers {
         }
     }
 
+    /// By how much other objects change the light on a shadow catcher, if a row has some: what alpha is made of.
+    pub(super) fn changed(&self, row: &[f64]) -> [f64; 3] {
+        self.caught.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| row[at + channel] - row[at + 3 + channel]))
+    }
+
     /// What shadow catchers show, by the sums of so many samples and what photons show.
     pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: f64) -> Option<Caught> {
         let at = self.caught?;

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use abbe::math::{DVec2, DVec3};
 use abbe::scene::{Camera, Lens, Projection};
 
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 const SIZE: [u32; 2] = [60, 40];
@@ -37,7 +38,7 @@ fn c2_all_rays_of_a_film_point_meet_in_the_plane_in_focus() {
                     let ahead = ray.direction.dot(camera.forward());
                     ray.at((focus - (ray.origin - POSITION).dot(camera.forward())) / ahead)
                 };
-                worst = worst.max((meet(camera.lens_ray(film, u)) - meet(camera.ray(film))).length() / focus);
+                worst = larger(worst, (meet(camera.lens_ray(film, u)) - meet(camera.ray(film))).length() / focus);
             }
             println!("C2: {} focused at {focus:e}: apart by {worst:.1e} of it", projection.name());
             assert!(worst <= 1e-12, "{projection:?}, F = {focus:e}: {worst:e}");

@@ -6,6 +6,7 @@ use abbe::scene::Scene;
 use abbe::spectrum::Curve;
 use abbe::trace::{LightPass, MapPasses, Method};
 
+use crate::support::larger::larger;
 use crate::support::scenes::{SPLITTING, films_of, moments, object, scene, standard_errors};
 
 /// Pixels along each side of the images, and blocks that are compared.
@@ -75,7 +76,7 @@ pub fn agree_with(what: &str, text: &str, samples: u32, map: Option<MapPasses>) 
     for (a, b) in with.iter().zip(&without) {
         let rounding = 1e-6 * (a.0 + b.0);
         let z = (a.0 - b.0).abs() / ((a.1 + b.1).sqrt() + rounding);
-        worst = worst.max(z);
+        worst = larger(worst, z);
         squares += z * z;
         quieter += i32::from(a.1 < b.1);
     }

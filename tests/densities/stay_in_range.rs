@@ -5,6 +5,7 @@ use abbe::math::{BranchKey, DVec3, Sampler, ball_surface, cosine_hemisphere, dis
 use abbe::shape::{Cube, Shape};
 
 use crate::support::bodies::{ball, closed_mesh};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 /// The largest number that 24 bits hold below 1: the most that a sampler of f32 may give.
@@ -20,7 +21,7 @@ fn extremes() -> [f64; 2] {
             for purpose in 0..4 {
                 for x in sampler.four(branch, purpose) {
                     least = least.min(x);
-                    most = most.max(x);
+                    most = larger(most, x);
                 }
                 assert!(sampler.four_plain(branch, purpose).iter().all(|x| (0.0..1.0).contains(x)));
                 branch = branch.child(1);

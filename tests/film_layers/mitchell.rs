@@ -6,6 +6,7 @@ use abbe::plan::plan;
 use abbe::trace::{LightPass, Method};
 
 use super::{ROOM, assert_sum, rendered, rgb_of};
+use crate::support::larger::larger;
 use crate::support::scenes::{film_of, films_of, moments, scene, standard_errors};
 
 /// Pixels along each side of images of an edge.
@@ -102,7 +103,7 @@ fn halves_of_an_even_image_have_no_noise() {
         let image = rendered(&format!("{sky}render.samples = {samples}\n"), &[Layer::HalfA, Layer::HalfB]);
         for half in ["half_a.G", "half_b.G"] {
             let worst =
-                image.layer(half).expect("a layer").into_iter().fold(0.0, |most: f32, x| most.max((x - 1.0).abs()));
+                image.layer(half).expect("a layer").into_iter().fold(0.0, |most: f32, x| larger(most, (x - 1.0).abs()));
             assert!(worst <= 4.0 * f32::EPSILON, "{half} of {samples} samples: {worst}");
         }
     }
@@ -206,6 +207,6 @@ fn photons_are_spread_by_the_filter_with_its_sign() {
     let (even, sharp) = (caustic("box"), caustic("mitchell"));
     let [sum, sharp_sum] = [&even, &sharp].map(|light| light.iter().sum::<f64>());
     assert!(sum > 0.0 && (sharp_sum / sum - 1.0).abs() < 1e-5, "{sum} and {sharp_sum}");
-    let [most, least] = [even.iter().copied().fold(0.0, f64::max), sharp.iter().copied().fold(0.0, f64::min)];
+    let [most, least] = [even.iter().copied().fold(0.0, larger), sharp.iter().copied().fold(0.0, f64::min)];
     assert!(least < -0.01 * most, "{least} beside {most}");
 }

@@ -5,6 +5,7 @@ use abbe::trace::{self, Method};
 use abbe::{Image, Scene, plan::plan};
 
 use super::{ROOM, rendered, rgb};
+use crate::support::larger::larger;
 use crate::support::scenes::moments;
 
 /// Clear glass, glass that absorbs, glass in water, a pane, a mirror and gold: no random light path.
@@ -58,7 +59,7 @@ fn without_chance_all_weight_is_accounted_for_in_every_pixel() {
         let scene = SPECULAR.replace("render = {}", &format!("render.model = {model}"));
         let image = rendered(&scene, &[Layer::Residual]);
         assert!(image.because().iter().any(|line| line.contains("transport deterministic")), "{:?}", image.because());
-        let worst = residual(&image).as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let worst = residual(&image).as_flattened().iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
         assert!(worst <= 1e-6, "model {model}: {worst}");
     }
 }
@@ -144,7 +145,7 @@ fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
 fn a_filter_before_the_camera_is_accounted_for() {
     let behind = |scene: &str| scene.replacen("vertical_fov = 30", "vertical_fov = 30, polarizer = { axis = 20 }", 1);
     let image = rendered(&behind(SPECULAR), &[Layer::Residual]);
-    let worst = residual(&image).as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let worst = residual(&image).as_flattened().iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
     assert!(worst <= 1e-6, "{worst}");
     let floor = "camera = { position = [0, 1, 5], look_at = [0, 0.5, 0], vertical_fov = 30 }\n\
                  film = { width = 8, height = 6, first = \"visible\" }\nrender = { samples = 4, model = \"rgb\" }\n\

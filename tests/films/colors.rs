@@ -8,6 +8,7 @@ use palette::color_difference::Ciede2000;
 use palette::white_point::D65;
 
 use super::reference::{Layer, shares};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, film_of, quad, scene, view};
 
@@ -139,12 +140,12 @@ fn colors_through_slabs_coated_on_both_faces_are_missed_by_no_more_than_the_plan
             let through = t * t / (1.0 - r * r);
             (0..3).for_each(|c| exact[c] += through * column[c]);
         }
-        let strongest = exact.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let strongest = exact.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
         for candidate in plan(&scene).candidates {
             let (bound, name) = (candidate.bound(), candidate.basis.name());
             let method = Method { basis: candidate.basis, ..crate::support::scenes::method(&scene, EVERY_BRANCH) };
             let rgb = film_of(&scene, method).pixels[0].rgb.map(f64::from);
-            let missed = (0..3).fold(0.0_f64, |most, c| most.max((rgb[c] - exact[c]).abs())) / strongest;
+            let missed = (0..3).fold(0.0_f64, |most, c| larger(most, (rgb[c] - exact[c]).abs())) / strongest;
             println!("scene {number}, {count} layers around {middle:.0} nm, {name}: misses {missed:.5} of {bound:.5}");
             ratios.push(missed / bound.max(1e-6));
             assert!(

@@ -4,6 +4,7 @@ use abbe::spectrum::{Basis, visible};
 use abbe::trace::Method;
 
 use super::{BRIGHTENER, Bells, RED, YELLOW, color, light};
+use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, film_of, method, scene, view};
 
 /// The radiance of a closed room whose walls have a dye and lose to, or get of, the outside what they do not cover:
@@ -51,7 +52,7 @@ fn a_room_of_one_dye_shines_as_its_matrix_says() {
             let outside: Vec<f64> = light("D65").iter().map(|light| (1.0 - OPACITY) * light).collect();
             let expected = color(&room(&dye, OPACITY, &outside));
             let mean = Mean::of(&film);
-            let strongest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let strongest = expected.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
             for c in 0..3 {
                 // Colors in 32 lanes are off by so much where nothing is left to chance.
                 let (off, lanes) = ((mean.value[c] - expected[c]).abs(), 3e-4 * strongest);

@@ -5,6 +5,7 @@ use abbe::spectrum::{Basis, Emission};
 use abbe::trace::{LightPass, MapPasses, Method};
 
 use super::{BRIGHTENER, Bells, RED, YELLOW};
+use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SPLITTING, body, films_of, method, moments, rendered, scene, view};
 
 /// Renders whose spread is their noise.
@@ -12,7 +13,7 @@ const SEEDS: u64 = 4;
 
 /// Every channel of two means agrees.
 fn agree(found: Mean, expected: Mean, what: &str) {
-    let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     for c in 0..3 {
         let (off, error) = (found.value[c] - expected.value[c], found.beside(&expected).error[c]);
         println!("{what} {c}: {:.5} for {:.5} +- {error:.5}", found.value[c], expected.value[c]);
@@ -117,7 +118,7 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
         let times = if lines.is_empty() { 1 } else { 8 };
         let (found, expected) = (of(heroes, times * 128), of(lanes, times * 256));
         for c in 0..3 {
-            let strongest = expected.value.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
             let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.beside(&expected).error[c]);
             println!("{} {c}: {:.5} for {:.5} +- {error:.5}", dye.name, found.value[c], expected.value[c]);
             // Colors of the lanes that stay together, in 12 and in 32 of them.

@@ -13,6 +13,7 @@ use abbe::trace::{Method, prepare, render};
 
 use crate::support::arrivals::arrival;
 use crate::support::fresnel::reflectances;
+use crate::support::larger::larger;
 use crate::support::scenes::{
     EVERY_BRANCH, Mean, SINGLE_PATH, body, environment, film_of, method, scene, standard_errors, view,
 };
@@ -97,7 +98,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                     let through = t * out / (1.0 - inner * inner);
                     let expected = plate(own[lane], cos);
                     for (found, expected) in [r + inner * through, through].into_iter().zip(expected) {
-                        worst = worst.max((found - expected).abs());
+                        worst = larger(worst, (found - expected).abs());
                         lanes += 1;
                     }
                 }
@@ -157,7 +158,7 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
                     let found = f64::from(pixel.rgb[channel]) / alone[channel];
                     let off = (found - if reflected { r } else { t }).abs();
                     assert!(off < 1e-5, "{key} in {}, lane {lane}: {found} for R {r}, T {t}", basis.name());
-                    worst = worst.max(off);
+                    worst = larger(worst, off);
                 }
             }
         }
@@ -313,7 +314,7 @@ fn d16_a_ball_of_dense_flint_mirrors_daylight_in_its_color() {
                 }
             }
             let expected = [0, 1, 2].map(|c| white[c] * sum[c] / total[c]);
-            worst = worst.max(difference(pixel.rgb.map(f64::from), expected, white));
+            worst = larger(worst, difference(pixel.rgb.map(f64::from), expected, white));
         }
         println!("{model}: dE2000 at most {worst:.4}");
         assert!(worst < bound, "{model}: {worst}");

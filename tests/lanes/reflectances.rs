@@ -6,6 +6,8 @@ use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Dye, Emission, Lanes, MAX_LANES, Named, Quantity, data, visible,
 };
 
+use crate::support::larger::larger;
+
 const SPACE: ColorSpace = ColorSpace::Rec709;
 
 fn illuminant(name: &str) -> Curve {
@@ -50,7 +52,7 @@ fn colors(basis: &Basis, light: &Curve, surfaces: &[&Curve]) -> [[f64; 3]; 2] {
 
 /// By how much the first color is off, of the largest channel of the second.
 fn missed([found, exact]: [[f64; 3]; 2]) -> f64 {
-    let largest = |color: [f64; 3]| color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let largest = |color: [f64; 3]| color.into_iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     largest(std::array::from_fn(|c| found[c] - exact[c])) / largest(exact)
 }
 

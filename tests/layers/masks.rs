@@ -2,6 +2,7 @@
 
 use abbe::film::Film;
 
+use crate::support::larger::larger;
 use crate::support::scenes::{
     EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, SPLITTING, assert_aimed_at_as_met, body, image, lamps, view,
 };
@@ -30,8 +31,8 @@ fn masked(material: &str, opacity: &str) -> String {
 fn apart(a: &Film, b: &Film) -> f32 {
     let numbers = |film: &Film| film.pixels.iter().flat_map(|pixel| pixel.rgb).collect::<Vec<_>>();
     let (a, b) = (numbers(a), numbers(b));
-    let most = a.iter().chain(&b).fold(f32::MIN_POSITIVE, |most, x| most.max(*x));
-    a.iter().zip(&b).fold(0f32, |worst, (a, b)| worst.max((a - b).abs())) / most
+    let most = a.iter().chain(&b).fold(f32::MIN_POSITIVE, |most, x| larger(most, *x));
+    a.iter().zip(&b).fold(0f32, |worst, (a, b)| larger(worst, (a - b).abs())) / most
 }
 
 #[test]

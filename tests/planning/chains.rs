@@ -8,6 +8,7 @@ use abbe::spectrum::{Basis, Curve, Draw, Emission, Lanes, MAX_LANES, Quantity, d
 use abbe::trace::{Method, Polarizing, prepare, render};
 
 use super::stokes::{Stokes, metal, mirror, pane, surface};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{body, object, quad, scene, view};
 
@@ -198,8 +199,8 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
             let lanes = Lanes::from_fn(|lane| lanes.get(lane).map_or(0.0, |x| *x as f32));
             let shone = draw.read(&basis.tabulate(Quantity::Emission, curve));
             let found = basis.response(curve).sensor(&draw, shone * lanes, false);
-            let strongest = exact.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            let missed = (0..3).fold(0.0_f64, |most, c| most.max((found[c] - exact[c]).abs())) / strongest;
+            let strongest = exact.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
+            let missed = (0..3).fold(0.0_f64, |most, c| larger(most, (found[c] - exact[c]).abs())) / strongest;
             let name = basis.name();
             assert!(
                 missed <= candidate.bound() + 1e-6,

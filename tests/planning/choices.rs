@@ -102,6 +102,42 @@ fn measured_colors_get_as_many_lanes_as_the_tolerance_asks() {
     assert_eq!(found[0], 3, "half of everything may be missed");
 }
 
+/// A film of an index and so many nm under an even sky, whose colors are to be off by a thousandth at most.
+fn film(index: f64, nm: u32, of_film: &str) -> Plan {
+    let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 30.0, 16);
+    plan(&scene(&format!(
+        "{view}{of_film}\n[render]\nerror = 0.003\n[material.soap]\nthin = {{ index = {index}, thickness_nm = {nm} }}\n\
+         [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"soap\"\n\
+         [[light]]\nenvironment = {{ radiance = 1 }}\n"
+    )))
+}
+
+#[test]
+fn where_no_number_of_lanes_is_enough_those_that_miss_least_are_taken() {
+    let mut lanes = Vec::new();
+    for (index, nm) in [(1.33, 3000), (1.33, 5200), (2.4, 4800)] {
+        let plan = film(index, nm, "");
+        let least = plan.candidates.iter().map(|candidate| candidate.bound()).fold(f64::INFINITY, f64::min);
+        assert!(least > 0.001 && plan.model_error == least, "{nm} nm: {:?}", plan.because);
+        let said =
+            if plan.method.basis.lanes() == 32 { "the most lanes there are" } else { "more lanes would miss no less" };
+        let said = format!("{said}; some color may be missed by more than is tolerated");
+        assert!(plan.because.iter().any(|line| line.ends_with(&said)), "{nm} nm: {:?}", plan.because);
+        lanes.push(plan.method.basis.lanes());
+    }
+    assert!(lanes[0] == 32 && lanes[1] < 32 && lanes[2] < 32, "{lanes:?}");
+}
+
+#[test]
+fn where_spectra_are_asked_for_it_is_still_said_that_colors_are_missed() {
+    let said = |nm: u32| {
+        let because = film(1.33, nm, "spectral = true").because;
+        let line = because.iter().find(|line| line.starts_with("model bands 32: ")).expect("it is told").clone();
+        line.split_once("the most there are, for the spectra").expect("spectra are asked for").1.to_owned()
+    };
+    assert_eq!([3000, 100].map(said), ["; some color may be missed by more than is tolerated", ""]);
+}
+
 #[test]
 fn every_line_of_a_lamp_has_a_lane_of_its_own() {
     let sodium = "{ lines = [[589.0, 2], [589.6, 1]] }";

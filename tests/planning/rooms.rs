@@ -6,6 +6,7 @@ use abbe::plan::{Candidate, plan};
 use abbe::scene::Scene;
 use abbe::spectrum::{Basis, Curve, Draw, Emission, Lanes, MAX_LANES, Quantity, data, visible};
 
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::scene;
 
@@ -92,7 +93,7 @@ fn room(number: usize) -> Room {
     for wall in 0..6 {
         let patch = patches[(random.number() * 24.0) as usize].clone();
         let samples: Vec<f64> = visible::wavelengths().map(|nm| patch.at(nm)).collect();
-        let (mean, most) = (samples.iter().sum::<f64>() / 471.0, samples.iter().fold(0.0, |m: f64, x| m.max(*x)));
+        let (mean, most) = (samples.iter().sum::<f64>() / 471.0, samples.iter().fold(0.0, |m: f64, x| larger(m, *x)));
         let (from, factor) = match number % 3 {
             0 => (0.5, 0.35 / most),
             1 => (0.5 * mean, 0.15),
@@ -141,8 +142,8 @@ fn true_error(room: &Room, basis: &Basis) -> f64 {
     for wall in 0..6 {
         let filter = Lanes::<MAX_LANES>::from_fn(|lane| lanes.get(lane).map_or(0.0, |walls| walls[wall] as f32));
         let color = response.sensor(&draw, emission * filter, false);
-        let strongest = exact[wall].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        worst = (0..3).fold(worst, |worst, c| worst.max((color[c] - exact[wall][c]).abs() / strongest));
+        let strongest = exact[wall].iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
+        worst = (0..3).fold(worst, |worst, c| larger(worst, (color[c] - exact[wall][c]).abs() / strongest));
     }
     worst
 }

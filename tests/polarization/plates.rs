@@ -6,6 +6,7 @@ use abbe::plan::plan;
 use abbe::spectrum::{Basis, ColorSpace, Emission, Response};
 use abbe::trace::{Method, Polarizing, prepare, render};
 
+use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, film_of, method, one_pixel, scene};
 
 /// A sky seen straight through a polarizer along x, a plate at 45 degrees and one more polarizer.
@@ -113,8 +114,8 @@ fn plates_between_polarizers_have_their_colors_in_the_lanes_that_the_plan_choose
         for (nm, column) in abbe::spectrum::visible::wavelengths().zip(light.columns()) {
             (0..3).for_each(|c| expected[c] += crossed(nm, retardation) * column[c]);
         }
-        let strongest = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let off = (0..3).map(|c| (found[c] - expected[c]).abs()).fold(0.0, f64::max) / strongest;
+        let strongest = expected.iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
+        let off = (0..3).map(|c| (found[c] - expected[c]).abs()).fold(0.0, larger) / strongest;
         println!("{retardation} nm, {}: {off:.1e}", chosen.method.basis.name());
         assert!(found.iter().all(|x| x.is_finite()), "{retardation} nm: {found:?}");
         assert!(off <= chosen.model_error.max(1e-5), "{retardation} nm: {found:?} for {expected:?}, {chosen:?}");

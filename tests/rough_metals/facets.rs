@@ -8,6 +8,7 @@ use abbe::math::{DVec3, ball_surface};
 use crate::support::arrivals::about_z as at;
 use crate::support::chi_squared;
 use crate::support::exact::Exact;
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 /// Where directions of light lie on a grid: by the facet that mirrors them, its slope s and azimuth, with
@@ -114,7 +115,7 @@ fn g4_the_density_of_nearly_even_facets_keeps_its_digits() {
             let sin = tan / (1.0 + tan * tan).sqrt();
             let (y, x) = libm::sincos(f64::from(step));
             let h = DVec3::new(sin * x, sin * y, h.z);
-            worst = worst.max((facets.density(h) / exact(alpha, h) - 1.0).abs());
+            worst = larger(worst, (facets.density(h) / exact(alpha, h) - 1.0).abs());
         }
     }
     println!("G4: relative error at most {worst:.1e}");

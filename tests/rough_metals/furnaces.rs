@@ -5,6 +5,7 @@ use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 
 use crate::support::arrivals::{self, LOSSLESS, arrival, material, points, toward};
+use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
 const ROUGHNESSES: [f64; 9] = [0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -52,7 +53,7 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
                 })
                 .sum();
             let exact = blocked / f64::from(DRAWS);
-            worst = worst.max((surface.blocked(cos) - exact).abs());
+            worst = larger(worst, (surface.blocked(cos) - exact).abs());
         }
     }
     println!("table off by at most {worst:.1e}");

@@ -6,6 +6,7 @@ use abbe::Image;
 use abbe::spectrum::{apply, data};
 
 use super::{FINE, WHITE, room};
+use crate::support::larger::larger;
 use crate::support::scenes::{SHEETS, one_pixel, rendered};
 
 /// What the bands of S1, S2 and S3 make of their layers, at worst relative to the brightest channel of the pixel and
@@ -16,7 +17,7 @@ fn worst_component(image: &Image) -> (f64, f64) {
     let spectral = film.spectral.as_ref().expect("spectra were asked for");
     assert!(spectral.has_stokes && spectral.bands.count() == data::color_matching().len());
     let luminous: f64 = data::color_matching().iter().map(|cmf| cmf[1]).sum();
-    let strongest = |rgb: [f32; 3]| rgb.iter().fold(0.0, |most: f64, &x| most.max(f64::from(x).abs()));
+    let strongest = |rgb: [f32; 3]| rgb.iter().fold(0.0, |most: f64, &x| larger(most, f64::from(x).abs()));
     let mean = film.pixels.iter().map(|pixel| strongest(pixel.rgb)).sum::<f64>() / film.pixels.len() as f64;
     let (mut worst, mut polarized) = (0.0_f64, 0.0);
     for component in 1..4 {
@@ -29,8 +30,8 @@ fn worst_component(image: &Image) -> (f64, f64) {
             }
             let color = apply(&film_of_xyz, xyz);
             assert!(color.iter().all(|x| x.is_finite()), "{color:?}");
-            let off = (0..3).map(|i| (color[i] - f64::from(layers[i][number])).abs()).fold(0.0, f64::max);
-            worst = worst.max(off / strongest(pixel.rgb).max(0.01 * mean));
+            let off = (0..3).map(|i| (color[i] - f64::from(layers[i][number])).abs()).fold(0.0, larger);
+            worst = larger(worst, off / strongest(pixel.rgb).max(0.01 * mean));
             polarized += f64::from(layers[1][number]).abs() / (mean * film.pixels.len() as f64);
         }
     }

@@ -6,6 +6,7 @@ use abbe::math::{DVec3, Ray};
 use abbe::shape::{Shape, Sphere};
 
 use crate::support::exact::Exact;
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{
     GROUND, Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, standard_errors, view,
@@ -75,7 +76,7 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
             let solid_angle = Exact::from(2.0 * PI) * one_minus_cos(radius, x + y + z);
             let off = (Exact::from(sphere.pdf(&ray, &crossing)) * solid_angle - Exact::from(1.0)).abs().rounded();
             assert!(off <= 1e-14, "R / D = {ratio}: the density is off by {off:e}");
-            worst = worst.max(off);
+            worst = larger(worst, off);
         }
         // Irradiance of a surface that faces it is PI s^2: the mean of cos over the density.
         let sphere = Shape::Sphere(Sphere::new(DVec3::Z / ratio, 1.0));

@@ -8,6 +8,7 @@ use abbe::trace::prepare;
 
 use crate::support::arrivals::arrival;
 use crate::support::exact::{Exact, ExactVector};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};
 
@@ -33,7 +34,7 @@ fn d7_a_thousand_refractions_do_not_drift() {
             let (n1, n2) = if step % 2 == 0 { (1.0, 1.5) } else { (1.5, 1.0) };
             let interface = Interface::new(n1, n2, wo.dot(normal));
             wo = if interface.transmittance > 0.0 { -interface.refract(wo, normal) } else { -reflect(wo, normal) };
-            worst = worst.max(off_unit(wo));
+            worst = larger(worst, off_unit(wo));
         }
     }
     println!("D7: off by at most {worst:.2} u");
@@ -48,7 +49,7 @@ fn d8_a_thousand_reflections_do_not_drift() {
         let mut wo = random.direction().normalize();
         for _ in 0..1000 {
             wo = -reflect(wo, normal_toward(wo, &mut random));
-            worst = worst.max(off_unit(wo));
+            worst = larger(worst, off_unit(wo));
         }
     }
     println!("D8: off by at most {worst:.2} u");
@@ -77,7 +78,7 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
             let arrival = Arrival { normal, incident: Index::Own(&inside), ..arrival(&draw, wo, 1.0) };
             material.scatter(&arrival, random.pair(), &mut branches);
             assert!(!branches.is_empty());
-            worst = branches.drain(..).map(|branch| off_unit(branch.wi)).fold(worst, f64::max);
+            worst = branches.drain(..).map(|branch| off_unit(branch.wi)).fold(worst, larger);
         }
         println!("S5: {} off by at most {worst:.2} u", materials[object as usize].0);
         assert!(worst <= 2.0, "{} off by {worst} u", materials[object as usize].0);
@@ -103,7 +104,7 @@ fn s5_camera_rays_and_rays_to_lights_run_along_unit_vectors() {
     let mut worst = 0f64;
     for _ in 0..20_000 {
         let film = DVec2::from(random.pair()) * 300.0;
-        worst = worst.max(off_unit(scene.camera.ray(film).direction));
+        worst = larger(worst, off_unit(scene.camera.ray(film).direction));
     }
     println!("S5: camera rays off by at most {worst:.2} u");
     assert!(worst <= 2.0, "camera rays off by {worst} u");
@@ -113,7 +114,7 @@ fn s5_camera_rays_and_rays_to_lights_run_along_unit_vectors() {
         for _ in 0..20_000 {
             let from = SurfacePoint::in_space(random.direction() * random.between(0.1, 50.0));
             if let Some(sample) = light.sample_li(&from, random.direction().normalize(), random.pair()) {
-                worst = worst.max(off_unit(sample.ray.direction));
+                worst = larger(worst, off_unit(sample.ray.direction));
             }
         }
         println!("S5: rays to light {number} off by at most {worst:.2} u");

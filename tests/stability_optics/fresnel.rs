@@ -8,6 +8,7 @@ use abbe::spectrum::{Draw, Lanes, Table};
 
 use crate::support::arrivals::{arrival, material};
 use crate::support::exact::Exact;
+use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 
@@ -49,7 +50,7 @@ fn d1_reflectance_is_right_and_continuous_through_the_critical_angle() {
                 let cosine = libm::cos(angle.min(FRAC_PI_2));
                 let found = Interface::new(n1, n2, cosine);
                 assert!(found.cos_beyond >= 0.0 && found.transmittance >= 0.0, "{n1} to {n2}: {found:?}");
-                worst = worst.max(difference(found.reflectance, truth(n1, n2, cosine).0));
+                worst = larger(worst, difference(found.reflectance, truth(n1, n2, cosine).0));
             }
         }
         // Neighboring numbers on both sides of the angle.
@@ -98,7 +99,7 @@ fn d2_reflectance_at_normal_incidence_is_right_within_4_roundings() {
         let [a, b] = [n1, n2].map(Exact::from);
         let r = (a - b) / (a + b);
         let found = Interface::new(n1, n2, 1.0);
-        absolute = absolute.max(difference(found.reflectance, r * r));
+        absolute = larger(absolute, difference(found.reflectance, r * r));
         // The dot product of two unit vectors may exceed 1 by a few roundings.
         let d = random.direction();
         beyond_one += usize::from(d.dot(d) > 1.0);
@@ -123,7 +124,7 @@ fn d3_transmittance_keeps_14_digits_at_grazing_angles() {
             let exact = truth(n1, n2, cosine).1;
             let off = difference(Interface::new(n1, n2, cosine).transmittance, exact) / exact.rounded();
             assert!(off <= 1e-14, "{n1} to {n2} at {cosine:e}: relative error {off:e}");
-            worst = worst.max(off);
+            worst = larger(worst, off);
         }
     }
     println!("D3: transmittance off by at most {worst:.1e} of itself");

@@ -5,6 +5,7 @@ use abbe::math::{DVec2, DVec3};
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
 
+use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, body, films_of, image, method, scene, view};
 
 /// N-SF11 at 700, 550 and 400 nm, about.
@@ -52,7 +53,7 @@ fn d9_lanes_that_disagree_at_the_critical_angle_keep_their_energy() {
         .iter()
         .flat_map(|film| &film.pixels)
         .flat_map(|pixel| (0..3).map(|lane| pixel.rgb[lane] / (INDICES[lane] * INDICES[lane]) as f32));
-    let largest = weights.fold(0.0, f32::max);
+    let largest = weights.fold(0.0, larger);
     println!("D9: largest weight {largest}");
     assert!(largest <= LANES * (1.0 + 1e-6), "a weight of {largest}");
     assert!(largest > 1.0, "no lane ever stood for others");

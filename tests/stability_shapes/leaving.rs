@@ -6,6 +6,7 @@ use abbe::shape::{Disc, Plane, Quad, Shape, SurfacePoint, Triangle};
 
 use super::OFFSET;
 use crate::support::exact::ExactVector;
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 /// Size of the surface, its coordinate offset and the distance of the ray's origin, both in sizes.
@@ -137,7 +138,7 @@ fn x3_no_ray_hits_the_triangles_that_it_leaves_and_the_offset_is_a_few_roundings
         let (mut own, mut highest) = (0, 0f64);
         departures(setting, anywhere, first, |shape, departure| {
             own += usize::from(hits(shape, &departure.leaving) || hits_neighbor(departure));
-            highest = highest.max(departure.height());
+            highest = larger(highest, departure.height());
         });
         let roundings = highest / (UNIT_ROUNDOFF * (size + offset * size));
         println!("X3: size {size:e}, offset {offset:e} s, distance {distance:e} s: moved by {roundings:.1} u (s + C)");
@@ -160,7 +161,7 @@ fn x3_no_ray_hits_the_plane_quad_or_disc_that_it_leaves() {
         let mut check = |shape: &Shape, departure: &Departure| {
             assert!(!hits(shape, &departure.leaving), "{setting:?}: {shape:?}, {:?}", departure.leaving);
             let away = departure.leaving.origin - departure.point.position;
-            highest = highest.max(away.dot(departure.point.normal).abs());
+            highest = larger(highest, away.dot(departure.point.normal).abs());
         };
         departures(setting, anywhere, plane, &mut check);
         departures(setting, anywhere, quad, &mut check);

@@ -5,6 +5,7 @@ use abbe::shape::{Cube, Disc, Plane, Quad, Shape, Triangle};
 
 use super::OFFSET;
 use crate::support::exact::{Exact, ExactVector};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 /// How far rays start from where they hit; no number of few digits, which would hide roundings of t.
@@ -114,7 +115,7 @@ fn p4_the_rim_of_a_disc_is_where_it_should_be() {
             let (ray, outside) = ray_near_rim(center, normal, nearness, &mut random);
             if disc.intersect(&ray, f64::INFINITY).is_some() != (outside < 0.0) {
                 assert!(nearness == 0.0, "offset {offset:e}: |d|^2 - 1 = {outside:e}");
-                worst = worst.max(outside.abs() / UNIT_ROUNDOFF);
+                worst = larger(worst, outside.abs() / UNIT_ROUNDOFF);
             }
         }
         println!("P4: offset {offset:e}: the furthest wrong hit lies {worst:.1} u off the rim");

@@ -5,6 +5,7 @@ use abbe::shape::{Shape, Sphere, SurfacePoint};
 
 use super::OFFSET;
 use crate::support::exact::{Exact, ExactVector};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 const RAYS: usize = 20_000;
@@ -48,7 +49,7 @@ fn s1_far_spheres_are_hit_within_16_roundings_of_distance_over_radius() {
                 let arm = ExactVector::from(ray.origin) + ExactVector::from(ray.direction) * t.into() - center.into();
                 let error = (arm.length() - radius.into()).abs().rounded() / radius;
                 assert!(t < distance * radius, "the near side is hit");
-                worst = worst.max(error / (UNIT_ROUNDOFF * distance));
+                worst = larger(worst, error / (UNIT_ROUNDOFF * distance));
             }
             println!("S1: distance {distance:e} R, error {worst:.1} u D / R");
             assert!(distance > 1e6 || worst <= 16.0);
@@ -90,11 +91,11 @@ fn s3_both_sides_of_a_sphere_as_large_as_a_wall_are_hit_within_1e8th_of_a_unit()
         let ray = Ray::new(in_the_room(&mut random), random.direction());
         let [_, far] = exact_roots(WALL.0, WALL.1, &ray).expect("the room is inside");
         let t = hit(&shape, &ray).expect("the room is inside");
-        worst = worst.max((Exact::from(t) - far).abs().rounded());
+        worst = larger(worst, (Exact::from(t) - far).abs().rounded());
         let outside = Ray::new(DVec3::new(-50.0, 40.8, 81.6), in_the_room(&mut random) - DVec3::new(-50.0, 40.8, 81.6));
         let [near, _] = exact_roots(WALL.0, WALL.1, &outside).expect("it aims at a point inside");
         let t = hit(&shape, &outside).expect("it aims at a point inside");
-        worst = worst.max((Exact::from(t) - near).abs().rounded());
+        worst = larger(worst, (Exact::from(t) - near).abs().rounded());
     }
     println!("S3: error of t {worst:.1e}");
     assert!(worst <= 1e-8);
@@ -138,10 +139,10 @@ fn s5_directions_are_unit_vectors_within_2_roundings() {
     let (mut of_rays, mut of_normals) = (0f64, 0f64);
     for _ in 0..200_000 {
         let size = libm::exp10(random.between(-100.0, 100.0));
-        of_rays = of_rays.max(off_unit(Ray::new(DVec3::ZERO, random.direction() * size).direction));
+        of_rays = larger(of_rays, off_unit(Ray::new(DVec3::ZERO, random.direction() * size).direction));
         let factors = DVec3::new(random.between(0.1, 3.0), random.between(-3.0, -0.1), random.between(0.1, 3.0));
         let map = Transform::rotate(random.direction(), random.between(0.0, 360.0)).then(&Transform::scale(factors));
-        of_normals = of_normals.max(off_unit(map.normal(random.direction())));
+        of_normals = larger(of_normals, off_unit(map.normal(random.direction())));
     }
     println!("S5: rays {of_rays:.2} u, normals {of_normals:.2} u");
     assert!(of_rays <= 2.0, "rays: {of_rays} u");
@@ -159,7 +160,7 @@ fn s7_spheres_of_any_size_are_hit_where_they_are() {
             let ray = ray_at_impact(DVec3::ZERO, 10.0 * size, impact, &mut random);
             let [near, _] = exact_roots(DVec3::ZERO, size, &ray).expect("the ray was aimed at the sphere");
             let t = hit(&shape, &ray).expect("the ray was aimed at the sphere");
-            worst = worst.max((t / near.rounded() - 1.0).abs());
+            worst = larger(worst, (t / near.rounded() - 1.0).abs());
         }
         assert!(worst <= 32.0 * UNIT_ROUNDOFF, "size {size:e}: {worst:e}");
     }

@@ -7,6 +7,7 @@ use super::OFFSET;
 use crate::meshes::files::file;
 use crate::support::bodies::{ball, closed_mesh};
 use crate::support::exact::{Exact, ExactVector};
+use crate::support::larger::larger;
 use crate::support::random::Random;
 
 const RAYS: usize = 20_000;
@@ -116,7 +117,7 @@ fn t3_slivers_are_hit_and_know_where() {
             let shape = Shape::Triangle(Triangle::new(points));
             let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through its inside");
             for (found, exact) in crossing.uv.into_iter().zip(exact) {
-                worst = worst.max((Exact::from(found) - exact).abs().rounded());
+                worst = larger(worst, (Exact::from(found) - exact).abs().rounded());
             }
         }
         let roundings = worst * height / UNIT_ROUNDOFF;

@@ -7,6 +7,7 @@ pub mod bodies;
 pub mod chi_squared;
 pub mod exact;
 pub mod fresnel;
+pub mod larger;
 pub mod pictures;
 pub mod random;
 pub mod run;

@@ -10,6 +10,8 @@ use abbe::spectrum::{Basis, Curve};
 use abbe::trace::{Method, Report, Transport, prepare, render};
 use abbe::{Diagnostic, Error, Image, Options};
 
+use super::larger::larger;
+
 /// Follows every branch down to a weight that no pixel can show.
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
 /// What the plan takes where light is left to chance.
@@ -217,7 +219,7 @@ impl Mean {
 
     /// The largest standard error of a band relative to what is expected there.
     pub fn worst_error(&self, expected: [f64; 3]) -> f64 {
-        (0..3).map(|band| self.error[band] / expected[band]).fold(0.0, f64::max)
+        (0..3).map(|band| self.error[band] / expected[band]).fold(0.0, larger)
     }
 }
 

@@ -16,6 +16,8 @@ use crate::spectrum::{Channel, Image};
 #[derive(Default)]
 pub(super) struct Context {
     warnings: Vec<Warning>,
+    /// Those of values: one may be read for two purposes.
+    warned: HashSet<Warning>,
     /// Of the texts of the scene and the files that they name.
     pub(super) hash: Sha256,
     /// The files that they name and that were read.
@@ -35,7 +37,7 @@ pub(super) struct Context {
 }
 
 /// What the author should know, and where the reason stands.
-#[derive(PartialEq)]
+#[derive(Clone, PartialEq, Eq, Hash)]
 struct Warning {
     place: Option<Range<usize>>,
     message: String,
@@ -59,8 +61,7 @@ impl Context {
     /// Warns of a value, by the place where it stands.
     pub(super) fn warn_at(&mut self, place: Value, message: impl Into<String>) {
         let warning = Warning { place: Some(place.span()), message: message.into() };
-        // A value may be read for two purposes.
-        if !self.warnings.contains(&warning) {
+        if self.warned.insert(warning.clone()) {
             self.warnings.push(warning);
         }
     }
@@ -69,7 +70,7 @@ impl Context {
     pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
         let places = self.warnings.iter().filter_map(|warning| warning.place.clone());
         let paths = match document.texts.told_by {
-            Place::Line => HashMap::new(),
+            Place::Line => document.texts.named_all(places),
             Place::Key => document.paths(places),
         };
         let told = |Warning { place, message }: &Warning| match place {

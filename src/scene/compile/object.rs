@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::context::Context;
-use super::parts::{Materials, unknown_material};
+use super::parts::{Materials, defined, unknown_material};
 use super::relief::{ReliefText, relief};
 use super::shape::{SHAPE, Written};
 use super::transform::{map_of, steps};
@@ -171,9 +171,9 @@ pub(super) fn group(value: Value<'_>) -> Option<&str> {
 impl<'m, 'd> Names<'m, 'd> {
     /// Which materials there are for an object that has none, if any.
     fn help(&self, object: Option<&str>) -> Option<String> {
-        let known: Vec<&str> = self.materials.keys().copied().collect();
-        let (first, object) = (known.first()?, object.unwrap_or("it"));
-        Some(format!("give {object} one, as in material = {first:?}; the scene defines {}", known.join(", ")))
+        let known = self.materials.keys().copied();
+        let (first, object) = (known.clone().next()?, object.unwrap_or("it"));
+        Some(format!("give {object} one, as in material = {first:?}; {}", defined(known)))
     }
 
     /// The material of a name.

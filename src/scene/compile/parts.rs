@@ -29,6 +29,9 @@ struct Search<'s, 'd> {
 const MOST_PARTS: usize = 1000;
 const DEEPEST: usize = 64;
 
+/// Materials that are named where there are very many.
+const MOST_SHOWN: usize = 100;
+
 /// Every material with those it is made of.
 pub(super) fn with_parts<'d>(drafts: &Drafts<'d>) -> Materials<'d> {
     let (within, circular) = (Vec::new(), BTreeSet::new());
@@ -126,7 +129,14 @@ pub(super) fn unknown_material<'n, T>(
     let help = match nearest(name, known.clone()) {
         Some(near) => format!("did you mean {near:?}?"),
         None if known.len() == 0 => format!("define it: [material.{name}]"),
-        None => format!("the scene defines {}", known.collect::<Vec<_>>().join(", ")),
+        None => defined(known),
     };
     place.advise(message, help)
+}
+
+/// The materials of a scene, in words.
+pub(super) fn defined<'n>(mut known: impl ExactSizeIterator<Item = &'n str>) -> String {
+    let shown = known.by_ref().take(MOST_SHOWN).collect::<Vec<_>>().join(", ");
+    let more = if known.len() > 0 { format!(" and {} more", known.len()) } else { String::new() };
+    format!("the scene defines {shown}{more}")
 }

@@ -1,12 +1,13 @@
 //! The texts of a scene, as one.
 
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use super::mistake::Mistake;
 use super::rows::Rows;
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, Lines};
 
 /// The texts that a scene is made of: its file, the files that it includes and what replaces their values. They stand
 /// one behind the other, so that a place in any of them is a range of bytes of the whole.
@@ -102,9 +103,24 @@ impl Texts {
 
     /// A place as people name it, such as `scene.toml:3:7`.
     pub(in crate::scene) fn named(&self, span: Range<usize>) -> String {
+        self.named_by(&mut Lines::default(), span)
+    }
+
+    fn named_by(&self, lines: &mut Lines, span: Range<usize>) -> String {
         let found = self.diagnostic(Mistake { span, message: String::new(), help: None }, None);
-        let (line, column) = found.line_and_column();
+        let (line, column) = lines.place_of(&found);
         format!("{}:{line}:{column}", found.file.display())
+    }
+
+    /// The same of many places, in time that grows with their number and the text.
+    pub(in crate::scene) fn named_all(
+        &self,
+        places: impl Iterator<Item = Range<usize>>,
+    ) -> HashMap<Range<usize>, String> {
+        let mut places: Vec<_> = places.collect();
+        places.sort_unstable_by_key(|span| (span.start, span.end));
+        let mut lines = Lines::default();
+        places.into_iter().map(|span| (span.clone(), self.named_by(&mut lines, span))).collect()
     }
 
     /// A mistake with its file.

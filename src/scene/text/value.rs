@@ -311,7 +311,7 @@ pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
 }
 
 /// Mistakes in a scene that a person reads one by one.
-const MANY: usize = 100;
+pub(super) const MANY: usize = 100;
 
 /// Most words that are all told of a value that is none.
 const MOST_WORDS: usize = 10;

@@ -6,6 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::mistake::Mistake;
 use super::tree::{Key, Node, word};
+use super::value::MANY;
 use crate::error::nearest;
 
 /// The section of the variables.
@@ -98,13 +99,17 @@ impl<'d> Variables<'d> {
     }
 
     fn unknown(&mut self, place: &Node, name: &str) {
+        let message = format!("there is no variable `{name}`");
+        if self.mistakes.len() >= MANY {
+            return self.mistakes.push(Mistake { span: place.span(), message, help: None });
+        }
         let near = nearest(name, self.known.iter().map(String::as_str));
         let help = match near {
             Some(near) => format!("did you mean \"${near}\"?"),
             None if name == FRAME => "give the number of the frame: --frame 1".into(),
             None => format!("give it a value: [set] {name} = .."),
         };
-        self.tell(place, format!("there is no variable `{name}`"), help);
+        self.tell(place, message, help);
     }
 }
 

@@ -28,19 +28,18 @@ pub struct RareLight {
 /// Of all light of the pixel in the replicate, the part that one path must have brought to be what stands out.
 const MUCH: f64 = 0.2;
 
-/// The brightest light that a sample got.
+/// The brightest light that a sample got, and how much it is.
 struct Brightest<'w> {
     world: &'w World,
-    found: Cell<Option<Contribution>>,
-    amount: Cell<f64>,
+    found: Cell<Option<(f64, Contribution)>>,
 }
 
 impl Observer for Brightest<'_> {
     fn receive(&self, contribution: &Contribution) {
         let amount = self.world.amount(contribution.rgb);
-        if amount > self.amount.get() && amount.is_finite() {
-            self.amount.set(amount);
-            self.found.set(Some(*contribution));
+        let most = self.found.get().map_or(0.0, |found| found.0);
+        if amount > most && amount.is_finite() {
+            self.found.set(Some((amount, *contribution)));
         }
     }
 }
@@ -52,9 +51,9 @@ pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLig
 }
 
 fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
-    let brightest = Brightest { world, found: Cell::new(None), amount: Cell::new(0.0) };
+    let observer = Brightest { world, found: Cell::new(None) };
     let pixel = outlier.pixel.map(|place| place as i32);
-    let (mut all, mut stage) = (0.0, Stage::default());
+    let (mut all, mut brightest, mut stage) = (0.0, None::<(f64, Contribution)>, Stage::default());
     while stage.before < each {
         // The stages of the render: what light a pass has depends on how long it is. Those after one that the time cut
         // short may be others.
@@ -64,16 +63,21 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
         }
         let pass = stage.pass(world, 0, most_at_once(world));
         let light = PassLight::<N, P>::new(world, &pass);
-        let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&brightest);
+        // Layers tell which samples a shadow catcher takes.
+        let tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&observer);
+        let mut tracer = tracer.with_layers();
         let rate = world.rate(pixel);
         for number in rate.of(&pass.numbers) {
             tracer.light_vertices = light.vertices(rate.among_all(number) - pass.numbers.start);
             let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);
-            all += world.amount(sample.rgb);
+            let shown = world.amount(sample.rgb);
+            all += shown;
+            let brighter = |found: &(f64, Contribution)| shown > 0.0 && brightest.is_none_or(|most| found.0 > most.0);
+            brightest = observer.found.take().filter(brighter).or(brightest);
         }
         stage = stage.after_alone(pass.numbers.len() as u32);
     }
-    let found = brightest.found.get().filter(|_| brightest.amount.get() > MUCH * all)?;
+    let (_, found) = brightest.filter(|(amount, _)| *amount > MUCH * all)?;
     let name = found.light.map(|light| world.scene.light_groups[light].clone());
     Some(RareLight { name, bounces: found.bounces, found: word(found.found) })
 }

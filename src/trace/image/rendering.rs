@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::blur::Blur;
-use super::noise::{AlphaNoise, Measured, Noise, measure};
+use super::noise::{Measured, Noise, measure};
 use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
 use super::saved::Restored;
@@ -65,8 +65,6 @@ pub struct Report {
     pub noise: Option<Noise>,
     /// By how much photons that were gathered blur it, where a stop rule has it measured.
     pub blur: Option<Blur>,
-    /// The noise of alpha, where shadow catchers make some.
-    pub alpha: Option<AlphaNoise>,
     /// What ended the render, if a stop rule could, and it is finished.
     pub stopped_by: Option<Stopped>,
 }
@@ -324,7 +322,6 @@ impl<'a> Rendering<'a> {
             photons: self.progress.sending.photons + self.progress.gathered_photons,
             noise: measured.map(|measured| measured.noise),
             blur: measured.map(|measured| measured.blur),
-            alpha: measured.and_then(|measured| measured.alpha),
             stopped_by: self.stopped_by(),
         }
     }

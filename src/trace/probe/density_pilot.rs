@@ -6,6 +6,7 @@ use super::cost::few_photons;
 use super::pilot_noise::{DARK, LOOKING};
 use crate::math::Sampler;
 use crate::trace::camera::PathTracer;
+use crate::trace::contribution::add;
 use crate::trace::density::SampleDensity;
 use crate::trace::parallel::in_parallel;
 use crate::trace::photon::{LightVertices, PhotonMap, few_vertices};
@@ -113,6 +114,9 @@ fn look_at_row<const N: usize, P: Polarization<N>>(
     let format = [world.scene.film.width, world.scene.film.height];
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons);
     tracer.light_vertices = vertices;
+    if world.layers.catches() {
+        tracer = tracer.with_layers();
+    }
     let mut found = vec![Found::default(); cells[0] as usize];
     for (column, found) in (0..).zip(&mut found) {
         let before = tracer.walker.stats;
@@ -142,7 +146,10 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
         let seed = (world.method.seed ^ SEED).wrapping_add(look);
         let mut mean = [0.0; 3];
         for number in 0..SAMPLES {
-            let rgb = tracer.sample(&Sampler::of_pixel(seed, pixel, number), pixel).rgb;
+            let mut rgb = tracer.sample(&Sampler::of_pixel(seed, pixel, number), pixel).rgb;
+            // A shadow catcher shows shadows alone, however noisy its light is.
+            let shadow = tracer.layers().map(|layers| world.layers.changed(layers.left().row));
+            shadow.iter().for_each(|shadow| add(&mut rgb, *shadow));
             (0..3).filter(|&i| rgb[i].is_finite()).for_each(|i| mean[i] += rgb[i] / f64::from(SAMPLES));
         }
         mean

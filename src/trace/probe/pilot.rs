@@ -163,12 +163,12 @@ fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
     SampleWorth::of(variances, film.whole().pixels() as f64, rays)
 }
 
-/// The mean of some values, and the variance of one.
+/// The mean of some values, and the variance of one; 0 where there are too few to tell.
 pub(super) fn mean_and_variance(values: impl ExactSizeIterator<Item = f64> + Clone) -> [f64; 2] {
-    let count = values.len().max(2) as f64;
-    let mean = values.clone().sum::<f64>() / count;
+    let count = values.len();
+    let mean = values.clone().sum::<f64>() / count.max(1) as f64;
     let squares = values.map(|x| (x - mean) * (x - mean));
-    [mean, squares.sum::<f64>() / (count - 1.0)]
+    [mean, squares.sum::<f64>() / (count.max(2) - 1) as f64]
 }
 
 impl SampleWorth {
@@ -181,5 +181,16 @@ impl SampleWorth {
         let common = variances.len() - variances.len().div_ceil(100);
         let (variance, common_variance) = (of_image(&variances), of_image(&variances[..common]));
         Self { variance, common_variance, rays }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_alone_is_its_mean_and_tells_no_variance() {
+        let of = |values: &[f64]| mean_and_variance(values.iter().copied());
+        assert_eq!([of(&[]), of(&[3.0]), of(&[3.0, 5.0])], [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0]]);
     }
 }
