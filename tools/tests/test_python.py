@@ -274,6 +274,29 @@ def test_threads_of_python_render_at_once_and_others_go_on():
     assert ticks and all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
 
 
+FORKED = """
+import json, os, sys
+import abbe
+image = abbe.render(json.loads(sys.argv[1]))
+image.write_exr("parent.exr")
+child = os.fork()
+if not child:
+    abbe.render(json.loads(sys.argv[1])).write_exr("child.exr")
+    os._exit(0)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing forks here")
+def test_a_forked_process_renders_and_writes_as_well(tmp_path):
+    # A file of several blocks, which threads pack together.
+    scene = tomllib.loads(TURNTABLE.read_text("utf-8")) | {"film": {"width": 400, "height": 300}, "render": {"samples": 1}}
+    ask = [sys.executable, "-c", FORKED, json.dumps(scene)]
+    run = subprocess.run(ask, capture_output=True, text=True, timeout=60, cwd=tmp_path)
+    assert run.stdout == "0\n", run.stderr
+    assert (tmp_path / "parent.exr").read_bytes() == (tmp_path / "child.exr").read_bytes()
+
+
 def test_pictures_show_in_notebooks(tmp_path):
     image = abbe.render(SCENE)
     image.to_png(tmp_path / "a.png")

@@ -174,9 +174,9 @@ def render(
     - `checkpoint`: a file that keeps what is done, `every` so many seconds, when it is stopped, and at the end.
     - `resume`: goes on from the checkpoint, if it is there, to the same image or to more samples.
 
-    Ctrl-C stops a render within a second, by `KeyboardInterrupt`, or when its checkpoint is written. Processes that
-    are forked after a render, a plan, a comparison or a written file have none of its threads, and would wait for
-    them: start them by `spawn`, and let them return arrays or write files, as an image cannot be pickled.
+    Ctrl-C stops a render within a second, by `KeyboardInterrupt`, or when its checkpoint is written. Other processes
+    may render as well, also those that are forked while nothing is rendered. Let them return arrays or write files, as
+    an image cannot be pickled.
 
     Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
     `RenderError` if a file fails.
