@@ -126,9 +126,22 @@ def test_spectra_are_those_of_the_file(tmp_path):
         image.spectrum(20, 0)
     with pytest.raises(ValueError, match="spectral=True"):
         abbe.render(SCENE).spectrum(0, 0)
+    assert image.stokes_spectra is None and abbe.render(SCENE, layers=["S1", "S2", "S3"]).stokes_spectra is None
     # A single band is one still.
     image = abbe.render(with_(film={**SCENE["film"], "spectral": {"from": 550, "to": 550, "step": 10}}))
     assert image.spectra.radiance.shape == (12, 20, 1) and image.spectrum(3, 3).radiance.shape == (1,)
+
+
+def test_stokes_spectra_are_those_of_the_file(tmp_path):
+    glass = with_(material={"matte": {"dielectric": {"index": "N-SF11"}}})
+    image = abbe.render(glass, spectral=True, set={"film.stokes": True, "film.spectral": {"from": 400, "to": 700, "step": 100}})
+    stokes = image.stokes_spectra
+    assert stokes.shape == (12, 20, 3, 4) and np.abs(stokes[..., :2, :]).max() > 0.01 and not stokes.flags.writeable
+    image.write_spectral_exr(tmp_path / "a.exr")
+    file = render.read(tmp_path / "a.exr").channels
+    for number in range(3):
+        names = sorted(name for name in file if name.startswith(f"S{number + 1}."))
+        assert np.array_equal(stokes[:, :, number], np.stack([file[name] for name in names], axis=-1))
 
 
 def test_what_is_known_of_a_render_is_what_json_says(tmp_path):

@@ -70,6 +70,17 @@ class Image(Layers):
         """The spectra of all pixels, radiance height x width x bands; None unless asked for by `spectral=True`."""
         return self._spectra
 
+    @property
+    def stokes_spectra(self) -> npt.NDArray[np.float32] | None:
+        """S1, S2 and S3 of all pixels in the bands of `spectra`, height x width x 3 x bands, per nm; S0 is its radiance.
+
+        None unless both are asked for: Stokes vectors by `film.stokes = true` in the scene, and `spectral=True`. S1 is
+        light polarized along the image's rows less that along its columns, S2 the same along the diagonal that rises to
+        the right and across it, S3 what turns right, seen toward the scene, less what turns left.
+        """
+        stokes = self._core.stokes_spectra()
+        return None if stokes is None else np.asarray(stokes)
+
     def spectrum(self, x: int, y: int) -> Spectrum:
         """The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left of what was made.
 
