@@ -10,7 +10,7 @@ use abbe::nearest;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
-use super::errors::{output, raised};
+use super::errors::{no_pickle, output, raised};
 use super::options::stops;
 use super::plane::{Place, Plane};
 use super::work;
@@ -111,6 +111,16 @@ impl Image {
         output(&path, "png")?;
         let (image, stops) = (self.image.clone(), stops(exposure)?);
         work::run(py, move || image.write_png(path, stops))?.map_err(raised)
+    }
+
+    /// Says what can be sent to other processes.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle("an image", "send its arrays, such as image.rgb, or write it to a file")
+    }
+
+    /// The same: nothing of it changes.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 }
 

@@ -3,6 +3,7 @@
 pytest tools/tests/test_python.py
 """
 
+import copy
 import json
 import os
 import pickle
@@ -579,6 +580,31 @@ def test_the_catalog_answers_arrays():
     assert len(abbe.catalog.glasses()) > 1000 and "D65" in abbe.catalog.illuminants() and abbe.catalog.metals()
     with pytest.raises(KeyError, match="there is no glass named .*N-SF111.*did you mean"):
         abbe.catalog.glass("N-SF111")
+
+
+def test_an_entry_of_the_catalog_stands_for_its_name():
+    entries = abbe.catalog.glass("N-BK7"), abbe.catalog.illuminant("FL11"), abbe.catalog.reflectance("dark skin")
+
+    def scene(glass, light, patch):
+        return with_(
+            material={"matte": {"dielectric": {"index": glass}}, "wall": {"diffuse": {"reflectance": patch}}},
+            object=[*SCENE["object"], {"shape": {"disc": {"center": [0, 0, -2], "normal": [0, 0, 1], "radius": 3}}, "material": "wall"}],
+            light=[{"environment": {"radiance": {"illuminant": light}}}],
+        )
+
+    by_name = abbe.render(scene(*(entry.name for entry in entries))).rgb
+    assert np.array_equal(abbe.render(scene(*entries)).rgb, by_name)
+    gold = abbe.catalog.metal("gold")
+    abbe.Scene(SCENE, set={"material.matte": {"conductor": {"metal": gold}}})
+    for entry in (*entries, gold):
+        again = pickle.loads(pickle.dumps(entry))
+        assert (type(again), again.name, again.range_nm) == (type(entry), entry.name, entry.range_nm)
+
+
+def test_images_and_scenes_are_copied_by_copy():
+    image, scene = abbe.render(SCENE), abbe.Scene(SCENE)
+    one, other = copy.deepcopy((image, scene))
+    assert np.array_equal(one.rgb, image.rgb) and repr(other) == repr(scene) and one.stats == image.stats
 
 
 def test_errors_can_be_sent_to_other_processes():
