@@ -316,8 +316,9 @@ def test_pictures_show_in_notebooks(tmp_path):
     image.to_png(tmp_path / "a.png")
     assert image._repr_png_() == (tmp_path / "a.png").read_bytes() and image._repr_png_().startswith(b"\x89PNG\r\n")
     image.to_png(tmp_path / "b.png", exposure=2)
-    with pytest.raises(abbe.OptionsError, match="an exposure is a finite number of stops"):
-        image.to_png(tmp_path / "c.png", exposure=float("nan"))
+    for exposure, said in [(float("nan"), "an exposure is a finite number of"), (True, "exposure is a number, not True")]:
+        with pytest.raises(abbe.OptionsError, match=said):
+            image.to_png(tmp_path / "c.png", exposure=exposure)
     matplotlib = pytest.importorskip("matplotlib.image")
     dark, bright = (matplotlib.imread(tmp_path / name) for name in ("a.png", "b.png"))
     assert dark.shape == (12, 20, 3) and (bright >= dark).all() and bright.mean() > dark.mean()
@@ -347,6 +348,11 @@ def test_settings_replace_values_and_options_settings():
         ({"samples": True}, "samples is a whole number from 1 to 2**32 - 1, not True"),
         ({"error": True}, "error is a number, not True"),
         ({"overscan": True}, "overscan is one or four whole numbers"),
+        ({"overscan": (True, 0, 0, 0)}, "overscan is one or four whole numbers"),
+        ({"crop": (0, 0, True, True)}, "crop is four whole numbers: first column, first row, width and height, not (0, 0, T"),
+        ({"error": np.True_}, "error is a number, not "),
+        ({"time": np.True_}, "time is a number of seconds above 0"),
+        ({"set": {"": 1}}, '"" is no path of a key'),
         ({"seed": -1}, "seed is a whole number from 0 to 2**64 - 1, not -1"),
         ({"crop": (1, 2)}, "crop is four whole numbers: first column, first row, width and height, not (1, 2)"),
         ({"layers": [3]}, "layers is a list of names, not [3]"),
@@ -385,6 +391,12 @@ def test_options_that_are_wrong_say_what_to_do(options, said):
         (lambda: abbe.diff("a.exr", 3), "a.exr|an image is the path of a file or folder, not 3"),
         (lambda: abbe.catalog.glass(3), "the name of a glass is a text, not 3"),
         (lambda: abbe.diff(abbe.render(SCENE), abbe.render(SCENE), layer=3), "layer is a text, not 3"),
+        (lambda: abbe.render(SCENE)[0, 0], r"the name of a layer is a text, not \(0, 0\)"),
+        (lambda: abbe.render(SCENE, spectral=True).spectrum(True, 0), "x is a whole number, not True"),
+        (lambda: abbe.render(SCENE, spectral=True).spectrum(0, 1.5), "y is a whole number, not 1.5"),
+        (lambda: abbe.render("[camera]\nposition = [0, 0, 5]"), "tomllib.loads makes a dict of its text"),
+        (lambda: pickle.dumps(abbe.render(SCENE)), "an image cannot be pickled: send its arrays, such as image.rgb"),
+        (lambda: pickle.dumps(abbe.Scene(SCENE)), "a scene cannot be pickled: send the path or the dict"),
     ],
 )
 def test_arguments_of_another_type_are_named(ask, said):
@@ -551,8 +563,9 @@ def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):
     path = tmp_path / "b.exr"
     b.write_exr(path)
     assert abbe.diff(a, path).relative_mse == noise.relative_mse == abbe.diff(a, abbe.read_exr(path)).relative_mse
-    with pytest.raises(abbe.OptionsError, match="a tolerance is a finite number, 0 or more"):
-        abbe.diff(a, b, tolerance=-1)
+    for tolerance, said in [(-1, "a tolerance is a finite number, 0 or more"), (True, "tolerance is a number, not True")]:
+        with pytest.raises(abbe.OptionsError, match=said):
+            abbe.diff(a, b, tolerance=tolerance)
     part = abbe.diff(a, abbe.render(SCENE, samples=256, layers=["variance"], seed=1, crop=(3, 2, 5, 4)))
     assert part.is_part and part.is_equal and part.absolute.shape == (4, 5) and not noise.is_part
     with pytest.raises(abbe.OptionsError, match="images of one size can be compared where both have pixels"):

@@ -29,7 +29,7 @@ class ExrImage(Layers):
 
         Raises `KeyError` with the nearest name if there is none.
         """
-        return np.asarray(self._core.plane(name))
+        return np.asarray(self._core.plane(_arguments.text("the name of a layer", name)))
 
     @property
     def format(self) -> tuple[int, int]:
@@ -109,5 +109,6 @@ def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float |
     Raises `OptionsError` if they cannot be compared, as of other sizes.
     """
     name = None if layer is None else _arguments.text("layer", layer)
-    found = _abbe.diff(_file(a), _file(b), name, tolerance)
+    most = None if tolerance is None else _arguments.number("tolerance", tolerance)
+    found = _abbe.diff(_file(a), _file(b), name, most)
     return Difference(**{**found, "absolute": np.asarray(found["absolute"])})

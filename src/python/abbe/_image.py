@@ -44,7 +44,7 @@ class Image(Layers):
 
         Raises `KeyError` if the image has no such layer, with what to do.
         """
-        return np.asarray(self._core.plane(name))
+        return np.asarray(self._core.plane(_arguments.text("the name of a layer", name)))
 
     @cached_property
     def stats(self) -> dict[str, Any]:
@@ -74,9 +74,10 @@ class Image(Layers):
     def stokes_spectra(self) -> npt.NDArray[np.float32] | None:
         """S1, S2 and S3 of all pixels in the bands of `spectra`, height x width x 3 x bands, per nm; S0 is its radiance.
 
-        None unless both are asked for: Stokes vectors by `film.stokes = true` in the scene, and `spectral=True`. S1 is
-        light polarized along the image's rows less that along its columns, S2 the same along the diagonal that rises to
-        the right and across it, S3 what turns right, seen toward the scene, less what turns left.
+        None unless both are asked for: `spectral=True`, and Stokes vectors, by `film.stokes = true` in the scene or by
+        layers such as `"S1"`. S1 is light polarized along the image's rows less that along its columns, S2 the same
+        along the diagonal that rises to the right and across it, S3 what turns right, seen toward the scene, less what
+        turns left.
         """
         stokes = self._core.stokes_spectra()
         return None if stokes is None else np.asarray(stokes)
@@ -88,6 +89,7 @@ class Image(Layers):
         """
         if self._spectra is None:
             raise ValueError("the image has no spectra: ask for them with spectral=True")
+        x, y = _arguments.whole("x", x), _arguments.whole("y", y)
         if not (0 <= x < self.width and 0 <= y < self.height):
             raise IndexError(f"there is no pixel ({x}, {y}) in {self.width} x {self.height}")
         return Spectrum(self._spectra.wavelengths_nm, self._spectra.radiance[y, x])
