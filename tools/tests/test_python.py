@@ -389,6 +389,7 @@ def test_options_that_are_wrong_say_what_to_do(options, said):
         (lambda: abbe.render(SCENE).write_exr(None), "path is the path of a file or folder, not None"),
         (lambda: abbe.read_exr(None), "path is the path of a file or folder, not None"),
         (lambda: abbe.diff("a.exr", 3), "a.exr|an image is the path of a file or folder, not 3"),
+        (lambda: abbe.diff(3, "a.exr"), "an image is an abbe.Image, an abbe.ExrImage or the path of a file, not 3"),
         (lambda: abbe.catalog.glass(3), "the name of a glass is a text, not 3"),
         (lambda: abbe.diff(abbe.render(SCENE), abbe.render(SCENE), layer=3), "layer is a text, not 3"),
         (lambda: abbe.render(SCENE)[0, 0], r"the name of a layer is a text, not \(0, 0\)"),

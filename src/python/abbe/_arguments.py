@@ -12,12 +12,12 @@ from ._errors import OptionsError
 Path = Union[str, bytes, "os.PathLike[str]"]
 
 
-def path(name: str, value: Any) -> str:
-    """The path that `value` is."""
+def path(name: str, value: Any, wanted: str = "the path of a file or folder") -> str:
+    """The path that `value` is, which is `wanted`."""
     try:
         return os.fsdecode(value)
     except TypeError:
-        raise TypeError(f"{name} is the path of a file or folder, not {_shown(value)}") from None
+        raise TypeError(f"{name} is {wanted}, not {_shown(value)}") from None
 
 
 def text(name: str, value: Any) -> str:

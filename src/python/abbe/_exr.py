@@ -95,7 +95,10 @@ def read_exr(path: Path) -> ExrImage:
 def _file(picture: Picture) -> _abbe.Exr:
     if isinstance(picture, ExrImage):
         return picture._core
-    return _abbe.Exr.of(picture._core) if isinstance(picture, Image) else _abbe.Exr.read(_arguments.path("an image", picture))
+    if isinstance(picture, Image):
+        return _abbe.Exr.of(picture._core)
+    wanted = "an abbe.Image, an abbe.ExrImage or the path of a file"
+    return _abbe.Exr.read(_arguments.path("an image", picture, wanted))
 
 
 def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float | None = None) -> Difference:
