@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A failure, as it is told to the person who ran the command.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 pub enum Error {
     /// The scene does not mean anything that could be rendered: its mistakes, in the order of the file.
     #[error("{}", told(.0))]
     Scene(Vec<Diagnostic>),
-    /// The command line asks for something impossible.
+    /// Something impossible is asked for, as on a command line.
     #[error("{message}")]
     Arguments {
         /// What is wrong.
@@ -62,6 +62,16 @@ impl Error {
         match self {
             Self::Scene(_) | Self::Arguments { .. } => 2,
             Self::Io { .. } | Self::Decode { .. } | Self::Encode { .. } => 1,
+        }
+    }
+}
+
+/// What a program says whose `main` answers it, and a test that takes it for none: the words, and what to do.
+impl fmt::Debug for Error {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Arguments { message, help: Some(help) } => write!(formatter, "{message} ({help})"),
+            other => write!(formatter, "{other}"),
         }
     }
 }

@@ -21,8 +21,9 @@
 //! # Ok::<(), abbe::Error>(())
 //! ```
 //!
-//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`Rendering`] says its plan and
-//! its progress. The rooms below are open as well: a plan without a render, a glass's index, one ray.
+//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`scene::Source`] puts other
+//! values into a scene, such as those of a frame or of a step of a sweep. [`Rendering`] says its plan and its progress.
+//! The rooms below are open as well: a plan without a render, a glass's index, one ray.
 //!
 //! ```text
 //! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR

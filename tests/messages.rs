@@ -134,6 +134,19 @@ fn the_base_scene_itself_is_valid() {
 }
 
 #[test]
+fn a_program_whose_main_fails_says_what_a_person_is_told() {
+    let wrong = |scene: abbe::Result<abbe::Scene>| format!("{:?}", scene.expect_err("it is wrong"));
+    let told = "there is no scene file absent.toml (a scene is a TOML file, such as scene.toml)";
+    assert_eq!(wrong(abbe::Scene::read("absent.toml")), told);
+    let told = wrong(abbe::Scene::parse(&BASE.replace("width = 4", "widht = 4"), ""));
+    assert!(
+        told.starts_with("scene.toml:") && told.ends_with(": unknown key `widht` (did you mean `width`?)"),
+        "{told}"
+    );
+    assert_eq!(told.lines().count(), 1);
+}
+
+#[test]
 fn unknown_keys_names_and_kinds_are_told_with_the_nearest_right_one() {
     check("keys.txt", 65);
 }

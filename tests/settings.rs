@@ -125,6 +125,10 @@ fn a_variable_stands_for_its_value_wherever_that_is_meant() {
     assert_eq!(shown(with(&text, &["paint={rgb=[0.5, 0.4, 0.3]}"])), shown(with(&written, &[])));
     // A setting may use a variable.
     assert_eq!(with(&text, &["film.width=\"$height\""]).film.width, 3);
+    // The number of a frame is one that no scene has to give.
+    let text = SCENE.replace("vertical_fov = 35", "vertical_fov = \"$frame\"");
+    assert_eq!(shown(with(&text, &["frame=45"])), shown(with(&text, &["set.frame=45"])));
+    assert_eq!(with(SCENE, &["frame=45"]).warnings, with(SCENE, &[]).warnings);
 }
 
 #[test]

@@ -152,6 +152,15 @@ pub(super) fn names(kind: &str) -> Vec<&'static str> {
     }
 }
 
+/// The name of an entry of the catalog; none of anything else.
+pub(super) fn name_of(value: &Bound<'_, PyAny>) -> Option<&'static str> {
+    let core = value.getattr("_core").ok()?;
+    let glass = || core.cast::<Glass>().ok().map(|glass| glass.get().name());
+    let metal = || core.cast::<Metal>().ok().map(|metal| metal.get().name());
+    let tabulated = || core.cast::<Tabulated>().ok().map(|tabulated| tabulated.get().name());
+    glass().or_else(metal).or_else(tabulated)
+}
+
 fn unknown(kind: &str, name: &str) -> PyErr {
     let full = names(kind);
     let bare = full.iter().map(|name| data::bare(name));

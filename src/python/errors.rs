@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use abbe::{Diagnostic, Error, Lines};
-use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyTypeError};
 use pyo3::prelude::*;
 
 pyo3::import_exception!(abbe._errors, OptionsError);
@@ -54,6 +54,11 @@ pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
 /// What is wrong with an argument, and what to do.
 pub(super) fn refuse<T>(message: impl Into<String>, help: &str) -> PyResult<T> {
     Err(OptionsError::new_err((message.into(), Some(help.to_owned()))))
+}
+
+/// What cannot be sent to another process, nor kept as bytes, and what can in its place.
+pub(super) fn no_pickle<T>(what: &str, help: &str) -> PyResult<T> {
+    Err(PyTypeError::new_err(format!("{what} cannot be pickled: {help}")))
 }
 
 /// A file to write, which ends as its kind does; makes its folder if that is missing.

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::errors::{output, raised, raised_of, refuse};
+use super::errors::{no_pickle, output, raised, raised_of, refuse};
 use super::image::Image;
 use super::options::stops;
 use super::plane::Plane;
@@ -96,6 +96,16 @@ impl Exr {
         output(&path, "png")?;
         let (file, of, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
         work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(raised)
+    }
+
+    /// Says what can be sent to other processes.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle("an image", "send its arrays, such as image.rgb, or the path of its file")
+    }
+
+    /// The same: nothing of it changes.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 }
 

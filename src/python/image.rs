@@ -10,7 +10,7 @@ use abbe::nearest;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 
-use super::errors::{output, raised};
+use super::errors::{no_pickle, output, raised};
 use super::options::stops;
 use super::plane::{Place, Plane};
 use super::work;
@@ -73,6 +73,19 @@ impl Image {
         Some((spectral.bands.centers_nm().collect(), Plane::of(self.image.clone(), place)))
     }
 
+    /// S1, S2 and S3 of all pixels in the bands of their spectra.
+    fn stokes_spectra(&self) -> Option<Plane> {
+        let film = self.image.film();
+        let spectral = film.spectral.as_ref().filter(|spectral| spectral.has_stokes)?;
+        let (bands, numbers, size) = (spectral.bands.count(), spectral.numbers(), size_of::<f32>());
+        let mut place = packed(film, &spectral.values, numbers, bands..numbers);
+        place.shape.truncate(2);
+        place.strides.truncate(2);
+        place.shape.extend([spectral.components() - 1, bands]);
+        place.strides.extend([bands * size, size]);
+        Some(Plane::of(self.image.clone(), place))
+    }
+
     /// Writes the linear image; answers how many values were too large for 16 bits.
     fn write_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<u64> {
         output(&path, "exr")?;
@@ -98,6 +111,16 @@ impl Image {
         output(&path, "png")?;
         let (image, stops) = (self.image.clone(), stops(exposure)?);
         work::run(py, move || image.write_png(path, stops))?.map_err(raised)
+    }
+
+    /// Says what can be sent to other processes.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle("an image", "send its arrays, such as image.rgb, or write it to a file")
+    }
+
+    /// The same: nothing of it changes.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 }
 

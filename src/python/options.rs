@@ -28,9 +28,7 @@ pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
         time: maybe(given, "time", |value| time("time", value))?,
         seed: number(given, "seed", "a whole number from 0 to 2**64 - 1")?,
         overscan: maybe(given, "overscan", overscan)?,
-        crop: get(given, "crop", "four whole numbers: first column, first row, width and height")?
-            .map(crop)
-            .transpose()?,
+        crop: maybe(given, "crop", crop)?,
         layers: maybe(given, "layers", layers)?,
         spectral: get(given, "spectral", "True or False")?.unwrap_or_default(),
         threads,
@@ -55,10 +53,15 @@ fn get<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, w
 
 /// A number that an argument says; True and False are none, though Python counts with them.
 fn number<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, wanted: &str) -> PyResult<Option<T>> {
-    match given.get_item(name)?.filter(|value| value.is_instance_of::<PyBool>()) {
+    match given.get_item(name)?.filter(is_truth) {
         Some(truth) => refuse_value(name, wanted, &truth),
         None => get(given, name, wanted),
     }
+}
+
+/// Whether it is True or False, of Python or numpy.
+fn is_truth(value: &Bound<'_, PyAny>) -> bool {
+    value.is_instance_of::<PyBool>() || value.get_type().name().is_ok_and(|name| name == "bool_" || name == "bool")
 }
 
 fn refuse_value<T>(name: &str, wanted: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
@@ -83,7 +86,7 @@ pub(super) fn stops(exposure: f64) -> PyResult<f64> {
 pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
     let found = match value.cast::<PyString>() {
         Ok(text) => duration(&text.to_cow()?),
-        Err(_) if value.is_instance_of::<PyBool>() => None,
+        Err(_) if is_truth(value) => None,
         Err(_) => value
             .extract()
             .ok()
@@ -101,16 +104,26 @@ pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
 }
 
 fn overscan(value: &Bound<'_, PyAny>) -> PyResult<Overscan> {
-    if let (Ok(pixels), false) = (value.extract::<u32>(), value.is_instance_of::<PyBool>()) {
+    if let (Ok(pixels), false) = (value.extract::<u32>(), is_truth(value)) {
         return Ok(Overscan::even(pixels));
     }
-    match value.extract::<[u32; 4]>() {
-        Ok([left, top, right, bottom]) => Ok(Overscan { left, top, right, bottom }),
-        Err(_) => refuse("overscan is one or four whole numbers of pixels", "such as 16 or (16, 8, 16, 8)"),
+    match four::<u32>(value) {
+        Some([left, top, right, bottom]) => Ok(Overscan { left, top, right, bottom }),
+        None => refuse("overscan is one or four whole numbers of pixels", "such as 16 or (16, 8, 16, 8)"),
     }
 }
 
-fn crop([left, top, width, height]: [i64; 4]) -> PyResult<Window> {
+/// Four whole numbers; True and False are none.
+fn four<'py, T: FromPyObjectOwned<'py>>(value: &Bound<'py, PyAny>) -> Option<[T; 4]> {
+    let numbers = value.extract().ok()?;
+    let has_truth = value.try_iter().ok()?.flatten().any(|number| is_truth(&number));
+    (!has_truth).then_some(numbers)
+}
+
+fn crop(value: &Bound<'_, PyAny>) -> PyResult<Window> {
+    let Some([left, top, width, height]) = four::<i64>(value) else {
+        return refuse_value("crop", "four whole numbers: first column, first row, width and height", value);
+    };
     let read = || {
         let ([left, top], [width, height]) = ([left, top].map(i32::try_from), [width, height].map(u32::try_from));
         Some(Window { left: left.ok()?, top: top.ok()?, width: width.ok()?, height: height.ok()? })

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
-use super::errors::{raised, raised_of, refuse};
+use super::errors::{no_pickle, raised, raised_of, refuse};
 use super::{text, work};
 
 /// The same error, in which mistakes in settings, of which each has a line, are told by their keys.
@@ -39,7 +39,7 @@ impl Scene {
         let (mut given, mut keys) = (Vec::new(), Vec::<String>::new());
         for (key, value) in settings.into_iter().flatten() {
             let key: String = key.extract()?;
-            if key.chars().any(|letter| letter == '=' || letter.is_control()) {
+            if key.is_empty() || key.chars().any(|letter| letter == '=' || letter.is_control()) {
                 return refuse(
                     format!("{key:?} is no path of a key"),
                     "such as \"film.width\" or \"object.ball.material\"",
@@ -86,5 +86,15 @@ impl Scene {
     #[getter]
     fn size(&self) -> (u32, u32) {
         (self.0.film.width, self.0.film.height)
+    }
+
+    /// Says what can be sent to other processes.
+    fn __reduce__(&self) -> PyResult<()> {
+        no_pickle("a scene", "send the path or the dict that it is made of")
+    }
+
+    /// The same: nothing of it changes.
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 }

@@ -9,6 +9,7 @@ use abbe::{Diagnostic, Error};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 
+use super::catalog;
 use super::errors::raised;
 
 /// Most dicts and lists within one another: more than a scene has, and fewer than TOML may have.
@@ -159,6 +160,10 @@ impl Writer {
         }
         if let Ok(table) = value.cast::<PyMapping>() {
             return self.table(table);
+        }
+        if let Some(name) = catalog::name_of(value) {
+            self.quoted(name);
+            return Ok(());
         }
         if is("__index__") {
             return self.deeper(&value.call_method0("__index__")?);

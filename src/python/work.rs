@@ -1,19 +1,24 @@
 //! Work that takes its time: without the lock of the interpreter, and so that Ctrl-C is heard.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Mutex;
+use std::process;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Mutex, OnceLock};
 use std::thread::Builder;
 use std::time::Duration;
 
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::errors::defect;
+use super::errors::{defect, raised};
 
 /// How long Python waits for its turn at most.
 const TICK: Duration = Duration::from_millis(50);
 /// Bytes of a thread's stack: as many as a command has.
 const STACK: usize = 8 << 20;
+/// The process that worked first, whose threads share work. One that is forked of it has only the memory of them, and
+/// would wait for them without end.
+static FIRST: OnceLock<u32> = OnceLock::new();
 
 /// Work on a thread of its own.
 pub(super) struct Work<T> {
@@ -35,7 +40,12 @@ impl<T: Send + 'static> Work<T> {
     /// If there can be no thread.
     pub(super) fn begin(work: impl FnOnce() -> T + Send + 'static) -> PyResult<Self> {
         let (tell, answer) = sync_channel(1);
+        let threads = threads_of_forked()?;
         let answered = move || {
+            let work = || match threads {
+                Some(threads) => threads.install(work),
+                None => work(),
+            };
             // Whoever does not wait any longer need not know.
             let _ = tell.send(catch_unwind(AssertUnwindSafe(work)).ok());
         };
@@ -72,4 +82,16 @@ impl<T: Send + 'static> Work<T> {
             Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(defect("it panicked, as stderr says")),
         }
     }
+}
+
+/// Threads for one piece of work in a process that was forked of the first one; none in that, which has its own.
+///
+/// # Errors
+/// If there can be no threads.
+fn threads_of_forked() -> PyResult<Option<ThreadPool>> {
+    if *FIRST.get_or_init(process::id) == process::id() {
+        return Ok(None);
+    }
+    let threads = ThreadPoolBuilder::new().stack_size(STACK).build();
+    threads.map(Some).map_err(|error| raised(error.into()))
 }

@@ -3,6 +3,7 @@
 pytest tools/tests/test_python.py
 """
 
+import copy
 import json
 import os
 import pickle
@@ -126,9 +127,22 @@ def test_spectra_are_those_of_the_file(tmp_path):
         image.spectrum(20, 0)
     with pytest.raises(ValueError, match="spectral=True"):
         abbe.render(SCENE).spectrum(0, 0)
+    assert image.stokes_spectra is None and abbe.render(SCENE, layers=["S1", "S2", "S3"]).stokes_spectra is None
     # A single band is one still.
     image = abbe.render(with_(film={**SCENE["film"], "spectral": {"from": 550, "to": 550, "step": 10}}))
     assert image.spectra.radiance.shape == (12, 20, 1) and image.spectrum(3, 3).radiance.shape == (1,)
+
+
+def test_stokes_spectra_are_those_of_the_file(tmp_path):
+    glass = with_(material={"matte": {"dielectric": {"index": "N-SF11"}}})
+    image = abbe.render(glass, spectral=True, set={"film.stokes": True, "film.spectral": {"from": 400, "to": 700, "step": 100}})
+    stokes = image.stokes_spectra
+    assert stokes.shape == (12, 20, 3, 4) and np.abs(stokes[..., :2, :]).max() > 0.01 and not stokes.flags.writeable
+    image.write_spectral_exr(tmp_path / "a.exr")
+    file = render.read(tmp_path / "a.exr").channels
+    for number in range(3):
+        names = sorted(name for name in file if name.startswith(f"S{number + 1}."))
+        assert np.array_equal(stokes[:, :, number], np.stack([file[name] for name in names], axis=-1))
 
 
 def test_what_is_known_of_a_render_is_what_json_says(tmp_path):
@@ -274,13 +288,37 @@ def test_threads_of_python_render_at_once_and_others_go_on():
     assert ticks and all(np.array_equal(a, b) for a, b in zip(alone, together, strict=True))
 
 
+FORKED = """
+import json, os, sys
+import abbe
+image = abbe.render(json.loads(sys.argv[1]))
+image.write_exr("parent.exr")
+child = os.fork()
+if not child:
+    abbe.render(json.loads(sys.argv[1])).write_exr("child.exr")
+    os._exit(0)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing forks here")
+def test_a_forked_process_renders_and_writes_as_well(tmp_path):
+    # A file of several blocks, which threads pack together.
+    scene = tomllib.loads(TURNTABLE.read_text("utf-8")) | {"film": {"width": 400, "height": 300}, "render": {"samples": 1}}
+    ask = [sys.executable, "-c", FORKED, json.dumps(scene)]
+    run = subprocess.run(ask, capture_output=True, text=True, timeout=60, cwd=tmp_path)
+    assert run.stdout == "0\n", run.stderr
+    assert (tmp_path / "parent.exr").read_bytes() == (tmp_path / "child.exr").read_bytes()
+
+
 def test_pictures_show_in_notebooks(tmp_path):
     image = abbe.render(SCENE)
     image.to_png(tmp_path / "a.png")
     assert image._repr_png_() == (tmp_path / "a.png").read_bytes() and image._repr_png_().startswith(b"\x89PNG\r\n")
     image.to_png(tmp_path / "b.png", exposure=2)
-    with pytest.raises(abbe.OptionsError, match="an exposure is a finite number of stops"):
-        image.to_png(tmp_path / "c.png", exposure=float("nan"))
+    for exposure, said in [(float("nan"), "an exposure is a finite number of"), (True, "exposure is a number, not True")]:
+        with pytest.raises(abbe.OptionsError, match=said):
+            image.to_png(tmp_path / "c.png", exposure=exposure)
     matplotlib = pytest.importorskip("matplotlib.image")
     dark, bright = (matplotlib.imread(tmp_path / name) for name in ("a.png", "b.png"))
     assert dark.shape == (12, 20, 3) and (bright >= dark).all() and bright.mean() > dark.mean()
@@ -310,6 +348,11 @@ def test_settings_replace_values_and_options_settings():
         ({"samples": True}, "samples is a whole number from 1 to 2**32 - 1, not True"),
         ({"error": True}, "error is a number, not True"),
         ({"overscan": True}, "overscan is one or four whole numbers"),
+        ({"overscan": (True, 0, 0, 0)}, "overscan is one or four whole numbers"),
+        ({"crop": (0, 0, True, True)}, "crop is four whole numbers: first column, first row, width and height, not (0, 0, T"),
+        ({"error": np.True_}, "error is a number, not "),
+        ({"time": np.True_}, "time is a number of seconds above 0"),
+        ({"set": {"": 1}}, '"" is no path of a key'),
         ({"seed": -1}, "seed is a whole number from 0 to 2**64 - 1, not -1"),
         ({"crop": (1, 2)}, "crop is four whole numbers: first column, first row, width and height, not (1, 2)"),
         ({"layers": [3]}, "layers is a list of names, not [3]"),
@@ -346,8 +389,15 @@ def test_options_that_are_wrong_say_what_to_do(options, said):
         (lambda: abbe.render(SCENE).write_exr(None), "path is the path of a file or folder, not None"),
         (lambda: abbe.read_exr(None), "path is the path of a file or folder, not None"),
         (lambda: abbe.diff("a.exr", 3), "a.exr|an image is the path of a file or folder, not 3"),
+        (lambda: abbe.diff(3, "a.exr"), "an image is an abbe.Image, an abbe.ExrImage or the path of a file, not 3"),
         (lambda: abbe.catalog.glass(3), "the name of a glass is a text, not 3"),
         (lambda: abbe.diff(abbe.render(SCENE), abbe.render(SCENE), layer=3), "layer is a text, not 3"),
+        (lambda: abbe.render(SCENE)[0, 0], r"the name of a layer is a text, not \(0, 0\)"),
+        (lambda: abbe.render(SCENE, spectral=True).spectrum(True, 0), "x is a whole number, not True"),
+        (lambda: abbe.render(SCENE, spectral=True).spectrum(0, 1.5), "y is a whole number, not 1.5"),
+        (lambda: abbe.render("[camera]\nposition = [0, 0, 5]"), "tomllib.loads makes a dict of its text"),
+        (lambda: pickle.dumps(abbe.render(SCENE)), "an image cannot be pickled: send its arrays, such as image.rgb"),
+        (lambda: pickle.dumps(abbe.Scene(SCENE)), "a scene cannot be pickled: send the path or the dict"),
     ],
 )
 def test_arguments_of_another_type_are_named(ask, said):
@@ -514,8 +564,9 @@ def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):
     path = tmp_path / "b.exr"
     b.write_exr(path)
     assert abbe.diff(a, path).relative_mse == noise.relative_mse == abbe.diff(a, abbe.read_exr(path)).relative_mse
-    with pytest.raises(abbe.OptionsError, match="a tolerance is a finite number, 0 or more"):
-        abbe.diff(a, b, tolerance=-1)
+    for tolerance, said in [(-1, "a tolerance is a finite number, 0 or more"), (True, "tolerance is a number, not True")]:
+        with pytest.raises(abbe.OptionsError, match=said):
+            abbe.diff(a, b, tolerance=tolerance)
     part = abbe.diff(a, abbe.render(SCENE, samples=256, layers=["variance"], seed=1, crop=(3, 2, 5, 4)))
     assert part.is_part and part.is_equal and part.absolute.shape == (4, 5) and not noise.is_part
     with pytest.raises(abbe.OptionsError, match="images of one size can be compared where both have pixels"):
@@ -543,6 +594,31 @@ def test_the_catalog_answers_arrays():
     assert len(abbe.catalog.glasses()) > 1000 and "D65" in abbe.catalog.illuminants() and abbe.catalog.metals()
     with pytest.raises(KeyError, match="there is no glass named .*N-SF111.*did you mean"):
         abbe.catalog.glass("N-SF111")
+
+
+def test_an_entry_of_the_catalog_stands_for_its_name():
+    entries = abbe.catalog.glass("N-BK7"), abbe.catalog.illuminant("FL11"), abbe.catalog.reflectance("dark skin")
+
+    def scene(glass, light, patch):
+        return with_(
+            material={"matte": {"dielectric": {"index": glass}}, "wall": {"diffuse": {"reflectance": patch}}},
+            object=[*SCENE["object"], {"shape": {"disc": {"center": [0, 0, -2], "normal": [0, 0, 1], "radius": 3}}, "material": "wall"}],
+            light=[{"environment": {"radiance": {"illuminant": light}}}],
+        )
+
+    by_name = abbe.render(scene(*(entry.name for entry in entries))).rgb
+    assert np.array_equal(abbe.render(scene(*entries)).rgb, by_name)
+    gold = abbe.catalog.metal("gold")
+    abbe.Scene(SCENE, set={"material.matte": {"conductor": {"metal": gold}}})
+    for entry in (*entries, gold):
+        again = pickle.loads(pickle.dumps(entry))
+        assert (type(again), again.name, again.range_nm) == (type(entry), entry.name, entry.range_nm)
+
+
+def test_images_and_scenes_are_copied_by_copy():
+    image, scene = abbe.render(SCENE), abbe.Scene(SCENE)
+    one, other = copy.deepcopy((image, scene))
+    assert np.array_equal(one.rgb, image.rgb) and repr(other) == repr(scene) and one.stats == image.stats
 
 
 def test_errors_can_be_sent_to_other_processes():

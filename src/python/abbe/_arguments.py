@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Callable, Mapping
 from typing import Any, Union
@@ -11,12 +12,12 @@ from ._errors import OptionsError
 Path = Union[str, bytes, "os.PathLike[str]"]
 
 
-def path(name: str, value: Any) -> str:
-    """The path that `value` is."""
+def path(name: str, value: Any, wanted: str = "the path of a file or folder") -> str:
+    """The path that `value` is, which is `wanted`."""
     try:
         return os.fsdecode(value)
     except TypeError:
-        raise TypeError(f"{name} is the path of a file or folder, not {_shown(value)}") from None
+        raise TypeError(f"{name} is {wanted}, not {_shown(value)}") from None
 
 
 def text(name: str, value: Any) -> str:
@@ -26,9 +27,33 @@ def text(name: str, value: Any) -> str:
     return value
 
 
+def whole(name: str, value: Any) -> int:
+    """The whole number that `value` is; True and False are none, though Python counts with them."""
+    try:
+        if not _is_truth(value):
+            return operator.index(value)
+    except TypeError:
+        pass
+    raise TypeError(f"{name} is a whole number, not {_shown(value)}")
+
+
+def number(name: str, value: Any) -> float:
+    """The number that `value` is; neither a truth nor a text is one."""
+    try:
+        if not _is_truth(value) and not isinstance(value, (str, bytes)):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise OptionsError(f"{name} is a number, not {_shown(value)}", f"such as {name}=1")
+
+
+def _is_truth(value: Any) -> bool:
+    return type(value).__name__ in ("bool", "bool_")
+
+
 def truth(name: str, value: Any) -> bool:
     """The truth that `value` is, of Python or numpy."""
-    if type(value).__name__ not in ("bool", "bool_"):
+    if not _is_truth(value):
         raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) says all arguments")
     return bool(value)
 

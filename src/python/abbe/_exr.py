@@ -29,7 +29,7 @@ class ExrImage(Layers):
 
         Raises `KeyError` with the nearest name if there is none.
         """
-        return np.asarray(self._core.plane(name))
+        return np.asarray(self._core.plane(_arguments.text("the name of a layer", name)))
 
     @property
     def format(self) -> tuple[int, int]:
@@ -95,7 +95,10 @@ def read_exr(path: Path) -> ExrImage:
 def _file(picture: Picture) -> _abbe.Exr:
     if isinstance(picture, ExrImage):
         return picture._core
-    return _abbe.Exr.of(picture._core) if isinstance(picture, Image) else _abbe.Exr.read(_arguments.path("an image", picture))
+    if isinstance(picture, Image):
+        return _abbe.Exr.of(picture._core)
+    wanted = "an abbe.Image, an abbe.ExrImage or the path of a file"
+    return _abbe.Exr.read(_arguments.path("an image", picture, wanted))
 
 
 def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float | None = None) -> Difference:
@@ -109,5 +112,6 @@ def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float |
     Raises `OptionsError` if they cannot be compared, as of other sizes.
     """
     name = None if layer is None else _arguments.text("layer", layer)
-    found = _abbe.diff(_file(a), _file(b), name, tolerance)
+    most = None if tolerance is None else _arguments.number("tolerance", tolerance)
+    found = _abbe.diff(_file(a), _file(b), name, most)
     return Difference(**{**found, "absolute": np.asarray(found["absolute"])})

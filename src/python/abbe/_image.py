@@ -44,7 +44,7 @@ class Image(Layers):
 
         Raises `KeyError` if the image has no such layer, with what to do.
         """
-        return np.asarray(self._core.plane(name))
+        return np.asarray(self._core.plane(_arguments.text("the name of a layer", name)))
 
     @cached_property
     def stats(self) -> dict[str, Any]:
@@ -70,6 +70,18 @@ class Image(Layers):
         """The spectra of all pixels, radiance height x width x bands; None unless asked for by `spectral=True`."""
         return self._spectra
 
+    @property
+    def stokes_spectra(self) -> npt.NDArray[np.float32] | None:
+        """S1, S2 and S3 of all pixels in the bands of `spectra`, height x width x 3 x bands, per nm; S0 is its radiance.
+
+        None unless both are asked for: `spectral=True`, and Stokes vectors, by `film.stokes = true` in the scene or by
+        layers such as `"S1"`. S1 is light polarized along the image's rows less that along its columns, S2 the same
+        along the diagonal that rises to the right and across it, S3 what turns right, seen toward the scene, less what
+        turns left.
+        """
+        stokes = self._core.stokes_spectra()
+        return None if stokes is None else np.asarray(stokes)
+
     def spectrum(self, x: int, y: int) -> Spectrum:
         """The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left of what was made.
 
@@ -77,6 +89,7 @@ class Image(Layers):
         """
         if self._spectra is None:
             raise ValueError("the image has no spectra: ask for them with spectral=True")
+        x, y = _arguments.whole("x", x), _arguments.whole("y", y)
         if not (0 <= x < self.width and 0 <= y < self.height):
             raise IndexError(f"there is no pixel ({x}, {y}) in {self.width} x {self.height}")
         return Spectrum(self._spectra.wavelengths_nm, self._spectra.radiance[y, x])

@@ -48,7 +48,7 @@ class Layers:
 
     def to_png(self, path: Path, exposure: float = 0.0) -> None:
         """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the image has."""
-        self._core.write_png(_arguments.path("path", path), exposure)
+        self._core.write_png(_arguments.path("path", path), _arguments.number("exposure", exposure))
 
     def _repr_png_(self) -> bytes:
         return self._core.png(0.0)

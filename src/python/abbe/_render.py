@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -73,9 +74,10 @@ class Scene:
     """A scene that was read and checked: to render it several times, or to know that it is right.
 
     `source` is the path of a scene file, or a dict with the keys of one. A dict may hold numbers, texts, dicts, lists,
-    tuples, paths, and numbers and arrays of numpy. Files that it names are looked for in `folder`. `set` puts values in
-    the place of the scene's by the paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`;
-    entries of lists go by their name or by their number from 1, and one word sets the scene's variable.
+    tuples, paths, numbers and arrays of numpy, and entries of the catalog, which stand for their names. Files that it
+    names are looked for in `folder`; an image is a file, and no array. `set` puts values in the place of the scene's by
+    the paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`; entries of lists go by their
+    name or by their number from 1. One word sets the scene's variable: `{"frame": 7}` is what `--frame 7` is.
 
     Raises `SceneError` with all its mistakes, and `FileNotFoundError` if there is no such file.
     """
@@ -85,6 +87,9 @@ class Scene:
     ) -> None:
         settings = None if set is None else _arguments.settings(set)
         source = os.fsdecode(source) if isinstance(source, bytes) else source
+        if isinstance(source, str) and "\n" in source and not os.path.exists(source):
+            message = "a scene is the path of a file or a dict: tomllib.loads makes a dict of its text"
+            raise FileNotFoundError(errno.ENOENT, message)
         self._core = _abbe.Scene.compile(source, _arguments.path("folder", folder), settings)
 
     def __repr__(self) -> str:
@@ -174,9 +179,11 @@ def render(
     - `checkpoint`: a file that keeps what is done, `every` so many seconds, when it is stopped, and at the end.
     - `resume`: goes on from the checkpoint, if it is there, to the same image or to more samples.
 
-    Ctrl-C stops a render within a second, by `KeyboardInterrupt`, or when its checkpoint is written. Processes that
-    are forked after a render, a plan, a comparison or a written file have none of its threads, and would wait for
-    them: start them by `spawn`, and let them return arrays or write files, as an image cannot be pickled.
+    Ctrl-C stops a render within a second, by `KeyboardInterrupt`, or when its checkpoint is written. Other processes
+    may render as well, also those that are forked while nothing is rendered. Let them return arrays or write files, as
+    an image cannot be pickled.
+
+    What its author should know of the scene and of the image is in `Image.stats["warnings"]`, a list of sentences.
 
     Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
     `RenderError` if a file fails.

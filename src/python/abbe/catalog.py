@@ -57,6 +57,9 @@ class _Entry:
         """The wavelengths in nm between which it is known."""
         return self._core.range_nm
 
+    def __reduce__(self) -> tuple[type[_Entry], tuple[str]]:
+        return type(self), (self.name,)
+
     def __repr__(self) -> str:
         return f"<abbe.catalog.{type(self).__name__} {self.name}>"
 

@@ -10,7 +10,7 @@ use super::include::INCLUDE;
 use super::mistake::Mistake;
 use super::suggest::suggestion;
 use super::tree::{Key, Node, parsed, word};
-use super::variables::SET;
+use super::variables::{FRAME, SET};
 use crate::error::nearest;
 
 /// A key as a path of words, and its value.
@@ -34,7 +34,7 @@ pub(in crate::scene) fn set<'d>(
     if let [name] = path.as_slice() {
         let is_value = !value.get_ref().is_table() && !value.get_ref().is_array();
         match variables(root) {
-            Some(variables) if variables.contains_key(word(name)) => {
+            variables if word(name) == FRAME || variables.is_some_and(|known| known.contains_key(word(name))) => {
                 path.insert(0, Spanned::new(name.span(), SET.into()));
             }
             variables if is_value && !root.contains_key(word(name)) && !sections.contains(&word(name)) => {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use toml::de::{DeArray, DeValue};
 
+use super::tree::Node;
 use crate::error::{ends_in, nearest};
 use crate::film::layer_elsewhere;
 use crate::scene::share;
@@ -352,14 +353,25 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         }
         _ if wanted == TABLE && SHORT.iter().any(|short| short.0 == key) => in_short(key, value, written),
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
+        DeValue::Array(_) if key == "image" => Some("write the name of its file, such as \"wood.png\"".into()),
         DeValue::Table(_) if key == "roughness" => {
             Some("it is the same all over: two materials `mix` by an image".into())
         }
-        DeValue::Array(_) if wanted.starts_with("a number, a catalog name") => {
-            Some(format!("write {{ rgb = {written} }} for a color"))
-        }
+        DeValue::Array(entries) if wanted.starts_with("a number, a catalog name") => spectrum_of(entries, written),
         DeValue::Table(_) if key == "material" => Some("define it as [material.NAME] and write \"NAME\" here".into()),
         DeValue::Table(_) if wanted == "a list" => Some("put it in brackets: [{ .. }]".into()),
         _ => None,
     }
+}
+
+/// How to write what a list seems to mean that stands in place of a spectrum.
+fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
+    let is_number = |entry: &Node| matches!(entry.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
+    let are_numbers = |list: &DeArray, count: usize| list.len() == count && list.iter().all(is_number);
+    if are_numbers(entries, 3) {
+        return Some(format!("write {{ rgb = {written} }} for a color"));
+    }
+    let is_pair = |entry: &Node| entry.get_ref().as_array().is_some_and(|pair| are_numbers(pair, 2));
+    (!entries.is_empty() && entries.iter().all(is_pair))
+        .then(|| "write { samples = [[wavelength in nm, value], ..] } for a spectrum".into())
 }

@@ -12,7 +12,7 @@ use crate::error::nearest;
 /// The section of the variables.
 pub(in crate::scene) const SET: &str = "set";
 /// The variable that the number of a frame sets.
-const FRAME: &str = "frame";
+pub(super) const FRAME: &str = "frame";
 
 /// The variables of a scene.
 #[derive(Default)]
