@@ -2,6 +2,7 @@
 
 mod edges;
 mod files;
+mod lobes;
 mod mattes;
 mod mitchell;
 mod overscan;

@@ -464,7 +464,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
     fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
-            let apart = self.sensor.layers.is_some() && self.walker.world.layers.tell_photons_apart();
+            let is_told = self.sensor.layers.is_some();
+            // At the first surface each photon says for itself by which lobe it comes, and whether it does so straight.
+            let apart = is_told && (path.bounces == 0 || self.walker.world.layers.tell_photons_apart());
             let excitation = self.excitation(path);
             let excitation = excitation.as_deref();
             let around = Gathering { world: self.walker.world, path, at, excitation };

@@ -94,12 +94,10 @@ pub fn show<const N: usize, P: Polarization<N>>(
 
 /// Adds a photon that the camera sees to the row of its pixel, which holds means.
 fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
-    let Splat { light, rgb, dispersed, early, caught, first, weight, .. } = *splat;
+    let Splat { light, rgb, bounces, dispersed, early, caught, first, weight, .. } = *splat;
     if caught {
         return world.layers.catch_photon(row, rgb);
     }
-    // Smooth surfaces mirrored or refracted it, and the last one scattered it to the camera.
-    let bounces = 2;
     let light = Some(light);
     world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
     if let Some(stokes) = &splat.stokes {

@@ -163,7 +163,8 @@ pub fn gather<const N: usize, P: Polarization<N>>(
 }
 
 impl<const N: usize, P: Polarization<N>> Gathering<'_, N, P> {
-    /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least.
+    /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least,
+    /// as they do wherever the path has left one.
     fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
         let (first, bounces) = (self.path.first, self.path.bounces + 2);
         Contribution { light: None, found: contribution::Found::Gathered, rgb, moved, first, bounces, dispersed: false }

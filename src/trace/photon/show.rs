@@ -33,6 +33,8 @@ pub struct Splat {
     pub bands: Option<Arc<[f32]>>,
     pub weight: f64,
     pub light: LightId,
+    /// How often surfaces scattered, mirrored or refracted it on its way.
+    pub bounces: u32,
     /// Whether its wavelengths parted on the way.
     pub dispersed: bool,
     /// Whether the photon is of the first half of those sent with it.
@@ -229,8 +231,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let Start { light, early, .. } = *self.landing.start;
         let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
-        let caught = self.sight == Sight::ShadowCatcher;
-        Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, dispersed, early, caught, first }
+        let (bounces, caught) = (self.landing.path.surfaces(), self.sight == Sight::ShadowCatcher);
+        Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
     }
 
     /// Adds a splat to all pixels that it reaches.
