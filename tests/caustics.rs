@@ -9,6 +9,7 @@ mod blur;
 mod edges;
 mod gathered;
 mod known;
+mod large;
 mod materials;
 mod polarization;
 mod wavelengths;

@@ -19,6 +19,9 @@ const FEWEST: f64 = 65_536.0;
 /// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
 const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
 const MOST_OF_A_SAMPLE: f64 = 4.0;
+/// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is seen
+/// through glass.
+const NOTHING: f64 = 0.01;
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
@@ -28,13 +31,15 @@ const SIDE: u32 = 24;
 pub(super) struct Shown {
     pub(super) caustics: Option<Caustics>,
     pub(super) why: Vec<String>,
+    /// Whether photons are not gathered either, as they do not pay where the camera would see them.
+    pub(super) settled: bool,
     /// A world whose photons have learned where to go.
     pub(super) taught: Option<World>,
 }
 
 impl Shown {
-    fn not(why: Vec<String>) -> Self {
-        Self { caustics: None, why, taught: None }
+    fn not(why: Vec<String>, settled: bool) -> Self {
+        Self { caustics: None, why, settled, taught: None }
     }
 }
 
@@ -85,11 +90,14 @@ impl Caustics {
 pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     let Sources { small, mut large } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(why) => return Shown::not(why.into_iter().collect()),
+        Err(why) => return Shown::not(why.into_iter().collect(), sees_receivers(scene)),
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
     let world = piloted(unguided, LightPass { photons: of_all, lights, map: None });
+    if let Some(why) = nowhere_to_aim(scene, &world) {
+        return Shown::not(vec![why], true);
+    }
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
     let to = match targets(scene).as_slice() {
@@ -97,13 +105,6 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         many => format!("{} smooth objects", many.len()),
     };
     let mut lines = Vec::new();
-    if let Some(endless) = smooth_objects(scene).find(|&object| !is_photon_target(scene, object)) {
-        lines.push(format!(
-            "left to chance: caustics of {}, which has no end, as a quad or a disc has{}",
-            scene.objects[endless].name,
-            missing(scene)
-        ));
-    }
     if !unseen.is_empty() {
         lines.push(format!(
             "no caustic of {} in sight: none of some thousand photons toward {to} was seen",
@@ -111,7 +112,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         ));
     }
     if seen.is_empty() {
-        return Shown::not(lines);
+        return Shown::not(lines, false);
     }
     let Worth { mut photons, gain } = weigh(scene, &world);
     photons.retain(|photons| seen.iter().any(|(id, _)| photons.lights.contains(id)));
@@ -121,14 +122,34 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if sending.is_empty() {
         let (from, why) = (named(scene, &large), not_worth(gain));
         lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-        return Shown::not(lines);
+        return Shown::not(lines, gain.is_some_and(|gain| (gain - 1.0).abs() > NOTHING));
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
     }
     let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
     let caustics = Caustics { photons, from: named(scene, &sending), to, seen, gain };
-    Shown { caustics: Some(caustics), why: lines, taught: Some(world) }
+    Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
+}
+
+/// Why the photons of a world are sent nowhere, if that is so.
+fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
+    let has_end = |&object: &usize| scene.objects[object].shape.is_bounded();
+    let targets = targets(scene);
+    let name = &scene.objects[*targets.first()?].name;
+    (!world.reaches_without_end() && !targets.iter().any(has_end)).then(|| {
+        let why = format!("{name} has no end and is not seen, so photons cannot be aimed at it");
+        format!("no photon tracing: {why}{}", missing(scene))
+    })
+}
+
+/// What the photons of a world leave to chance of surfaces that have no end.
+pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String> {
+    world.method().light_pass.as_ref()?;
+    let endless = targets(scene).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
+    let where_left = if world.reaches_without_end() { ", far beyond where it is seen" } else { " and is not seen" };
+    let name = &scene.objects[endless].name;
+    Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
 }
 
 /// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing
@@ -160,13 +181,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     if targets(scene).is_empty() {
-        let why = match smooth_objects(scene).next() {
-            Some(object) => {
-                let name = &scene.objects[object].name;
-                format!("{name} has no end, so photons cannot be aimed at it, as they could at a quad or a disc")
-            }
-            None => "caustics of surfaces that are smooth only in part, such as clear coats, are left to chance".into(),
-        };
+        let why = "caustics of surfaces that are smooth only in part, such as clear coats, are left to chance";
         return Err(Some(format!("no photon tracing: {why}{}", missing(scene))));
     }
     let places = thinned(lit_places(scene), scene.lights.len());
@@ -198,7 +213,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
 /// Why a scene has no caustics, if it has none.
 fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     let mut materials = (0..scene.objects.len()).map(|object| scene.material_of(object as u32));
-    if smooth_objects(scene).next().is_none() && !materials.any(Material::is_smooth_somewhere) {
+    if targets(scene).is_empty() && !materials.any(Material::is_smooth_somewhere) {
         Some("no surface is smooth glass, a mirror or polished metal")
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
@@ -209,20 +224,13 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     }
 }
 
-/// Objects that only mirror or refract light.
-fn smooth_objects(scene: &Scene<Curve>) -> impl Iterator<Item = usize> {
-    let is_smooth =
-        |material: &Material<Curve>| !material.scatters_widely() && !matches!(material, Material::Emissive(_));
-    (0..scene.objects.len()).filter(move |&object| is_smooth(scene.material_of(object as u32)))
-}
-
-/// Objects that photons can be sent to.
+/// Objects that photons can be sent to: they only mirror or refract light.
 pub(super) fn targets(scene: &Scene<Curve>) -> Vec<usize> {
     (0..scene.objects.len()).filter(|&object| is_photon_target(scene, object)).collect()
 }
 
 /// Whether the camera sees any surface straight on which a caustic may lie.
-pub(super) fn sees_receivers(scene: &Scene<Curve>) -> bool {
+fn sees_receivers(scene: &Scene<Curve>) -> bool {
     !lit_places(scene).is_empty()
 }
 

@@ -17,9 +17,9 @@ pub(super) struct Lit {
 
 impl Lit {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let Shown { caustics, why, taught } = caustics::caustics(scene, unlit);
+        let Shown { caustics, why, settled, taught } = caustics::caustics(scene, unlit);
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
-        let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref());
+        let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref(), settled);
         // Why nothing is shown matters only where nothing is gathered either.
         let why = if shown.is_some() || light_pass.is_none() { why } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
@@ -32,7 +32,8 @@ impl Lit {
             world = world.with_light_pass(Some(LightPass { map, ..pass }));
         }
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
-        let because = reason.into_iter().chain(why).chain(why_gathered).chain(reasons).collect();
+        let left = caustics::without_end(scene, &world);
+        let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
         Self { world, because, taught }
     }
 }

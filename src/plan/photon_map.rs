@@ -1,6 +1,6 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
-use super::caustics::{sees_receivers, small_lights, targets};
+use super::caustics::{small_lights, targets};
 use super::efficiency::rounded;
 use super::words::{in_number, percent};
 use crate::scene::{AutoText, Scene};
@@ -31,17 +31,18 @@ const FEW: u64 = 4096;
 /// Fewer where they follow many rays, but never too few.
 const FEWEST_SENT: u64 = 512;
 
-/// The light pass with a map, if one is needed, and why.
+/// The light pass with a map, if one is needed, and why. It is settled that none is where photons were weighed that the
+/// camera would see straight, and do not pay.
 pub(super) fn with_map(
     scene: &Scene<Curve>,
     untaught: &World,
     shown: Option<&LightPass>,
+    settled: bool,
 ) -> (Option<LightPass>, Vec<String>) {
     let method = untaught.method();
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AutoText::Off;
-    // What is seen straight was weighed: where photons do not pay there, they are not sent for the sake of what is not.
-    if is_off || targets(scene).is_empty() || (shown.is_none() && sees_receivers(scene)) {
+    if is_off || settled || targets(scene).is_empty() {
         return as_shown();
     }
     let places = reached_places(untaught);

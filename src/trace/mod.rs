@@ -47,6 +47,7 @@ mod parallel;
 mod pass;
 mod path_start;
 mod photon;
+mod photon_focus;
 mod photon_targets;
 mod probe;
 mod replicates;

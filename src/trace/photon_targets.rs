@@ -3,19 +3,24 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
+use super::photon_focus::{Place, parts, reach};
 use crate::light::{Beam, LeSample, LightId};
 use crate::material::Material;
-use crate::math::{Ray, neighbors};
+use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
 
-/// Photons of one light toward one ball of smooth objects.
+/// Photons of one light toward one ball of smooth objects, or toward a part of it.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTarget {
     pub(super) light: LightId,
     /// How many photons are sent.
     pub(super) photons: u64,
+    /// The share of those of the whole ball; of a part, it is worth as much however small it is.
+    share: f64,
+    /// Whether it is a part of the whole before it.
+    is_part: bool,
     beam: Beam,
     /// Which of the beam's ways are worth it.
     guide: Arc<Guide>,
@@ -30,8 +35,10 @@ pub(super) struct PhotonTargets {
     pub(super) targets: Vec<PhotonTarget>,
     /// Which lights send photons.
     pub(super) lights: Vec<bool>,
-    /// Which objects they are sent to.
-    pub(super) objects: Vec<bool>,
+    /// Which objects they are sent to ..
+    objects: Vec<bool>,
+    /// .. and where to those that have no end.
+    reach: Option<Ball>,
     /// A ball around all that is finite.
     world: Ball,
     /// Photons asked for.
@@ -42,40 +49,39 @@ pub(super) struct PhotonTargets {
 /// together.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
+/// Most parts of a ball, and of all balls of all lights if that is more than one for each.
+const MOST_PARTS: usize = 6;
+const MOST_TOLD_APART: usize = 12;
 /// Balls that are held against each other.
 const MANY: usize = 4096;
 /// Share of the photons that all targets get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
 
-/// Whether photons can be sent to an object: finite, and smooth where light goes on.
+/// Whether photons can be sent to an object: it is smooth where light goes on.
 pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
     let material = scene.material_of(object as u32);
-    let smooth = !material.scatters_widely() && !matches!(material, Material::Emissive(_));
-    smooth && scene.objects[object].shape.is_bounded()
+    !material.scatters_widely() && !matches!(material, Material::Emissive(_))
 }
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, to all objects that photons can be sent to; none if there is
-    /// none, or none of the lights shines there.
-    pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], photons: u64) -> Option<Self> {
-        let objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
+    /// From some lights, given with their luminances, to all objects that photons can be sent to, of large ones mostly
+    /// to places that matter; none if there is none, or none of the lights shines there.
+    pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], places: &[Place], photons: u64) -> Option<Self> {
+        let mut objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
         let shapes = || scene.objects.iter().map(|object| &object.shape);
         let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
-        let balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
-        let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
-        let world = ball_around_all(scene)?;
-        let mut targets = Vec::new();
-        for (&(light, luminance), ball) in lights.iter().flat_map(|light| balls.iter().map(move |ball| (light, ball))) {
-            let Some(beam) = scene.lights[light].beam(ball) else { continue };
-            let flux = beam.flux * luminance;
-            if flux > 0.0 {
-                let guide = if beam.is_apart { disc.clone() } else { even.clone() };
-                targets.push(PhotonTarget { light, photons: 0, beam, guide, flux });
-            }
+        let mut balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
+        let reach = reach(places);
+        match reach {
+            Some(reach) => balls.push(reach),
+            None => objects.iter_mut().zip(shapes()).for_each(|(target, shape)| *target &= shape.is_bounded()),
         }
+        let most = (MOST_TOLD_APART / (lights.len() * balls.len()).max(1)).clamp(1, MOST_PARTS);
+        let targets: Vec<_> = lights.iter().flat_map(|&light| of_light(scene, light, &balls, places, most)).collect();
         let mut lights = vec![false; scene.lights.len()];
         targets.iter().for_each(|target| lights[target.light] = true);
-        let mut targets = Self { targets, lights, objects, world, photons };
+        let world = ball_around_all(scene).into_iter().chain(reach).reduce(Ball::around)?;
+        let mut targets = Self { targets, lights, objects, reach, world, photons };
         targets.share_out();
         (!targets.targets.is_empty()).then_some(targets)
     }
@@ -85,9 +91,20 @@ impl PhotonTargets {
         self.targets.iter().map(|target| target.photons).sum()
     }
 
+    /// Whether photons are sent to a place on an object.
+    pub(super) fn include(&self, scene: &Scene<Table>, object: u32, place: DVec3) -> bool {
+        let is_near = || self.reach.is_some_and(|reach| reach.contains(place));
+        self.objects[object as usize] && (scene.objects[object as usize].shape.is_bounded() || is_near())
+    }
+
+    /// Whether photons are sent to some of the objects that have no end.
+    pub(super) fn reach_without_end(&self) -> bool {
+        self.reach.is_some()
+    }
+
     /// The flux that all targets send, about, as CIE Y.
     pub(super) fn flux(&self) -> f64 {
-        self.targets.iter().map(|target| target.flux).sum()
+        self.targets.chunk_by(of_one).map(flux).sum()
     }
 
     /// The target of one of all the photons, counted from the first target on.
@@ -118,10 +135,16 @@ impl PhotonTargets {
     /// Lets each target have its part of the photons, most of them by flux.
     fn share_out(&mut self) {
         let (total, count) = (self.flux(), self.targets.len() as f64);
-        for target in &mut self.targets {
-            let by_flux = if total > 0.0 { target.flux / total } else { 1.0 / count };
-            let share = EVENLY / count + (1.0 - EVENLY) * by_flux;
-            target.photons = (share * self.photons as f64).round().max(1.0) as u64;
+        for whole in self.targets.chunk_by_mut(of_one) {
+            let flux = flux(whole);
+            let is_worth = |target: &PhotonTarget| target.flux > 0.0;
+            let shares: f64 = whole.iter().filter(|target| is_worth(target)).map(|target| target.share).sum();
+            for target in whole {
+                let of_whole = if is_worth(target) { target.share / shares } else { 0.0 };
+                let by_flux = if total > 0.0 { flux * of_whole / total } else { 1.0 / count };
+                let share = EVENLY / count + (1.0 - EVENLY) * by_flux;
+                target.photons = (share * self.photons as f64).round().max(1.0) as u64;
+            }
         }
     }
 
@@ -165,6 +188,45 @@ impl PhotonTargets {
         let factor = sample.factor / self.targets[first..].iter().take_while(of_light).map(sent).sum::<f64>();
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { ray, factor, ..sample })
     }
+}
+
+/// The targets of a light with a luminance: each ball, followed by the parts of it that are apart from the light.
+fn of_light(
+    scene: &Scene<Table>,
+    (light, luminance): (LightId, f64),
+    balls: &[Ball],
+    places: &[Place],
+    most: usize,
+) -> Vec<PhotonTarget> {
+    let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
+    let target = |ball: &Ball, share: f64, is_part: bool| {
+        let beam = scene.lights[light].beam(ball)?;
+        let flux = beam.flux * luminance;
+        let guide = if beam.is_apart { disc.clone() } else { even.clone() };
+        (flux > 0.0).then_some(PhotonTarget { light, photons: 0, share, is_part, beam, guide, flux })
+    };
+    let mut targets = Vec::new();
+    for ball in balls {
+        let parts = parts(places, ball, most);
+        let share = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
+        if let Some(whole) = target(ball, share, false) {
+            targets.push(whole);
+            targets.extend(parts.iter().filter_map(|part| target(&part.ball, part.share, true)));
+        }
+    }
+    targets
+}
+
+/// Whether a target is a part of the same whole as the one before it.
+fn of_one(_: &PhotonTarget, next: &PhotonTarget) -> bool {
+    next.is_part
+}
+
+/// The flux that is sent to a whole, about, which may have been found seen in parts alone.
+fn flux(targets: &[PhotonTarget]) -> f64 {
+    let (parts, wholes): (Vec<_>, Vec<_>) = targets.iter().partition(|target| target.is_part);
+    let sum = |of: Vec<&PhotonTarget>| of.iter().map(|target| target.flux).sum::<f64>();
+    f64::max(sum(wholes), sum(parts))
 }
 
 /// A ball around all that is finite; none where nothing is.

@@ -6,11 +6,12 @@ use super::dyes::Dyes;
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
 use super::path_start::{PathStart, Sunlit};
+use super::photon_focus::places;
 use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Polarizing, Transport};
 use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
-use crate::math::Ray;
+use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, Scene, Sight};
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
 
@@ -201,7 +202,8 @@ impl World {
         let sends = |&&light: &&LightId| self.scene.lights[light].sends_photons();
         let senders = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter(sends).copied().collect());
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
-        let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, photons);
+        let places = places(&self.scene, &senders.iter().map(|sender| sender.0).collect::<Vec<_>>());
+        let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, photons);
         let targets = pass.and_then(|pass| targets_of(pass.photons));
         let map_targets = pass.and_then(|pass| pass.map).and_then(|map| targets_of(map.photons));
         (self.photon_targets, self.map_targets) = (targets, map_targets);
@@ -315,9 +317,14 @@ impl World {
         lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
     }
 
-    /// Whether photons are sent to an object.
-    pub(super) fn is_photon_target(&self, object: u32) -> bool {
-        self.photon_targets.as_ref().is_some_and(|targets| targets.objects[object as usize])
+    /// Whether photons are sent to a place on an object.
+    pub(super) fn is_photon_target(&self, object: u32, place: DVec3) -> bool {
+        self.photon_targets.as_ref().is_some_and(|targets| targets.include(&self.scene, object, place))
+    }
+
+    /// Whether photons are sent to some of the surfaces that have no end.
+    pub fn reaches_without_end(&self) -> bool {
+        self.photon_targets.as_ref().is_some_and(PhotonTargets::reach_without_end)
     }
 
     /// Whether paths gather photons where the camera does not see them straight.

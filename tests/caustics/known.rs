@@ -301,12 +301,15 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     let polarized = ", polarization = { sun = [0, 1, 1], degree = 0.7 }";
     leaves(sky(1e4, polarized), "caustics of a polarized image of the sky are left to chance");
     let wall = "[[object]]\nname = \"wall\"\nmaterial = \"mirror\"\nshape.plane = { point = [0, 0, -3], normal = [0, 0, 1] }\n";
-    let endless =
-        "wall has no end, so photons cannot be aimed at it, as they could at a quad or a disc; those of points";
-    leaves(format!("{wall}{point}"), endless);
+    asks(format!("{wall}{point}"), "from a point toward wall");
+    let beyond = "left to chance: caustics of wall, which has no end, far beyond where it is seen; those of points";
+    asks(format!("{ball}{wall}{point}"), beyond);
+    let behind = wall.replace("-3]", "9]");
+    let unseen = "wall has no end and is not seen, so photons cannot be aimed at it; those of points";
+    leaves(format!("{behind}{point}"), unseen);
     asks(
-        format!("{ball}{wall}{point}"),
-        "left to chance: caustics of wall, which has no end, as a quad or a disc has; those",
+        format!("{ball}{behind}{point}"),
+        "left to chance: caustics of wall, which has no end and is not seen; those of points",
     );
     leaves(format!("{ball}{point}").replace("0.8, 0]", "-0.8, 0]"), "in sight");
     leaves(format!("[render]\ncaustics = \"off\"\n{ball}{point}"), "caustics \"off\"");

@@ -101,7 +101,7 @@ fn advance<const N: usize, P: Polarization<N>>(
         return;
     }
     if path.vertices == 0 {
-        let is_target = world.is_photon_target(meeting.hit.object);
+        let is_target = world.is_photon_target(meeting.hit.object, meeting.point.position);
         match over {
             Surfaces::Smooth if !is_target => return,
             Surfaces::AllButPhotons if is_target && world.sends_photons(start.light) => return,

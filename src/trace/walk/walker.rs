@@ -109,7 +109,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Makes the path pending that goes on through a hidden surface as if nothing were there.
     #[cold]
     pub fn go_on_past(&mut self, path: &Path<N, P>, meeting: &Meeting, Hidden(boundary): &Hidden) {
-        let kind = path.kind.past_hidden(|| self.world.is_photon_target(meeting.hit.object));
+        let kind = path.kind.past_hidden(|| self.world.is_photon_target(meeting.hit.object, meeting.point.position));
         let next = self.pending.add(|| *path);
         // No light was sampled through this surface, so what the path meets beyond counts in full.
         *next = Path { scatter: None, key: path.key.child(0), media: path.media.beyond(boundary), kind, ..*path };
@@ -323,7 +323,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
         let aimed = || {
             let followed = shading::is_plain(at.point, at.arrival.wo, branch.wi, crosses);
-            followed.then(|| world.is_photon_target(at.object))
+            followed.then(|| world.is_photon_target(at.object, at.point.position))
         };
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);

@@ -1,0 +1,87 @@
+//! Surfaces so large that the camera sees a small part of what they throw: seas, and mirrors without end.
+
+use abbe::math::DVec2;
+use abbe::plan::plan;
+use abbe::trace::MapPasses;
+
+use super::agreement::{FLOOR, LAMP, agree, agree_with, glass, seen_by};
+use crate::support::scenes::{film_of, moments, object, scene};
+
+/// Just above the water, with the horizon in sight.
+const ASHORE: &str = "position = [0, 2, 5]\nlook_at = [0, 0.3, 0]\nvertical_fov = 50";
+const WATER: [&str; 2] = [
+    "plane = { point = [0, 1, 0], normal = [0, 1, 0] }",
+    "quad = { center = [30, 1, -20], u = [0, 0, 300], v = [300, 0, 0] }",
+];
+const SUN: &str = "[[light]]\nsun = { toward = [0.6, 1, 0.3], irradiance = 2, angular_diameter = 40 }\n";
+
+/// A sun so large that rays find it by chance, too.
+#[test]
+fn a_sea_in_the_sun() {
+    let map = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
+    for water in WATER {
+        let text = seen_by(ASHORE, "")
+            + FLOOR
+            + &glass("index = 1.33, absorption = { rgb = [0.5, 0.2, 0.1] }")
+            + &object("glass", water)
+            + "[material.stone]\ndiffuse = { reflectance = 0.5 }\n"
+            + &object("stone", "sphere = { center = [0.3, 0.9, 0.2], radius = 0.6 }")
+            + SUN;
+        agree_with(water, &text, 128, Some(map));
+    }
+}
+
+/// What it throws onto a ball is seen straight.
+#[test]
+fn a_mirror_without_end() {
+    let text = seen_by("position = [0, 1.5, 4]\nlook_at = [0, 0.8, 0]\nvertical_fov = 50", "")
+        + "[material.mirror]\nmirror = { reflectance = 0.9 }\n[material.stone]\ndiffuse = { reflectance = 0.5 }\n"
+        + &object("mirror", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        + &object("stone", "sphere = { center = [0, 1, 0], radius = 0.7 }")
+        + LAMP
+        + &object("lamp", "sphere = { center = [2, 3, 1], radius = 0.6 }")
+        + "[[light]]\nenvironment = { radiance = 0.01 }\n";
+    agree("mirror", &text, 64);
+}
+
+/// The floor under a sea in the light of a sun without extent, which nothing but photons finds, as Fresnel and Beer
+/// have it, near and far: what is seen at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2 times
+/// what is left after depth / cos(s') + depth / cos(v') of water.
+#[test]
+fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
+    const N: f64 = 1.33;
+    const ABSORPTION: f64 = 0.3;
+    // Cosine inside, and the share that crosses.
+    let crosses = |cos: f64| {
+        let inside = (1.0 - (1.0 - cos * cos) / (N * N)).sqrt();
+        let [s, p] = [(cos - N * inside) / (cos + N * inside), (N * cos - inside) / (N * cos + inside)];
+        (inside, 1.0 - 0.5 * (s * s + p * p))
+    };
+    for water in WATER {
+        let text = "[camera]\nposition = [0, 2.5, 5]\nlook_at = [0, 0.8, 0]\nvertical_fov = 34\n[film]\nwidth = 40\nheight = 32\n\
+                    [render]\nsamples = 128\npolarization = \"off\"\nmodel = \"rgb\"\n\
+                    [material.floor]\ndiffuse = { reflectance = 0.001 }\n"
+            .to_owned()
+            + &object("floor", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+            + &glass(&format!("index = {N}, absorption = {ABSORPTION}"))
+            + &object("glass", water)
+            + "[[light]]\nsun = { toward = [0.6, 0.8, 0], irradiance = 2000, angular_diameter = 0 }\n";
+        let scene = scene(&text);
+        let film = film_of(&scene, plan(&scene).method);
+        let (sun_inside, sun_crosses) = crosses(0.8);
+        let ratio = |pixel: usize| {
+            let at = DVec2::new((pixel % 40) as f64 + 0.5, (pixel / 40) as f64 + 0.5);
+            let (inside, out) = crosses(-scene.camera.ray(at).direction.y);
+            let left = (-ABSORPTION * (1.0 / sun_inside + 1.0 / inside)).exp();
+            let exact = 2.0 / std::f64::consts::PI * 0.8 * sun_crosses * out * left / (N * N);
+            f64::from(film.pixels[pixel].rgb[1]) / exact
+        };
+        for rows in [0..4, 4..8, 8..16, 16..32] {
+            let (mean, variance) = moments((rows.start * 40..rows.end * 40).map(ratio));
+            let error = (variance / (40 * rows.len()) as f64).sqrt();
+            println!("{water}, rows {rows:?}: {mean:.4} of the exact light, with an error of {error:.4}");
+            // Pixels share photons, so that their noise is not all independent.
+            assert!(error < 0.03 && (mean - 1.0).abs() < 6.0 * error + 0.002, "{water}, {rows:?}: {mean} +- {error}");
+        }
+    }
+}
