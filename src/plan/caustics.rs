@@ -19,8 +19,8 @@ const FEWEST: f64 = 65_536.0;
 /// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
 const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
 const MOST_OF_A_SAMPLE: f64 = 4.0;
-/// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is seen
-/// through glass.
+/// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is
+/// seen through glass.
 const NOTHING: f64 = 0.01;
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
@@ -122,7 +122,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if sending.is_empty() {
         let (from, why) = (named(scene, &large), not_worth(gain));
         lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-        return Shown::not(lines, gain.is_some_and(|gain| (gain - 1.0).abs() > NOTHING));
+        return Shown::not(lines, gain.is_none_or(|gain| (gain - 1.0).abs() > NOTHING));
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));

@@ -1,12 +1,11 @@
 //! Which part of a large smooth surface throws light onto what the camera sees: of a sea, only a bay.
 
 use crate::light::{Light, LightId};
+use crate::material::Material;
 use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::{Primitive, Scene};
 use crate::shape::Ball;
 use crate::spectrum::Table;
-
-use super::photon_targets::is_photon_target;
 
 /// Camera rays along each side of the image.
 const SIDE: u32 = 24;
@@ -46,6 +45,12 @@ pub(super) struct Place {
 pub(super) struct Part {
     pub(super) ball: Ball,
     pub(super) share: f64,
+}
+
+/// Whether photons can be sent to an object: it is smooth where light goes on.
+pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
+    let material = scene.material_of(object as u32);
+    !material.scatters_widely() && !matches!(material, Material::Emissive(_))
 }
 
 /// Whether the camera may see a small part of what lies in a ball: it is wider than the image there.

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{Place, parts, reach};
+use super::photon_focus::{Place, is_photon_target, parts, reach};
 use crate::light::{Beam, LeSample, LightId};
-use crate::material::Material;
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
 use crate::shape::Ball;
@@ -57,12 +56,6 @@ const MANY: usize = 4096;
 /// Share of the photons that all targets get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
 
-/// Whether photons can be sent to an object: it is smooth where light goes on.
-pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
-    let material = scene.material_of(object as u32);
-    !material.scatters_widely() && !matches!(material, Material::Emissive(_))
-}
-
 impl PhotonTargets {
     /// From some lights, given with their luminances, to all objects that photons can be sent to, of large ones mostly
     /// to places that matter; none if there is none, or none of the lights shines there.
@@ -77,7 +70,8 @@ impl PhotonTargets {
             None => objects.iter_mut().zip(shapes()).for_each(|(target, shape)| *target &= shape.is_bounded()),
         }
         let most = (MOST_TOLD_APART / (lights.len() * balls.len()).max(1)).clamp(1, MOST_PARTS);
-        let targets: Vec<_> = lights.iter().flat_map(|&light| of_light(scene, light, &balls, places, most)).collect();
+        let targets: Vec<_> =
+            lights.iter().flat_map(|light| of_light(scene, light.0, light.1, &balls, places, most)).collect();
         let mut lights = vec![false; scene.lights.len()];
         targets.iter().for_each(|target| lights[target.light] = true);
         let world = ball_around_all(scene).into_iter().chain(reach).reduce(Ball::around)?;
@@ -193,7 +187,8 @@ impl PhotonTargets {
 /// The targets of a light with a luminance: each ball, followed by the parts of it that are apart from the light.
 fn of_light(
     scene: &Scene<Table>,
-    (light, luminance): (LightId, f64),
+    light: LightId,
+    luminance: f64,
     balls: &[Ball],
     places: &[Place],
     most: usize,

@@ -45,8 +45,8 @@ fn a_mirror_without_end() {
 }
 
 /// The floor under a sea in the light of a sun without extent, which nothing but photons finds, as Fresnel and Beer
-/// have it, near and far: what is seen at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2 times
-/// what is left after depth / cos(s') + depth / cos(v') of water.
+/// have it, near and far: what is seen at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2
+/// times what is left after depth / cos(s') + depth / cos(v') of water.
 #[test]
 fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
     const N: f64 = 1.33;
