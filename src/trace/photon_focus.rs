@@ -28,7 +28,7 @@ const SMALLER: f64 = 3.0;
 /// Share of the photons that is sent to all of the whole.
 const EVERYWHERE: f64 = 0.1;
 /// Of a surface that has no end, photons are sent to so many times what was found.
-const REACH: f64 = 4.0;
+const REACH: f64 = 6.0;
 
 /// A place on a smooth surface by way of which light may come to what the camera sees.
 #[derive(Clone, Copy, Debug)]
