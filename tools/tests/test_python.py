@@ -256,6 +256,8 @@ def test_a_finished_image_outlives_its_last_checkpoint(tmp_path):
 
     def remove(so_far):
         shutil.rmtree(folder, ignore_errors=True)
+        # In its place, so that it is not made again.
+        folder.touch()
 
     kept = folder / "a.checkpoint"
     image = abbe.render(SCENE, time="1.5s", error=1e-6, checkpoint=kept, every="1h", progress=remove)

@@ -121,6 +121,8 @@ def test_each_mistake_of_a_dict_is_told_in_the_words_of_its_file(case, tmp_path,
         pytest.skip("this is no TOML, and so no dict")
     if "includes itself" in case.expected:
         pytest.skip("a dict is no file, so that no file includes it")
+    if "a hexadecimal number" in case.title:
+        pytest.skip("a number of a dict is written in no way")
     monkeypatch.chdir(tmp_path)
     case.write(tmp_path)
     (tmp_path / "scene.toml").write_text(case.scene, "utf-8")
