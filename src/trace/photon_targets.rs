@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{Place, is_photon_target, parts, reach};
+use super::photon_focus::{Part, Place, is_photon_target, parts, reach};
 use crate::light::{Beam, LeSample, LightId};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
@@ -70,8 +70,10 @@ impl PhotonTargets {
             None => objects.iter_mut().zip(shapes()).for_each(|(target, shape)| *target &= shape.is_bounded()),
         }
         let most = (MOST_TOLD_APART / (lights.len() * balls.len()).max(1)).clamp(1, MOST_PARTS);
+        let wholes: Vec<_> = balls.into_iter().map(|ball| (ball, parts(places, &ball, most))).collect();
+        let guides = [Guide::even(), Guide::disc()].map(Arc::new);
         let targets: Vec<_> =
-            lights.iter().flat_map(|light| of_light(scene, light.0, light.1, &balls, places, most)).collect();
+            lights.iter().flat_map(|light| of_light(scene, light.0, light.1, &wholes, &guides)).collect();
         let mut lights = vec![false; scene.lights.len()];
         targets.iter().for_each(|target| lights[target.light] = true);
         let world = ball_around_all(scene).into_iter().chain(reach).reduce(Ball::around)?;
@@ -184,16 +186,15 @@ impl PhotonTargets {
     }
 }
 
-/// The targets of a light with a luminance: each ball, followed by the parts of it that are apart from the light.
+/// The targets of a light with a luminance: each ball, followed by its parts. Photons start by one of two guides, the
+/// even one or, toward what is apart from the light, the disc.
 fn of_light(
     scene: &Scene<Table>,
     light: LightId,
     luminance: f64,
-    balls: &[Ball],
-    places: &[Place],
-    most: usize,
+    wholes: &[(Ball, Vec<Part>)],
+    [even, disc]: &[Arc<Guide>; 2],
 ) -> Vec<PhotonTarget> {
-    let [even, disc] = [Guide::even(), Guide::disc()].map(Arc::new);
     let target = |ball: &Ball, share: f64, is_part: bool| {
         let beam = scene.lights[light].beam(ball)?;
         let flux = beam.flux * luminance;
@@ -201,8 +202,7 @@ fn of_light(
         (flux > 0.0).then_some(PhotonTarget { light, photons: 0, share, is_part, beam, guide, flux })
     };
     let mut targets = Vec::new();
-    for ball in balls {
-        let parts = parts(places, ball, most);
+    for (ball, parts) in wholes {
         let share = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
         if let Some(whole) = target(ball, share, false) {
             targets.push(whole);
