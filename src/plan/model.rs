@@ -50,7 +50,14 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let chosen = choice(&candidates, tolerance, fewest);
 
     let is_exact = survey.is_plain() && candidates[0].error == 0.0;
-    let with_heroes = |bands| bands_beside(&survey, bands, heroes).with_heroes(heroes, &survey.emissions());
+    let with_heroes = |bands| {
+        let lights = survey.emissions();
+        let basis = bands_beside(&survey, bands, heroes).with_heroes(heroes, &lights);
+        match &scene.format.spectral {
+            Some(shown) => basis.showing(shown, &lights),
+            None => basis,
+        }
+    };
     let (basis, why) = match scene.render.model {
         _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
         _ if hero && spectral => (with_heroes(MAX_LANES), "dispersion is seen, and spectra are asked for".to_owned()),

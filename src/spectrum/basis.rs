@@ -157,6 +157,13 @@ impl Basis {
         Self { heroes: Some(heroes), ..self }
     }
 
+    /// The same lanes, for an image whose spectra are wanted too: a third of the heroes is drawn evenly over its bands,
+    /// where the lights shine.
+    pub fn showing(self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
+        let shown = |heroes: Heroes| Heroes { mixture: Arc::new(heroes.mixture.showing(bands, lights)), ..heroes };
+        Self { heroes: self.heroes.map(shown), ..self }
+    }
+
     /// The same lanes, refracted by every index as by that of the d line, but for those that are written as `rgb`. What
     /// is reflected and let through is each lane's own; of three bands, as the mean over the band is at normal
     /// incidence.

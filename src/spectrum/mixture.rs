@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::draw::Hero;
 use super::visible::{self, COUNT, ULTRAVIOLET};
-use super::{Emission, Excited};
+use super::{Emission, Excited, WavelengthBands};
 use crate::math::Distribution;
 
 /// A distribution of wavelengths: a density, constant over each nm, and ideal lines, which are drawn as they are.
@@ -49,6 +49,17 @@ impl Mixture {
             add(1.0 - BY_LIGHT, &eye().collect::<Vec<_>>(), &|_| 0.0);
         }
         Self { entries: Distribution::new(probabilities), lines }
+    }
+
+    /// A third of the wavelengths drawn evenly where lights shine within the bands of a spectral image, the others as
+    /// before: the eye sees hardly anything at both ends. Where all light is in ideal lines, only they are drawn.
+    pub(super) fn showing(&self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
+        let is_lit = |step: usize| lights.iter().any(|light| light.spectrum()[step..step + 2].iter().any(|&x| x > 0.0));
+        let is_shown = |step: usize| bands.of(visible::START_NM + step as f64 + 0.5).is_some();
+        let shown: Vec<usize> = (0..COUNT - 1).filter(|&step| is_shown(step) && is_lit(step)).collect();
+        let mut weights: Vec<f64> = self.probabilities().collect();
+        shown.iter().for_each(|&step| weights[step] += 0.5 / shown.len() as f64);
+        Self { entries: Distribution::new(weights), lines: self.lines.clone() }
     }
 
     /// Two fifths of the wavelengths drawn as before, as many by what excites dyes, and the others by what the eye sees

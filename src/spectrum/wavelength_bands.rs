@@ -43,11 +43,11 @@ impl WavelengthBands {
         self.step_nm
     }
 
-    /// How much of a band, in nm, lies where light is known: 0.5 nm beyond the [grid](super::visible) is the end.
+    /// How much of a band, in nm, lies where light is known, on the [grid](super::visible).
     pub(super) fn known_nm(&self, band: usize) -> f64 {
         let middle = self.first_nm + band as f64 * self.step_nm;
         let [below, above] = [-0.5, 0.5].map(|half| middle + half * self.step_nm);
-        let [from, to] = [below.max(START_NM - 0.5), above.min(LAST_NM + 0.5)];
+        let [from, to] = [below.max(START_NM), above.min(LAST_NM)];
         if [from, to] == [below, above] { self.step_nm } else { to - from }
     }
 
@@ -63,11 +63,11 @@ impl WavelengthBands {
         (0.0..self.count as f64).contains(&band).then_some(band as usize)
     }
 
-    /// Each band that the nm around a wavelength reaches into, and how much of it lies there.
+    /// Each band that the nm around a wavelength reaches into, and how much of it lies there and where light is known.
     pub(super) fn around(&self, wavelength_nm: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
         let Self { first_nm, step_nm, count } = *self;
         let start = first_nm - 0.5 * step_nm;
-        let [from, to] = [wavelength_nm - 0.5, wavelength_nm + 0.5];
+        let [from, to] = [(wavelength_nm - 0.5).max(START_NM), (wavelength_nm + 0.5).min(LAST_NM)];
         let at = |nm: f64| ((nm - start) / step_nm).floor().clamp(0.0, count as f64 - 1.0) as usize;
         (at(from)..=at(to)).filter_map(move |band| {
             let below = start + band as f64 * step_nm;
@@ -86,7 +86,7 @@ mod tests {
         for (from, to, step) in [(380.0, 780.0, 5.0), (400.0, 700.0, 0.4), (390.0, 720.0, 7.3), (550.0, 550.0, 1.0)] {
             let bands = WavelengthBands::new(from, to, step).unwrap();
             let mut widths = vec![0.0; bands.count()];
-            for nm in 200..1000 {
+            for nm in 300..=830 {
                 bands.around(f64::from(nm)).for_each(|(band, width)| widths[band] += width);
             }
             assert!(widths.iter().all(|width| (width / step - 1.0).abs() < 1e-12), "{from} to {to} by {step}");
