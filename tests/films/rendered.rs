@@ -40,7 +40,10 @@ fn reflected(material: &str, degrees: f64, nm: [f64; 3]) -> [f64; 3] {
 
 /// n - i k and nm of layers, as a scene has them.
 fn coating(layers: &[Layer]) -> String {
-    let layer = |([n, k], nm): &Layer| format!("{{ index = {n:?}, k = {:?}, thickness_nm = {nm:?} }}", -k);
+    let layer = |([n, k], nm): &Layer| {
+        let name = if *n < 1.0 { "n" } else { "index" };
+        format!("{{ {name} = {n:?}, k = {:?}, thickness_nm = {nm:?} }}", -k)
+    };
     format!("coating = [{}]", layers.iter().map(layer).collect::<Vec<_>>().join(", "))
 }
 
@@ -80,38 +83,43 @@ fn eleven_layers_are_a_mirror_at_one_color() {
 /// Three layers of which one absorbs, so that the glass looks different from both sides.
 const STACK: [Layer; 3] = [([1.46, 0.0], 80.0), ([2.3, -0.4], 60.0), ([1.7, 0.0], 120.0)];
 
+/// A beam splitter: 20 nm of silver between clear layers.
+const SILVERED: [Layer; 3] = [([1.46, 0.0], 90.0), ([0.06, -3.6], 20.0), ([2.3, 0.0], 40.0)];
+
 #[test]
 fn layers_are_listed_from_the_outside_inward_and_met_from_both_sides() {
-    let material = format!("dielectric = {{ index = 1.52, {} }}", coating(&STACK));
     let slab = "cube = { center = [0, 0, 0], size = [60, 60, 0.5] }";
     let nm = [450.0, 550.0, 650.0];
-    let mut inside = STACK;
-    inside.reverse();
-    for degrees in ANGLES {
-        let cos = degrees.to_radians().cos();
-        let cos_inside = (1.0 - (1.0 - cos * cos) / (1.52 * 1.52)).sqrt();
-        let bare = seen(
-            "mask = { material = \"clear\", opacity = 0 }\n[material.clear]\nmirror = {}",
-            slab,
-            degrees,
-            true,
-            nm,
-        );
-        let found = seen(&material, slab, degrees, true, nm);
-        let through = nm.map(|nm| {
-            let [_, t] = shares(1.0, &STACK, [1.52, 0.0], cos, nm);
-            let [r, back] = shares(1.52, &inside, [1.0, 0.0], cos_inside, nm);
-            assert!((back - t).abs() < 1e-9);
-            t * t / (1.0 - r * r)
-        });
-        assert_near(
-            [0, 1, 2].map(|i| found[i] / bare[i]),
-            through,
-            1e-5,
-            &format!("{degrees} degrees, through both faces"),
-        );
-        let expected = nm.map(|nm| shares(1.0, &STACK, [1.52, 0.0], cos, nm)[0]);
-        assert_near(reflected(&material, degrees, nm), expected, 1e-5, &format!("{degrees} degrees, reflected"));
+    for stack in [STACK, SILVERED] {
+        let material = format!("dielectric = {{ index = 1.52, {} }}", coating(&stack));
+        let mut inside = stack;
+        inside.reverse();
+        for degrees in ANGLES {
+            let cos = degrees.to_radians().cos();
+            let cos_inside = (1.0 - (1.0 - cos * cos) / (1.52 * 1.52)).sqrt();
+            let bare = seen(
+                "mask = { material = \"clear\", opacity = 0 }\n[material.clear]\nmirror = {}",
+                slab,
+                degrees,
+                true,
+                nm,
+            );
+            let found = seen(&material, slab, degrees, true, nm);
+            let through = nm.map(|nm| {
+                let [_, t] = shares(1.0, &stack, [1.52, 0.0], cos, nm);
+                let [r, back] = shares(1.52, &inside, [1.0, 0.0], cos_inside, nm);
+                assert!((back - t).abs() < 1e-9);
+                t * t / (1.0 - r * r)
+            });
+            assert_near(
+                [0, 1, 2].map(|i| found[i] / bare[i]),
+                through,
+                1e-5,
+                &format!("{degrees} degrees, through both faces"),
+            );
+            let expected = nm.map(|nm| shares(1.0, &stack, [1.52, 0.0], cos, nm)[0]);
+            assert_near(reflected(&material, degrees, nm), expected, 1e-5, &format!("{degrees} degrees, reflected"));
+        }
     }
 }
 

@@ -26,15 +26,20 @@ fn of_layers(layers: Vec<CoatingLayer<Asked>>) -> Coating<Asked> {
 fn layer(value: Value) -> Option<CoatingLayer<Asked>> {
     Fields::read(value, |fields| {
         let thickness = spectrum(fields, "thickness_nm");
-        let Some(metal) = fields.get("metal") else {
-            let (index, k) = (spectrum(fields, "index"), spectrum_or(fields, "k", 0.0));
-            return Some(CoatingLayer { index, k, is_metal: false, thickness });
+        let [metal, n] = ["metal", "n"].map(|key| fields.get(key));
+        let (index, k) = match (metal, n) {
+            (None, None) => (spectrum(fields, "index"), spectrum_or(fields, "k", 0.0)),
+            (Some(metal), None) if fields.get("index").or(fields.get("k")).is_none() => {
+                let metal = Asked::There(metal.text().map(|_| metal)?);
+                (metal, metal)
+            }
+            (None, Some(n)) if fields.get("index").is_none() => (Asked::There(n), spectrum(fields, "k")),
+            (Some(given), _) | (None, Some(given)) => {
+                return given
+                    .refuse("a layer has an `index` and its `k`, or it is of metal: a `metal`, or its `n` and `k`");
+            }
         };
-        if fields.get("index").or(fields.get("k")).is_some() {
-            return metal.refuse("a layer has either a `metal`, or an `index` and its `k`");
-        }
-        let metal = Asked::There(metal.text().map(|_| metal)?);
-        Some(CoatingLayer { index: metal, k: metal, is_metal: true, thickness })
+        Some(CoatingLayer { index, k, is_metal: metal.or(n).is_some(), thickness })
     })
 }
 
