@@ -15,6 +15,7 @@ use exr::prelude::{
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
+use super::file::cannot_read;
 use super::guard::{MOST_PIXELS, claims_fit, fits, guarded, too_large};
 use crate::error::{Error, Result, nearest, nearest_file};
 use crate::spectrum::Primaries;
@@ -229,7 +230,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
             Error::refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))
         }
         Err((ErrorKind::IsADirectory, _)) => Error::refuse(format!("{shown} is a folder, not an image"), an_image),
-        Err((_, source)) => Err(Error::Io { doing: "read", path: path.to_owned(), source }),
+        Err((_, source)) => Err(cannot_read(path, source)),
     }
 }
 
