@@ -10,7 +10,8 @@ use crate::material::{
 };
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::{
-    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Quantity, Upsampler, normal_reflectance, visible,
+    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Lanes, MAX_LANES, Quantity, Upsampler, normal_reflectance,
+    visible,
 };
 use crate::trace::{Method, Transport};
 
@@ -30,6 +31,16 @@ pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
 /// The channel that is farthest from 0: what an error of a color is relative to.
 pub(super) fn strongest(color: [f64; 3]) -> f64 {
     color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+}
+
+/// The error of a color in its worst channel.
+pub(super) fn missed(found: [f64; 3], exact: [f64; 3]) -> f64 {
+    strongest(std::array::from_fn(|c| found[c] - exact[c]))
+}
+
+/// What is left of light, a number for each lane.
+pub(super) fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
+    Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
 }
 
 /// The method by which a plan looks where colors go: no path splits, and none is ended at random.
@@ -233,8 +244,7 @@ impl<'a> Survey<'a> {
             .iter()
             .filter(|tint| which(tint))
             .map(|tint| {
-                let values =
-                    tint.read(&[420.0, 450.0, 480.0, 510.0, 540.0, 570.0, 600.0, 630.0, 660.0], &self.upsampler);
+                let values = tint.at(&[420.0, 450.0, 480.0, 510.0, 540.0, 570.0, 600.0, 630.0, 660.0], &self.upsampler);
                 let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
                 ((high - low) / high.max(1e-9), tint)
             })
@@ -289,11 +299,7 @@ impl Tint<'_> {
     }
 
     /// What is left of the light at wavelengths in nm.
-    pub(super) fn at(&self, wavelengths_nm: &[f64], basis: &Basis) -> Vec<f64> {
-        self.read(wavelengths_nm, basis.upsampler())
-    }
-
-    pub(super) fn read(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
+    pub(super) fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
         self.combine(|quantity, curve| {
             if quantity == Quantity::BandWidth {
                 // What is summed over 1 nm has the fringes of bands of 1 nm.
