@@ -21,7 +21,7 @@ const SHARE: f64 = 1.0 / 3.0;
 const ERROR: f64 = 0.03;
 /// The seed of what a plan looks at. A plan is the same for all seeds of the image: otherwise its model of color could
 /// change from frame to frame.
-pub(super) const SEED: u64 = 0;
+const SEED: u64 = 0;
 
 /// The relative error of a color that its model may make.
 pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
@@ -43,11 +43,19 @@ pub(super) fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
     Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
 }
 
+/// The method of paths that are as long as the scene lets them be.
+pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Transport) -> Method {
+    Method {
+        diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
+        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
+        ..Method::of_paths(basis, transport, SEED)
+    }
+}
+
 /// The method by which a plan looks where colors go: no path splits, and none is ended at random.
 pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
-    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    Method { diffuse_bounces, ..Method::of_paths(basis, transport, SEED) }
+    Method { max_bounces: u32::MAX, ..method_of_paths(scene, basis, transport) }
 }
 
 /// The colors of a scene: what shines and what tints.
