@@ -6,7 +6,7 @@ A value of 0 has no place on a logarithmic axis: it is drawn as an open mark on 
 """
 
 import csv
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -62,7 +62,7 @@ class Plot:
     source: str = ""  # where the naive method is from
     bound: float = 0.0  # what our values stay below
     least: float = 0.0  # values below it are drawn as 0
-    notes: list[str] = field(default_factory=list)
+    z: float = 0.0  # where chance is left: how far our values are off at most, in standard errors
 
     def __post_init__(self):
         self.words = self.words.replace("%", " %").replace("  %", " %")
