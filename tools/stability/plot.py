@@ -135,13 +135,11 @@ def draw(plot: Plot, path: Path) -> None:
 
 def label_ends(axes, ends: list[tuple[float, str, str]]) -> None:
     """Writes each line's name beside its last point."""
-    to_axes = axes.transLimits.transform if axes.get_yscale() == "linear" else None
+    linear = axes.get_yscale() == "linear"
     low, high = axes.get_ylim()
 
     def height(y: float) -> float:
-        if to_axes:
-            return (y - low) / (high - low)
-        return float(np.log(y / low) / np.log(high / low))
+        return (y - low) / (high - low) if linear else float(np.log(y / low) / np.log(high / low))
 
     lines = [label.count("\n") + 1 for _, _, label in ends]
     heights = spread_apart([height(y) for y, _, _ in ends], 0.075 * max(lines), 0.03, 0.97)
