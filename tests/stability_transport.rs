@@ -7,13 +7,14 @@
 
 use std::f64::consts::PI;
 
-use abbe::film::Film;
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::trace::{Transport, prepare, render};
 
 use crate::support::random::Random;
-use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, scene, view};
+use crate::support::scenes::{
+    Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, mean_color, moments, scene, view,
+};
 
 /// Twenty glass balls of radius 0.35 to 0.65 in a box of edge 4 that do not touch, under an even sky with a sun.
 fn glass_balls(side: u32, filter: &str, sun_radius: f64, sun_radiance: f64) -> String {
@@ -133,7 +134,7 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
     let text = glass_balls(24, "center", 28.0, radiance);
     let cutoff = 1e-7;
     let (whole, report) = image(&text, Transport::Deterministic { cutoff, most: u64::MAX });
-    let whole = mean_of_pixels(&whole);
+    let [whole, ..] = mean_color(&whole);
     for transport in [SPLITTING, SINGLE_PATH] {
         let mean = Mean::rendered(&text, transport, 100);
         // Nothing is brighter than the sun, so this much may be missing from the tree.
@@ -262,10 +263,6 @@ fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same
     mean.assert_near([1.0 - REFLECTED; 3], 1, "ten panes");
     assert!(mean.error[0] < 0.005, "{mean:?}");
     assert!(rendered(3).0.pixels == film.pixels, "another number of threads makes other bits");
-}
-
-fn mean_of_pixels(film: &Film) -> f64 {
-    film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
 }
 
 /// The lamp of smallpt: the tip of a sphere of radius 600 comes 0.27 through the ceiling. From the floor it fills the

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 import render
-from validation.scenes import toml_file
+from validation.scenes import diffuse, quad, toml_file
 
 with warnings.catch_warnings(action="ignore"):  # that SciPy is not there: nothing here needs it
     import colour
@@ -97,17 +97,13 @@ def row_of(count, distance=FAR):
     return camera, [i - (count - 1) / 2 for i in range(count)], {"width": count, "height": 1, "filter": "center"}
 
 
-def quad(center, u, v):
-    return {"quad": {"center": center, "u": u, "v": v}}
-
-
 def patches_scene(reflectances, radiance, model, color_space, sky=0):
     """Diffuse patches side by side, then as many pixels of the sky itself, under an even sky.
 
     A lone flat patch sees nothing but sky, which is aimed at by the cosine: each sample is exactly reflectance x sky."""
     camera, places, film = row_of(len(reflectances) + sky)
     names = [f"m{i}" for i in range(len(reflectances))]
-    material = {name: {"diffuse": {"reflectance": what}} for name, what in zip(names, reflectances, strict=True)}
+    material = {name: diffuse(what) for name, what in zip(names, reflectances, strict=True)}
     shapes = [quad([x, 0, 0], [0.4, 0, 0], [0, 0.4, 0]) for x in places[: len(names)]]
     return {
         "camera": camera,
@@ -148,7 +144,7 @@ def mirror_scene(irradiance, pairs, model):
     shines on them from below and before, beside the mirrors: nothing is left to chance."""
     camera, places, film = row_of(len(pairs))
     used = sorted({name for pair in pairs for name in pair}, key=PATCHES.index)
-    material = {f"d{PATCHES.index(name)}": {"diffuse": {"reflectance": name}} for name in used}
+    material = {f"d{PATCHES.index(name)}": diffuse(name) for name in used}
     material |= {f"m{PATCHES.index(name)}": {"mirror": {"reflectance": name}} for name in used}
     objects = []
     for x, (patch, mirror) in zip(places, pairs, strict=True):

@@ -50,18 +50,25 @@ class Spent(NamedTuple):
     peak: int  # bytes of memory
 
 
-def spent(*words):
-    """What a command of the renderer takes; one that fails ends this script with its words."""
-    command = [str(binary()), *map(str, words)]
+def measured(command):
+    """What any command takes, its exit code, and what it says of errors."""
     start = time.monotonic()
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+    with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
         complaint = process.stderr.read().decode()
         _, status, used = os.wait4(process.pid, 0)
         wall = time.monotonic() - start
         process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise SystemExit(f"{' '.join(command)}: exit code {process.returncode}\n{complaint}")
-    return Spent(used.ru_utime + used.ru_stime, wall, used.ru_maxrss * (1 if sys.platform == "darwin" else 1024))
+    peak = used.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    return Spent(used.ru_utime + used.ru_stime, wall, peak), process.returncode, complaint
+
+
+def spent(*words):
+    """What a command of the renderer takes; one that fails ends this script with its words."""
+    command = [binary(), *words]
+    took, code, complaint = measured(command)
+    if code:
+        raise SystemExit(f"{' '.join(map(str, command))}: exit code {code}\n{complaint}")
+    return took
 
 
 def read(path):

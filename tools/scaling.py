@@ -17,6 +17,7 @@ from statistics import median
 
 import numpy as np
 import render
+from gallery.shapes import write_ply
 
 VIEW = """[camera]
 position = [0, 6, 9]
@@ -39,16 +40,7 @@ def hills(path: Path, triangles: int):
     corner = np.arange(n * n).reshape(n, n)
     a, b, c, d = corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]
     faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
-    rows = np.zeros(len(faces), dtype=[("n", "u1"), ("corners", "<i4", 3)])
-    rows["n"], rows["corners"] = 3, faces
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {n * n}\nproperty float x\nproperty float y\n"
-        f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    with path.open("wb") as file:
-        file.write(header.encode())
-        file.write(np.stack([x, y, z], -1).reshape(-1, 3).astype("<f4").tobytes())
-        file.write(rows.tobytes())
+    write_ply(path, np.stack([x, y, z], -1).reshape(-1, 3), faces)
     return len(faces)
 
 

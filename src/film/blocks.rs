@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::file::{cannot_write, replace_by};
+use super::file::{cannot_read, cannot_write, replace_by};
 use crate::error::{Error, Result};
 
 /// The first bytes of a kind of file.
@@ -46,7 +46,7 @@ pub fn write_blocks(path: &Path, kind: Kind, write: &dyn Fn(&mut BlockWriter) ->
         blocks.bytes.resize(HEAD, 0);
         blocks.put()
     };
-    replace_by(path, &mut |place| written(place).map_err(|source| cannot_write(path, source)))
+    replace_by(path, |place| written(place).map_err(|source| cannot_write(path, source)))
 }
 
 impl BlockWriter<'_> {
@@ -95,18 +95,14 @@ impl BlockReader {
     /// # Errors
     /// If it cannot be read.
     pub fn open(path: &Path, kind: Kind) -> Result<Option<Self>> {
-        let opened = || {
-            // To open a pipe would wait for whoever writes to it.
-            let (mut found, metadata) = (Kind::default(), std::fs::metadata(path)?);
-            if !metadata.is_file() || metadata.len() < kind.len() as u64 {
-                return Ok(None);
-            }
-            let mut file = File::open(path)?;
-            file.read_exact(&mut found)?;
-            let (place, left) = (kind.len() as u64, metadata.len() - kind.len() as u64);
-            Ok((found == kind).then(|| Self { path: path.to_owned(), file: BufReader::new(file), place, left }))
-        };
-        opened().map_err(|source| Error::Io { doing: "read", path: path.to_owned(), source })
+        // To open a pipe would wait for whoever writes to it.
+        let metadata = std::fs::metadata(path).map_err(|source| cannot_read(path, source))?;
+        if !metadata.is_file() || metadata.len() < kind.len() as u64 {
+            return Ok(None);
+        }
+        let (mut blocks, mut found) = (Self::open_at(path, 0)?, Kind::default());
+        blocks.fill(&mut found)?;
+        Ok((found == kind).then_some(blocks))
     }
 
     /// Opens a file once more, at the [place](Self::place) where another reader left it.
@@ -120,7 +116,7 @@ impl BlockReader {
             file.seek(SeekFrom::Start(place))?;
             Ok(Self { path: path.to_owned(), file: BufReader::new(file), place, left })
         };
-        opened().map_err(|source| Error::Io { doing: "read", path: path.to_owned(), source })
+        opened().map_err(|source| cannot_read(path, source))
     }
 
     /// How many bytes of the file were read.
@@ -170,8 +166,7 @@ impl BlockReader {
         }
         self.left -= bytes.len() as u64;
         self.place += bytes.len() as u64;
-        let path = &self.path;
-        self.file.read_exact(bytes).map_err(|source| Error::Io { doing: "read", path: path.clone(), source })
+        self.file.read_exact(bytes).map_err(|source| cannot_read(&self.path, source))
     }
 
     /// The error of a file that is not as it was written.

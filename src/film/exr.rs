@@ -123,12 +123,7 @@ pub struct Heading<'a> {
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written; a file that was there before is then untouched.
 pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<u64> {
-    let (parts, mut clamped) = (parts(heading), 0);
-    replace_by(path, &mut |place| {
-        clamped = exr_blocks::write(&parts, rows, place, path)?;
-        Ok(())
-    })?;
-    Ok(clamped)
+    replace_by(path, |place| exr_blocks::write(&parts(heading), rows, place, path))
 }
 
 /// The bytes of such a file, and how many values were too large; `path` is what it is called in an error.

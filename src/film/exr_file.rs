@@ -5,16 +5,17 @@ use std::fs::File;
 use std::io::{Cursor, ErrorKind, Read};
 use std::path::Path;
 
+use exr::meta::attribute::TileDescription;
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::{
-    AnyChannel, AnyChannels, Blocks, ChannelDescription, Compression, Encoding, FlatImage, FlatSamples, IntegerBounds,
-    LineOrder, ReadChannels, ReadLayers, SampleType, Vec2, read,
+    ChannelDescription, Compression, FlatSamples, LineOrder, ReadChannels, ReadLayers, SampleType, Vec2, read,
 };
 
 use super::exr_attributes::{attributes, primaries, text};
 use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
+use super::file::cannot_read;
 use super::guard::{MOST_PIXELS, claims_fit, fits, guarded, too_large};
 use crate::error::{Error, Result, nearest, nearest_file};
 use crate::spectrum::Primaries;
@@ -65,13 +66,13 @@ impl ExrFile {
     }
 
     fn decode(bytes: &[u8]) -> exr::error::Result<Self> {
-        let described = MetaData::read_from_buffered(Cursor::new(bytes), false)?;
-        if let Some(said) = unread(&described.headers) {
+        let headers = MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers;
+        if let Some(said) = unread(&headers) {
             return Err(exr::error::Error::NotSupported(said.into()));
         }
         let invalid = |said: String| exr::error::Error::Invalid(said.into());
         let mut all = 0u64;
-        for header in &described.headers {
+        for header in &headers {
             let [width, height] = [header.layer_size.width(), header.layer_size.height()];
             all = all
                 .saturating_add((width as u64 * height as u64).saturating_mul(header.channels.bytes_per_pixel as u64));
@@ -80,7 +81,11 @@ impl ExrFile {
         claims_fit(bytes)?;
         let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
         let image = reader.non_parallel().from_buffered(Cursor::new(bytes))?;
-        Ok(Self::of_image(image, bytes.len()))
+        let values = image.layer_data.into_iter().map(|layer| {
+            let channels = layer.channel_data.list.into_iter();
+            channels.map(|channel| channel.sample_data).collect()
+        });
+        Ok(Self::of_headers(&headers, values, bytes.len()))
     }
 
     /// All that a file of a kind which is not read says before its pixels, and why they are not: its channels have no
@@ -92,41 +97,37 @@ impl ExrFile {
         let bytes = bytes(path)?;
         let described = guarded(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
         let headers = described.map_err(|said| decode_error(path, &said))?.headers;
-        let [first, ..] = &headers[..] else { return Ok(None) };
         let Some(why) = unread(&headers) else { return Ok(None) };
-        let (shared, mut taken) = (&first.shared_attributes, BTreeSet::new());
-        let file = Self {
-            parts: headers.iter().map(|header| outlined(header, &mut taken)).collect(),
-            length: bytes.len(),
-            display: PixelBounds::new(shared.display_window.position, shared.display_window.size),
-            pixel_aspect: shared.pixel_aspect,
-            chromaticities: shared.chromaticities.map(primaries),
+        let none = |channel: &ChannelDescription| match channel.sample_type {
+            SampleType::F16 => FlatSamples::F16(Vec::new()),
+            SampleType::F32 => FlatSamples::F32(Vec::new()),
+            SampleType::U32 => FlatSamples::U32(Vec::new()),
         };
-        Ok(Some((file, why)))
+        let values = headers.iter().map(|header| header.channels.list.iter().map(none).collect());
+        Ok(Some((Self::of_headers(&headers, values, bytes.len()), why)))
     }
 
-    fn of_image(image: FlatImage, length: usize) -> Self {
-        let shared = image.attributes;
-        let IntegerBounds { position, size } = shared.display_window;
-        let chromaticities = shared.chromaticities.map(primaries);
-        let mut taken = BTreeSet::new();
-        let parts = image.layer_data.into_iter().map(|layer| {
-            let name = layer.attributes.layer_name.as_ref().map(text);
+    /// Of what describes its parts, and the values of all channels of each.
+    fn of_headers(headers: &[Header], values: impl Iterator<Item = Vec<FlatSamples>>, length: usize) -> Self {
+        let (shared, mut taken) = (&headers[0].shared_attributes, BTreeSet::new());
+        let parts = headers.iter().zip(values).map(|(header, values)| {
+            let own = &header.own_attributes;
+            let name = own.layer_name.as_ref().map(text);
             Part {
-                bounds: PixelBounds::new(layer.attributes.layer_position, layer.size),
-                storage: storage(&layer.encoding),
-                attributes: attributes(&layer.attributes, &shared.other),
-                camera: layer.attributes.world_to_camera,
-                channels: channels(layer.channel_data, name.as_deref(), &mut taken),
+                bounds: PixelBounds::new(own.layer_position, header.layer_size),
+                storage: storage(header),
+                attributes: attributes(own, &shared.other),
+                camera: own.world_to_camera,
+                channels: channels(header, values, name.as_deref(), &mut taken),
                 name,
             }
         });
         Self {
             parts: parts.collect(),
             length,
-            display: PixelBounds::new(position, size),
+            display: PixelBounds::new(shared.display_window.position, shared.display_window.size),
             pixel_aspect: shared.pixel_aspect,
-            chromaticities,
+            chromaticities: shared.chromaticities.map(primaries),
         }
     }
 
@@ -229,7 +230,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
             Error::refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))
         }
         Err((ErrorKind::IsADirectory, _)) => Error::refuse(format!("{shown} is a folder, not an image"), an_image),
-        Err((_, source)) => Err(Error::Io { doing: "read", path: path.to_owned(), source }),
+        Err((_, source)) => Err(cannot_read(path, source)),
     }
 }
 
@@ -249,45 +250,20 @@ fn unread(headers: &[Header]) -> Option<String> {
     headers.iter().find_map(of_part)
 }
 
-/// A part without the values of its pixels.
-fn outlined(header: &Header, taken: &mut BTreeSet<String>) -> Part {
-    let blocks = match header.blocks {
-        BlockDescription::ScanLines => Blocks::ScanLines,
-        BlockDescription::Tiles(tiles) => Blocks::Tiles(tiles.tile_size),
-    };
-    let encoding = Encoding { compression: header.compression, blocks, line_order: header.line_order };
-    let channel = |channel: &ChannelDescription| AnyChannel {
-        name: channel.name.clone(),
-        sample_data: match channel.sample_type {
-            SampleType::F16 => FlatSamples::F16(Vec::new()),
-            SampleType::F32 => FlatSamples::F32(Vec::new()),
-            SampleType::U32 => FlatSamples::U32(Vec::new()),
-        },
-        quantize_linearly: channel.quantize_linearly,
-        sampling: channel.sampling,
-    };
-    let (own, list) = (&header.own_attributes, header.channels.list.iter().map(channel).collect());
-    let name = own.layer_name.as_ref().map(text);
-    Part {
-        bounds: PixelBounds::new(own.layer_position, header.layer_size),
-        storage: storage(&encoding),
-        attributes: attributes(own, &header.shared_attributes.other),
-        camera: own.world_to_camera,
-        channels: channels(AnyChannels { list }, name.as_deref(), taken),
-        name,
-    }
-}
-
 /// The channels of a part. Where an earlier part has one of the same name, the part's name tells them apart.
-fn channels(list: AnyChannels<FlatSamples>, part: Option<&str>, taken: &mut BTreeSet<String>) -> Vec<Channel> {
-    let mut channels: Vec<Channel> = (list.list.into_iter())
-        .map(|channel| {
-            let full = text(&channel.name);
-            let (layer, name) = full.rsplit_once('.').unwrap_or(("", &full));
-            let sampling = [channel.sampling.x(), channel.sampling.y()];
-            Channel { layer: layer.to_owned(), name: name.to_owned(), sampling, samples: channel.sample_data }
-        })
-        .collect();
+fn channels(
+    header: &Header,
+    values: Vec<FlatSamples>,
+    part: Option<&str>,
+    taken: &mut BTreeSet<String>,
+) -> Vec<Channel> {
+    let channel = |(described, samples): (&ChannelDescription, FlatSamples)| {
+        let full = text(&described.name);
+        let (layer, name) = full.rsplit_once('.').unwrap_or(("", &full));
+        let sampling = [described.sampling.x(), described.sampling.y()];
+        Channel { layer: layer.to_owned(), name: name.to_owned(), sampling, samples }
+    };
+    let mut channels: Vec<Channel> = header.channels.list.iter().zip(values).map(channel).collect();
     if let Some(part) = part.filter(|_| channels.iter().any(|channel| taken.contains(&channel.full_name()))) {
         for channel in &mut channels {
             channel.layer =
@@ -298,8 +274,8 @@ fn channels(list: AnyChannels<FlatSamples>, part: Option<&str>, taken: &mut BTre
     channels
 }
 
-fn storage(encoding: &Encoding) -> String {
-    let packed = match encoding.compression {
+fn storage(header: &Header) -> String {
+    let packed = match header.compression {
         Compression::Uncompressed => "not compressed",
         Compression::RLE => "rle",
         Compression::ZIP1 => "zips",
@@ -313,11 +289,13 @@ fn storage(encoding: &Encoding) -> String {
         Compression::HTJ2K32 => "htj2k32",
         Compression::HTJ2K256 => "htj2k256",
     };
-    let blocks = match encoding.blocks {
-        Blocks::ScanLines => "scan lines".to_owned(),
-        Blocks::Tiles(size) => format!("tiles of {} x {}", size.width(), size.height()),
+    let blocks = match header.blocks {
+        BlockDescription::ScanLines => "scan lines".to_owned(),
+        BlockDescription::Tiles(TileDescription { tile_size: size, .. }) => {
+            format!("tiles of {} x {}", size.width(), size.height())
+        }
     };
-    let order = match encoding.line_order {
+    let order = match header.line_order {
         LineOrder::Increasing => "from the top",
         LineOrder::Decreasing => "from the bottom",
         LineOrder::Unspecified => "in any order",

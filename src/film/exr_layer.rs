@@ -25,9 +25,13 @@ impl<'f> ExrLayer<'f> {
 
     /// Red, green and blue, if the layer has them.
     pub fn color(&self) -> Option<[&'f Channel; 3]> {
-        let [red, green, blue] = ["r", "g", "b"]
-            .map(|name| self.channels.iter().find(|channel| channel.name.to_lowercase() == name).copied());
+        let [red, green, blue] = ["r", "g", "b"].map(|name| self.channel(name));
         Some([red?, green?, blue?])
+    }
+
+    /// The channel of a name, in small or capital letters.
+    pub(crate) fn channel(&self, name: &str) -> Option<&'f Channel> {
+        self.channels.iter().find(|channel| channel.name.eq_ignore_ascii_case(name)).copied()
     }
 
     /// The channels that carry what the layer is: red, green and blue without alpha, or else all.

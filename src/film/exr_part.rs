@@ -23,6 +23,11 @@ impl PixelBounds {
         [self.corner[0] + (index % self.size[0]) as i64, self.corner[1] + (index / self.size[0]) as i64]
     }
 
+    /// How many pixels it has.
+    pub(crate) fn pixels(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
     /// The pixels that another one holds as well, if there are any.
     pub fn common(&self, other: &Self) -> Option<Self> {
         let corner = [0, 1].map(|axis| self.corner[axis].max(other.corner[axis]));

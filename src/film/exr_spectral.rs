@@ -50,7 +50,7 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
     let mut shared = ImageAttributes::new(display_window(film));
     shared.chromaticities = Some(chromaticities(film));
     let parts = [Part::new(film, columns, Compression::Zip, shared, attributes)];
-    replace_by(path, &mut |place| exr_blocks::write(&parts, rows, place, path).map(drop))
+    replace_by(path, |place| exr_blocks::write(&parts, rows, place, path).map(drop))
 }
 
 fn text(value: &str) -> AttributeValue {

@@ -27,21 +27,22 @@ impl<P: Write + Seek> Place for P {}
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace_by(path, &mut |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
+    replace_by(path, |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
 }
 
 /// The same of bytes that come one after another, of which those of a device are all in memory before it has any.
+/// Answers what writing them did.
 ///
 /// # Errors
 /// As [`replace_file`], and what the bytes come with.
-pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Place) -> Result<()>) -> Result<()> {
+pub(super) fn replace_by<T>(path: &Path, write: impl FnOnce(&mut dyn Place) -> Result<T>) -> Result<T> {
     let failed = |source| cannot_write(path, source);
     let target = match Target::of(path).map_err(failed)? {
         Target::Device => {
             let mut bytes = Cursor::new(Vec::new());
-            write(&mut bytes)?;
+            let answer = write(&mut bytes)?;
             let mut device = File::options().write(true).open(path).map_err(failed)?;
-            return device.write_all(bytes.get_ref()).map_err(failed);
+            return device.write_all(bytes.get_ref()).map(|()| answer).map_err(failed);
         }
         Target::File(target) => target,
     };
@@ -51,7 +52,7 @@ pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Place) -> R
         _ => Err(error),
     });
     let (mut file, temporary) = begun.map_err(failed)?;
-    write(&mut file)?;
+    let answer = write(&mut file)?;
     let become_file = || {
         if let Ok(before) = fs::metadata(&target) {
             file.set_permissions(before.permissions())?;
@@ -59,12 +60,17 @@ pub(super) fn replace_by(path: &Path, write: &mut dyn FnMut(&mut dyn Place) -> R
         file.sync_all()?;
         temporary.become_file(&target)
     };
-    become_file().map_err(failed)
+    become_file().map(|()| answer).map_err(failed)
 }
 
 /// The error of a file that cannot be written.
 pub(super) fn cannot_write(path: &Path, source: io::Error) -> Error {
     Error::Io { doing: "write", path: path.to_owned(), source }
+}
+
+/// The error of a file that cannot be read.
+pub(super) fn cannot_read(path: &Path, source: io::Error) -> Error {
+    Error::Io { doing: "read", path: path.to_owned(), source }
 }
 
 /// Finds out before a long render whether its image can be written; creates the folder if it is missing.

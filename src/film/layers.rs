@@ -172,11 +172,7 @@ impl Layer {
 
     /// Whether it is light to look at: what is computed with, such as an albedo or a half of the samples, is none.
     pub fn is_color(self) -> bool {
-        match self {
-            Self::Emission | Self::Background | Self::Direct | Self::Indirect => true,
-            Self::Caustics | Self::Dispersed | Self::Lights | Self::Shadow => true,
-            _ => self.is_of_lobe(),
-        }
+        self == Self::Shadow || self.is_light() && !Self::STOKES.contains(&self)
     }
 
     /// Whether its numbers are colors of the film's space: not where they are shares, squares or differences.

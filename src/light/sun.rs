@@ -1,4 +1,4 @@
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
 use super::{Beam, LeSample, LightSample};
@@ -82,6 +82,11 @@ impl<S> Sun<S> {
         // For unit vectors |d - axis|^2 = 2 (1 - cos), without the rounding of 1 - cos.
         let inside = (ray.direction - cone.axis).length_squared() <= 2.0 * cone.one_minus_cos * (1.0 + 1e-12);
         (inside && cone.one_minus_cos > 0.0).then(|| cone.uniform_pdf())
+    }
+
+    /// The solid angle under which it is seen, in steradians; 0 of parallel light.
+    pub(crate) fn solid_angle(&self) -> f64 {
+        TAU * self.disc().cone.one_minus_cos
     }
 
     /// The factor on the irradiance that makes the disc's radiance of it.

@@ -207,10 +207,9 @@ fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     let mut apart = Vec::new();
     for a in &first {
         let Some(b) = second.iter().find(|b| b.name == a.name && b.part.bounds == a.part.bounds) else { continue };
-        let [width, height] = a.part.bounds.size;
         let is_apart = |one: &Channel| {
             let other = b.channels.iter().find(|other| other.name == one.name);
-            other.is_some_and(|other| !(0..width * height).all(|at| is_same(one.at(at), other.at(at))))
+            other.is_some_and(|other| !(0..a.part.bounds.pixels()).all(|at| is_same(one.at(at), other.at(at))))
         };
         if a.channels.iter().any(|one| is_apart(one)) {
             apart.push(a.name.clone());
@@ -256,7 +255,6 @@ fn is_same(a: f64, b: f64) -> bool {
 
 /// All that the values alone say.
 fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
-    let count = bounds.size[0] * bounds.size[1];
     let (mut sums, mut squares, mut values, mut most) = ([0.0; 2], 0.0, 0usize, 0.0);
     let mut found = Difference {
         bounds,
@@ -274,13 +272,13 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
         worst: None,
         first_torn: None,
         noise: None,
-        absolute: Vec::with_capacity(count),
+        absolute: Vec::with_capacity(bounds.pixels()),
     };
     let place = |at: usize| {
         let of = |channels: &[&Channel]| channels.iter().map(|channel| channel.at(at)).collect();
         WorstPixel { at: bounds.place(at), values: [of(a), of(b)] }
     };
-    for at in 0..count {
+    for at in 0..bounds.pixels() {
         let pairs = || a.iter().zip(b).map(|(a, b)| (a.at(at), b.at(at)));
         let is_equal = pairs().all(|(a, b)| is_same(a, b));
         found.is_equal &= is_equal;
@@ -313,9 +311,8 @@ fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
 }
 
 fn alpha_difference(layers: &[ExrLayer; 2], bounds: PixelBounds) -> Option<AlphaDifference> {
-    let alphas =
-        layers.each_ref().map(|layer| layer.channels.iter().find(|channel| channel.name.to_lowercase() == "a"));
-    let [a, b] = [alphas[0]?, alphas[1]?];
+    let [a, b] = layers.each_ref().map(|layer| layer.channel("a"));
+    let (a, b) = (a?, b?);
     let found = measured([&[a], &[b]], bounds);
     let largest = found.absolute.iter().copied().fold(0.0, f64::max);
     let is_opposite = |at: &usize| [[0.0, 1.0], [1.0, 0.0]].contains(&[a.at(*at), b.at(*at)]);

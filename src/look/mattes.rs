@@ -64,7 +64,7 @@ impl<'f> Mattes<'f> {
                 std::array::from_fn(|i| sum[i] + covered * color[i])
             })
         };
-        Picture::of_light(self.width(), (0..self.pixels()).map(pixel))
+        Picture::of_light(self.width(), (0..self.part.bounds.pixels()).map(pixel))
     }
 
     /// The coverage of one name, black where it is not and white where nothing else is.
@@ -77,7 +77,7 @@ impl<'f> Mattes<'f> {
             None if self.names.is_empty() => id(wanted),
             None => return Err(self.unknown(wanted, shown)),
         };
-        Ok(Picture::of_grays(self.width(), (0..self.pixels()).map(|at| self.covered(known, at))))
+        Ok(Picture::of_grays(self.width(), (0..self.part.bounds.pixels()).map(|at| self.covered(known, at))))
     }
 
     /// Those of several that are asked for, and the name of a single one of them: of `CryptoObject.ball` it is `ball`.
@@ -106,7 +106,7 @@ impl<'f> Mattes<'f> {
             pairs.reduce(|most, next| if apart(next) > apart(most) { next } else { most }).unwrap_or_default()
         };
         let known = one.map(id);
-        let pairs = (0..a.pixels()).map(|at| known.map_or_else(|| furthest(at), |known| both(known, at)));
+        let pairs = (0..a.part.bounds.pixels()).map(|at| known.map_or_else(|| furthest(at), |known| both(known, at)));
         let (first, second) = pairs.map(|pair| pair.map(|covered| covered as f32)).map(Into::into).unzip();
         Ok([first, second].map(|values| Channel::of_values(one.unwrap_or("coverage"), values)))
     }
@@ -133,10 +133,6 @@ impl<'f> Mattes<'f> {
             message: format!("{shown} has no {wanted} in {}", self.name),
             help: Some(format!("{near}it has {listed}{more}")),
         }
-    }
-
-    fn pixels(&self) -> usize {
-        self.ranks.first().map_or(0, |[numbers, _]| numbers.values().count())
     }
 }
 

@@ -58,10 +58,10 @@ impl Misexposure {
     /// Of a picture of a layer of a file; none if the layer has no colors.
     pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> Option<Self> {
         let (color, (to_rec709, _)) = (layer.color()?, to_rec709(file));
-        let alpha = layer.channels.iter().find(|channel| channel.name.eq_ignore_ascii_case("a"));
-        let count = layer.part.bounds.size[0] * layer.part.bounds.size[1];
+        let alpha = layer.channel("a");
         let alpha = |at: usize| alpha.map_or(0.0, |alpha| alpha.at(at) as f32);
-        let pixels = (0..count).map(|at| (apply(&to_rec709, color.map(|channel| channel.at(at))), alpha(at)));
+        let pixels = (0..layer.part.bounds.pixels())
+            .map(|at| (apply(&to_rec709, color.map(|channel| channel.at(at))), alpha(at)));
         Counts::of(exposure, pixels).misexposure()
     }
 }

@@ -38,14 +38,14 @@ impl Picture {
             let (to_rec709, said) = to_rec709(file);
             let gain = libm::exp2(exposure.stops);
             let show = |rgb: [f64; 3]| apply(&to_rec709, rgb.map(|x| x * gain)).map(|x| exposure.tone.shown(x) as f32);
-            let count = layer.part.bounds.size[0] * layer.part.bounds.size[1];
-            let pixels = (0..count).map(|at| show(color.map(|channel| channel.at(at)))).collect();
+            let all = 0..layer.part.bounds.pixels();
+            let pixels = all.map(|at| show(color.map(|channel| channel.at(at)))).collect();
             return (Self { width, pixels, is_light: true }, said.into_iter().collect());
         }
-        let (mut planes, mut said) = (Vec::new(), Vec::new());
+        let (mut planes, mut said, is_direction) = (Vec::new(), Vec::new(), is_direction(layer));
         for channel in layer.channels.iter().take(3) {
-            let (low, high) = if is_direction(layer) { (-1.0, 1.0) } else { span(channel) };
-            if !is_direction(layer) {
+            let (low, high) = if is_direction { (-1.0, 1.0) } else { span(channel) };
+            if !is_direction {
                 said.push(format!(
                     "{}: black is {:?}, white {:?}, the 1st and 99th percentile of the finite values below 1e9",
                     channel.full_name(),

@@ -2,8 +2,8 @@
 
 use super::dyes;
 use super::seen::Seen;
-use super::survey::{Survey, Tint, strongest};
-use crate::spectrum::{Basis, Draw, Emission, Lanes, MAX_LANES, Quantity};
+use super::survey::{Survey, Tint, lanes, missed, strongest};
+use crate::spectrum::{Basis, Draw, Emission, MAX_LANES, Quantity, Upsampler};
 
 /// One model with the largest error of a color that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,27 +29,26 @@ const MOST: [usize; 2] = [20, 6];
 /// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
 /// over what light of a probe meets, however many smooth surfaces those are.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
-    let scattered = missed(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
+    let scattered = error_of_paths(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
     scattered.max(seen.error(survey, basis)).max(dyes::error(survey, basis))
 }
 
 /// The same over paths of chosen tints.
-fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
+fn error_of_paths(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
     let films = films_of(smooth);
     let in_lanes = paths(&read(scattering), &read(smooth), &films);
     let mut worst: f64 = 0.0;
     for (curve, light) in survey.judged() {
-        let exact = exact_colors(light, scattering, smooth, basis);
+        let exact = exact_colors(light, scattering, smooth, &survey.upsampler);
         let (table, response) = (basis.tabulate(Quantity::Emission, curve), basis.response(curve));
         let emission = draw.read(&table);
-        for (true_color, lanes) in exact.iter().zip(&in_lanes) {
-            let filter = Lanes::from_fn(|i| lanes.get(i).copied().unwrap_or(0.0) as f32);
-            let color = response.sensor(&draw, emission * filter, false);
-            let scale = strongest(*true_color);
+        for (exact, left) in exact.iter().zip(&in_lanes) {
+            let found = response.sensor(&draw, emission * lanes(left), false);
+            let scale = strongest(*exact);
             if scale > 0.0 {
-                worst = worst.max(strongest(std::array::from_fn(|c| color[c] - true_color[c])) / scale);
+                worst = worst.max(missed(found, *exact) / scale);
             }
         }
     }
@@ -57,9 +56,10 @@ fn missed(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]
 }
 
 /// The film colors of all paths, by sums over 1 nm.
-fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], basis: &Basis) -> Vec<[f64; 3]> {
+fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], upsampler: &Upsampler) -> Vec<[f64; 3]> {
     let colors = light.film_colors();
-    let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&colors.wavelengths_nm, basis)).collect::<Vec<_>>();
+    let read =
+        |tints: &[&Tint]| tints.iter().map(|tint| tint.at(&colors.wavelengths_nm, upsampler)).collect::<Vec<_>>();
     let films = films_of(smooth);
     paths(&read(scattering), &read(smooth), &films).iter().map(|path| colors.color(path)).collect()
 }
@@ -110,7 +110,7 @@ pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Can
     if survey.is_plain() {
         // Colors of three numbers are what they are; only what glass reflects is measured.
         let basis = Basis::rgb(space);
-        let error = missed(survey, &basis, &[], &survey.surfaces(MOST[1]));
+        let error = error_of_paths(survey, &basis, &[], &survey.surfaces(MOST[1]));
         candidates.push(Candidate { basis, error, safety: PREFILTERED_SAFETY });
         if heroes == 0 && error == 0.0 {
             return candidates;

@@ -6,7 +6,7 @@ use super::efficiency::{Worth, rounded, weigh};
 use super::words::in_number;
 use crate::light::{Light, LightId};
 use crate::material::Material;
-use crate::math::{DVec2, DVec3, one_minus_cos_of_cone};
+use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
@@ -261,8 +261,8 @@ fn missing(scene: &Scene<Curve>) -> &'static str {
 }
 
 /// Lights with the solid angle under which what is bright of them is seen.
-fn named(scene: &Scene<Curve>, lights: &[(LightId, f64)]) -> String {
-    let name = |&(id, size): &(LightId, f64)| {
+fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
+    let name = |&(id, size): &SizedLight| {
         let name = match &scene.lights[id] {
             Light::Area(area) => scene.objects[area.object as usize].name.clone(),
             Light::Point(_) => "a point".into(),
@@ -302,10 +302,7 @@ fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
 fn solid_angle<S>(light: &Light<S>, places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),
-        Light::Sun(sun) => {
-            let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
-            Some(TAU * one_minus_cos_of_cone(sin * sin))
-        }
+        Light::Sun(sun) => Some(sun.solid_angle()),
         Light::Environment(environment) => environment.bright().map(|bright| bright.solid_angle()),
         Light::Area(area) => {
             let (ball, size) = area.visible_part()?;

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::survey::{Survey, Tint, strongest};
-use crate::spectrum::{Basis, Curve, Draw, Dye, Emission, Lanes, MAX_LANES, Quantity, visible};
+use super::survey::{Survey, Tint, lanes, missed, strongest};
+use crate::spectrum::{Basis, Curve, Draw, Dye, Emission, Lanes, MAX_LANES, Quantity, Upsampler, visible};
 
 /// Most tints of each way that are combined, those farthest from gray.
 const MOST: usize = 8;
@@ -15,8 +15,8 @@ struct Ways<'a> {
 
 impl Ways<'_> {
     /// What is left of light at wavelengths in nm.
-    fn at(&self, wavelengths_nm: &[f64], basis: &Basis) -> Vec<Vec<f64>> {
-        self.read(wavelengths_nm.len(), |tint| tint.at(wavelengths_nm, basis))
+    fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<Vec<f64>> {
+        self.read(wavelengths_nm.len(), |tint| tint.at(wavelengths_nm, upsampler))
     }
 
     /// What is left of light in the lanes of a basis.
@@ -66,9 +66,9 @@ impl Lit<'_> {
         let (colors, glow) = (light.film_colors(), shines.film_colors());
         let wavelengths = &colors.wavelengths_nm;
         let excited: Vec<f64> = dye.excited_by(light).parts().collect();
-        let exact = ways.at(wavelengths, basis);
+        let exact = ways.at(wavelengths, basis.upsampler());
         let paper = Tint::Diffuse(Cow::Borrowed(reflectance));
-        let (reflected, reflected_lanes) = (paper.at(wavelengths, basis), lanes(&paper.on(basis)));
+        let (reflected, reflected_lanes) = (paper.at(wavelengths, basis.upsampler()), lanes(&paper.on(basis)));
 
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let in_lanes = ways.on(basis);
@@ -95,17 +95,12 @@ impl Lit<'_> {
                 let found: [f64; 3] = std::array::from_fn(|c| found_elastic[c] + found * found_glow[c]);
                 let scale = strongest(color);
                 if scale > 0.0 {
-                    worst = worst.max(strongest(std::array::from_fn(|c| found[c] - color[c])) / scale);
+                    worst = worst.max(missed(found, color) / scale);
                 }
             }
         }
         worst
     }
-}
-
-/// What is left of light, a number for each lane.
-fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
-    Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
 }
 
 /// What is said of a material's dyes: where they absorb light, and whether lanes reach there.

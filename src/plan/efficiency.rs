@@ -1,7 +1,5 @@
 //! Whether photons are worth their time, and how many.
 
-use std::f64::consts::PI;
-
 use crate::light::{Light, LightId};
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Emission, apply};
@@ -72,10 +70,7 @@ fn radiance(scene: &Scene<Curve>, light: LightId, colors: &mut Distinct<[f64; 3]
     let factor = match light {
         Light::Area(area) => area.brightness(),
         Light::Environment(environment) => environment.bright()?.radiance(),
-        Light::Sun(sun) if sun.angular_diameter > 0.0 => {
-            let sin = libm::sin(0.5 * sun.angular_diameter.to_radians());
-            1.0 / (PI * sin * sin)
-        }
+        Light::Sun(sun) if sun.angular_diameter > 0.0 => sun.radiance_factor(),
         _ => return None,
     };
     let space = scene.film.color_space;

@@ -31,7 +31,7 @@ use crate::trace::{
 };
 use lit::Lit;
 use model::Model;
-use survey::SEED;
+use survey::method_of_paths;
 use words::{in_number, in_words};
 
 pub use candidates::Candidate;
@@ -124,15 +124,7 @@ fn before_light(scene: &Scene<Curve>, basis: Basis, model_error: f64) -> (Method
         (Transport::Deterministic { .. }, None) => 1,
         (Transport::Random { .. }, None) => SAMPLES,
     };
-    let method = Method {
-        together,
-        samples,
-        stop,
-        diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
-        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        ..Method::of_paths(basis, transport, SEED)
-    };
-    (method, reason)
+    (Method { together, samples, stop, ..method_of_paths(scene, basis, transport) }, reason)
 }
 
 /// What the film and its layers take, where that is much.

@@ -73,8 +73,9 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let next =
         if hero { candidates.get(chosen) } else { candidates.get(chosen + 1) }.map(|candidate| candidate.basis.clone());
     let next = next.filter(|_| hero || !survey.is_plain());
-    let missed = (!is_exact || basis.fixed_lanes() > 3).then(|| missed(&candidates, &basis, &survey, &seen, tolerance));
-    let error = if missed.is_some() { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
+    let may_miss = !is_exact || basis.fixed_lanes() > 3;
+    let error = if may_miss { bound(&candidates, &basis, &survey, &seen) } else { 0.0 };
+    let missed = may_miss.then(|| missed(&candidates, &basis, error, tolerance));
     let is_for_spectra = spectral && scene.render.model == ModelText::Auto;
     let beyond = if is_for_spectra && error > tolerance { format!("; {BEYOND}") } else { String::new() };
     let mut because = vec![format!("model {}: {}; {why}{beyond}", basis.name(), lanes(&basis))];
@@ -138,10 +139,9 @@ fn bound(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen) 
     known.map_or_else(|| LANES_SAFETY * error(survey, seen, basis), Candidate::bound)
 }
 
-/// All candidates in one line; for heroes, what their fixed lanes miss.
-fn missed(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen, tolerance: f64) -> String {
+/// All candidates in one line, and the basis with its bound; for heroes, what their fixed lanes miss.
+fn missed(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
-        let bound = bound(candidates, basis, survey, seen);
         return format!("colors are off by at most {} ({} is tolerated)", percent(bound), percent(tolerance));
     }
     let mut steps: Vec<String> = candidates
@@ -149,7 +149,7 @@ fn missed(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen,
         .map(|candidate| format!("{} {}", candidate.basis.name(), percent(candidate.bound())))
         .collect();
     if !candidates.iter().any(|candidate| candidate.basis.name() == basis.name()) {
-        steps.push(format!("{} {}", basis.name(), percent(bound(candidates, basis, survey, seen))));
+        steps.push(format!("{} {}", basis.name(), percent(bound)));
     }
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::survey::{Survey, Tint, method_of_a_look, strongest, tolerance};
+use super::survey::{Survey, Tint, method_of_a_look, missed, strongest, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity};
@@ -63,16 +63,16 @@ impl<'a> Seen<'a> {
             let read = || (draw.read(&basis.tabulate(Quantity::Emission, curve)), basis.response(curve));
             lights.entry(light).or_insert_with(read);
         }
-        let missed = |color: &Color| {
+        let error = |color: &Color| {
             let mut lanes = [0.0; MAX_LANES];
             for (product, weight) in &color.sum {
                 lanes.iter_mut().zip(&products[*product]).for_each(|(lane, left)| *lane += weight * left);
             }
             let (emission, response) = &lights[&color.light];
             let found = response.sensor(&draw, *emission * Lanes(lanes.map(|x| x as f32)), false);
-            strongest(std::array::from_fn(|c| found[c] - color.exact[c])) / color.scale
+            missed(found, color.exact) / color.scale
         };
-        self.colors.iter().map(missed).fold(0.0, f64::max)
+        self.colors.iter().map(error).fold(0.0, f64::max)
     }
 
     /// What is left of light after each product, where tints leave some.
@@ -174,8 +174,7 @@ impl<'a> Keeping<'a> {
             }
             let film = emission.film_colors();
             let wavelengths = &film.wavelengths_nm;
-            let tints: Vec<Vec<f64>> =
-                seen.tints.iter().map(|tint| tint.read(wavelengths, &survey.upsampler)).collect();
+            let tints: Vec<Vec<f64>> = seen.tints.iter().map(|tint| tint.at(wavelengths, &survey.upsampler)).collect();
             let products = seen.multiply(&tints, wavelengths.len());
             let products: Vec<[f64; 3]> = products.iter().map(|left| film.color(left)).collect();
             let mut brightest: BTreeMap<u32, f64> = BTreeMap::new();

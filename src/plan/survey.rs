@@ -10,7 +10,8 @@ use crate::material::{
 };
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::{
-    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Quantity, Upsampler, normal_reflectance, visible,
+    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Lanes, MAX_LANES, Quantity, Upsampler, normal_reflectance,
+    visible,
 };
 use crate::trace::{Method, Transport};
 
@@ -20,7 +21,7 @@ const SHARE: f64 = 1.0 / 3.0;
 const ERROR: f64 = 0.03;
 /// The seed of what a plan looks at. A plan is the same for all seeds of the image: otherwise its model of color could
 /// change from frame to frame.
-pub(super) const SEED: u64 = 0;
+const SEED: u64 = 0;
 
 /// The relative error of a color that its model may make.
 pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
@@ -32,11 +33,29 @@ pub(super) fn strongest(color: [f64; 3]) -> f64 {
     color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
 
+/// The error of a color in its worst channel.
+pub(super) fn missed(found: [f64; 3], exact: [f64; 3]) -> f64 {
+    strongest(std::array::from_fn(|c| found[c] - exact[c]))
+}
+
+/// What is left of light, a number for each lane.
+pub(super) fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
+    Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
+}
+
+/// The method of paths that are as long as the scene lets them be.
+pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Transport) -> Method {
+    Method {
+        diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
+        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
+        ..Method::of_paths(basis, transport, SEED)
+    }
+}
+
 /// The method by which a plan looks where colors go: no path splits, and none is ended at random.
 pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
-    let diffuse_bounces = scene.render.diffuse_bounces.unwrap_or(u32::MAX);
-    Method { diffuse_bounces, ..Method::of_paths(basis, transport, SEED) }
+    Method { max_bounces: u32::MAX, ..method_of_paths(scene, basis, transport) }
 }
 
 /// The colors of a scene: what shines and what tints.
@@ -233,8 +252,7 @@ impl<'a> Survey<'a> {
             .iter()
             .filter(|tint| which(tint))
             .map(|tint| {
-                let values =
-                    tint.read(&[420.0, 450.0, 480.0, 510.0, 540.0, 570.0, 600.0, 630.0, 660.0], &self.upsampler);
+                let values = tint.at(&[420.0, 450.0, 480.0, 510.0, 540.0, 570.0, 600.0, 630.0, 660.0], &self.upsampler);
                 let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
                 ((high - low) / high.max(1e-9), tint)
             })
@@ -289,11 +307,7 @@ impl Tint<'_> {
     }
 
     /// What is left of the light at wavelengths in nm.
-    pub(super) fn at(&self, wavelengths_nm: &[f64], basis: &Basis) -> Vec<f64> {
-        self.read(wavelengths_nm, basis.upsampler())
-    }
-
-    pub(super) fn read(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
+    pub(super) fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
         self.combine(|quantity, curve| {
             if quantity == Quantity::BandWidth {
                 // What is summed over 1 nm has the fringes of bands of 1 nm.

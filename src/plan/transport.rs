@@ -1,6 +1,6 @@
 //! Whether light is followed in all its ways or in some, chosen by chance.
 
-use super::survey::SEED;
+use super::survey::method_of_paths;
 use super::words::percent;
 use crate::film::Filter;
 use crate::light::Light;
@@ -86,12 +86,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
     if !scene.materials.iter().any(|named| named.material.has_single_directions()) {
         return None;
     }
-    let method = Method {
-        together,
-        diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
-        max_bounces: scene.render.max_bounces.unwrap_or(u32::MAX),
-        ..Method::of_paths(basis.clone(), DETERMINISTIC, SEED)
-    };
+    let method = Method { together, ..method_of_paths(scene, basis.clone(), DETERMINISTIC) };
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,
         Branching::Beyond([x, y]) => Some(format!(

@@ -119,7 +119,7 @@ impl Image {
     }
 
     /// What its files say of it.
-    fn heading(&self) -> Heading<'_> {
+    pub(super) fn heading(&self) -> Heading<'_> {
         Heading { film: &self.film, format: &self.format, view: &self.view, provenance: &self.provenance }
     }
 

@@ -9,8 +9,8 @@ use super::origin::NON_FINITE;
 use super::part::{Head, Tile, open};
 use crate::error::{Error, Result};
 use crate::film::{
-    BlockReader, DEPTH_OF_NOTHING, Film, Format, Heading, Pixel, Provenance, Rows, Shard, TILE, TilePlace, View,
-    Window, write_exr, write_spectral_exr,
+    BlockReader, DEPTH_OF_NOTHING, Film, Format, Pixel, Rows, Shard, TILE, TilePlace, Window, write_exr,
+    write_spectral_exr,
 };
 use crate::trace::Report;
 
@@ -36,13 +36,8 @@ use crate::trace::Report;
 /// # Ok::<(), abbe::Error>(())
 /// ```
 pub struct Parts {
-    /// The image without its pixels.
-    film: Film,
-    format: Format,
-    view: View,
-    provenance: Provenance,
-    /// What was left out of all parts.
-    non_finite: u64,
+    /// What is known of the image without its pixels, and what was left out of all parts.
+    image: Image,
     /// In the order of their numbers.
     files: Vec<Tiles>,
 }
@@ -102,12 +97,14 @@ impl Parts {
         non_finite += whole.shared_non_finite();
         let Head { film, format, view, mut provenance, .. } = whole;
         provenance.set_count(NON_FINITE, non_finite);
-        Ok(Self { film, format, view, provenance, non_finite, files: found.into_values().collect() })
+        let report = Report { non_finite, ..Report::default() };
+        let image = Image { film, report, error: None, because: Vec::new(), view, format, provenance, dark: None };
+        Ok(Self { image, files: found.into_values().collect() })
     }
 
     /// How the image's file is written.
     pub fn format(&self) -> &Format {
-        &self.format
+        &self.image.format
     }
 
     /// Writes the image as [`Image::write_exr`] does, to the same bytes as one render. It takes as much memory as some
@@ -116,7 +113,7 @@ impl Parts {
     /// # Errors
     /// As of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
-        write_exr(self.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
+        write_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
     }
 
     /// Writes the spectra as [`Image::write_spectral_exr`] does, in as little memory. Answers whether there are any.
@@ -124,8 +121,8 @@ impl Parts {
     /// # Errors
     /// As [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<bool> {
-        write_spectral_exr(self.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())?;
-        Ok(self.film.spectral.is_some())
+        write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())?;
+        Ok(self.image.film.spectral.is_some())
     }
 
     /// The image in memory. It says of its rendering only what its files say.
@@ -134,14 +131,8 @@ impl Parts {
     /// [`Error::Decode`](crate::Error::Decode) if a part is damaged.
     pub fn image(&self) -> Result<Image> {
         let mut all = Strip::new(self, None);
-        all.rows(0..self.film.height)?;
-        let report = Report { non_finite: self.non_finite, ..Report::default() };
-        let (view, format, provenance) = (self.view, self.format.clone(), self.provenance.clone());
-        Ok(Image { film: all.film, report, error: None, because: Vec::new(), view, format, provenance, dark: None })
-    }
-
-    fn heading(&self) -> Heading<'_> {
-        Heading { film: &self.film, format: &self.format, view: &self.view, provenance: &self.provenance }
+        all.rows(0..self.image.film.height)?;
+        Ok(Image { film: all.film, ..self.image.clone() })
     }
 }
 
@@ -176,8 +167,9 @@ struct Strip<'p> {
 impl<'p> Strip<'p> {
     fn new(parts: &'p Parts, at_once: Option<u32>) -> Self {
         let readers = parts.files.iter().take(MOST_OPEN).map(|_| None).collect();
-        let (files, tiles) = (parts.files.clone(), Shard::WHOLE.tiles(parts.film.window()).count());
-        Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..parts.film.clone() } }
+        let (files, film) = (parts.files.clone(), &parts.image.film);
+        let tiles = Shard::WHOLE.tiles(film.window()).count();
+        Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..film.clone() } }
     }
 
     /// Makes room for so many rows.
@@ -240,7 +232,7 @@ impl Rows for Strip<'_> {
 
     fn rows(&mut self, rows: Range<u32>) -> Result<(&Film, usize)> {
         self.resize(rows.end - rows.start);
-        let window = self.parts.film.window();
+        let window = self.parts.image.film.window();
         let per_row = window.width.div_ceil(TILE) as usize;
         let [first, end] = [rows.start, rows.end].map(|row| row.div_ceil(TILE) as usize * per_row);
         for place in Shard::WHOLE.tiles(window).skip(first).take(end - first) {

@@ -1,11 +1,11 @@
 //! Caustics that end where surfaces end, meet or are laid in pieces.
 
-use abbe::film::{Film, Window};
+use abbe::film::Window;
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method};
 
 use super::agreement::{blocks, seen_by, with_method};
-use crate::support::scenes::{SPLITTING, film_of, object, scene, standard_errors};
+use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene, standard_errors};
 
 /// What a mirror before the camera shows, which looks the other way.
 const VIEW: &str = "position = [0, 6, 6]\nlook_at = [0, 6, 5]\nvertical_fov = 25";
@@ -99,12 +99,7 @@ fn planned(text: &str) -> [f64; 3] {
     let scene = scene(text);
     let method = plan(&scene).method;
     assert!(method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some()), "nothing is gathered");
-    mean(&film_of(&scene, method))
-}
-
-fn mean(film: &Film) -> [f64; 3] {
-    let count = film.pixels.len() as f64;
-    [0, 1, 2].map(|band| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])).sum::<f64>() / count)
+    mean_color(&film_of(&scene, method))
 }
 
 /// A ball of glass above a floor of so many pieces, seen in a mirror above; `turned` turns every other piece over.
@@ -142,7 +137,7 @@ fn k5_a_thin_table_that_is_lit_from_below_does_not_glow_above() {
         let scene = scene(&by_mirror(&table, height));
         let light_pass = Some(LightPass { photons: 32_768, lights: vec![0], map: Some(WIDE) });
         let method = Method { samples: 4, transport: SPLITTING, light_pass, ..plan(&scene).method };
-        mean(&film_of(&scene, method))[1]
+        mean_color(&film_of(&scene, method))[1]
     };
     let (above, below) = (seen(3.0), seen(-3.0));
     assert!(above > 0.0 && below == 0.0, "{above} lit from above, {below} from below");

@@ -6,7 +6,7 @@ use abbe::trace::{LightPass, MapPasses, Method};
 
 use super::agreement::{LAMP, agree, seen_by};
 use crate::support::run::{Answer, Folder, render};
-use crate::support::scenes::{SPLITTING, film_of, object, scene};
+use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene};
 
 /// The method of a scene's plan with all lights and so many photons.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
@@ -46,9 +46,7 @@ fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
         ("0.003", lamp(0.003), 0.0084),
         ("a point", point, 0.0084),
     ] {
-        let mean = |film: &Film| {
-            film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / film.pixels.len() as f64
-        };
+        let mean = |film: &Film| mean_color(film)[1];
         // Straight light, past the ball, is no part of the caustic; the camera's samples are the same.
         let straight = scene(&patch(&light));
         let method = Method { samples: 16, light_pass: None, diffuse_bounces: 0, ..plan(&straight).method };
@@ -75,8 +73,7 @@ fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
             "spot = {{ position = [0, 7, 0], toward = [0, -1, 0], cone_angle = {degrees}, blend = 0, intensity = 0.25 }}"
         ))
     };
-    let mean = |film: &Film| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum::<f64>() / 576.0;
-    let (all, wide, narrow) = (mean(&point), mean(&spot(120.0)), mean(&spot(6.0)));
+    let [all, wide, narrow] = [point, spot(120.0), spot(6.0)].map(|film| mean_color(&film)[1]);
     println!("point {all:.4e}, wide spot {wide:.4e}, narrow spot {narrow:.4e}");
     assert!((wide / all - 1.0).abs() < 0.01, "{wide} for {all}");
     // All light of a cone of half angle 3 degrees meets the ball within its inner third, where nearly (2 sqrt(n) / (n +

@@ -3,11 +3,9 @@
 use abbe::plan::plan;
 use abbe::spectrum::{ColorSpace, Emission, apply, visible};
 use abbe::trace::Method;
-use palette::Lab;
-use palette::color_difference::Ciede2000;
-use palette::white_point::D65;
 
 use super::reference::{Layer, shares};
+use crate::support::colors::{self, difference};
 use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, film_of, quad, scene, view};
@@ -32,17 +30,7 @@ fn mirrored(material: &str, degrees: f64) -> ([f64; 3], String) {
 
 /// CIELAB under the film's white.
 fn lab(xyz: [f64; 3]) -> [f64; 3] {
-    let white = apply(&ColorSpace::Rec709.to_xyz(), [1.0; 3]);
-    let f = |t: f64| {
-        if t > (6.0_f64 / 29.0).powi(3) { t.cbrt() } else { t / (3.0 * (6.0_f64 / 29.0).powi(2)) + 4.0 / 29.0 }
-    };
-    let [x, y, z] = [0, 1, 2].map(|i| f(xyz[i] / white[i]));
-    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
-}
-
-fn difference(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let [a, b] = [a, b].map(|[l, a, b]| Lab::<D65, f64>::new(l, a, b));
-    a.difference(b)
+    colors::lab(xyz, apply(&ColorSpace::Rec709.to_xyz(), [1.0; 3]))
 }
 
 fn of_xy(y: f64, chromaticity: [f64; 2]) -> [f64; 3] {

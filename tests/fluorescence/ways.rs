@@ -6,7 +6,7 @@ use abbe::trace::{LightPass, MapPasses, Method};
 
 use super::{BRIGHTENER, Bells, RED, YELLOW};
 use crate::support::larger::larger;
-use crate::support::scenes::{Mean, SPLITTING, body, films_of, method, moments, rendered, scene, view};
+use crate::support::scenes::{Mean, SPLITTING, body, films_of, mean_color, method, moments, rendered, scene, view};
 
 /// Renders whose spread is their noise.
 const SEEDS: u64 = 4;
@@ -25,10 +25,7 @@ fn agree(found: Mean, expected: Mean, what: &str) {
 /// The mean color of images under several seeds.
 fn mean(films: &[Film]) -> Mean {
     let of = |c: usize| {
-        let means = films.iter().map(|film| {
-            film.pixels.iter().map(|pixel| f64::from(pixel.rgb[c])).sum::<f64>() / film.pixels.len() as f64
-        });
-        let (value, variance) = moments(means);
+        let (value, variance) = moments(films.iter().map(|film| mean_color(film)[c]));
         [value, (variance / films.len() as f64).sqrt()]
     };
     let bands = [0, 1, 2].map(of);

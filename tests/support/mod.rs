@@ -5,6 +5,7 @@
 pub mod arrivals;
 pub mod bodies;
 pub mod chi_squared;
+pub mod colors;
 pub mod exact;
 pub mod fresnel;
 pub mod larger;

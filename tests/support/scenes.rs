@@ -154,6 +154,12 @@ pub fn films_of(scene: &Scene<Curve>, method: &Method, seeds: Range<u64>) -> Vec
     seeds.map(|seed| film_of(scene, Method { seed, ..method.clone() })).collect()
 }
 
+/// The mean of each band over a film.
+pub fn mean_color(film: &Film) -> [f64; 3] {
+    [0, 1, 2]
+        .map(|band| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])).sum::<f64>() / film.pixels.len() as f64)
+}
+
 /// A mean of each band with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {

@@ -4,7 +4,7 @@ use abbe::math::DVec3;
 use abbe::trace::Method;
 
 use super::*;
-use crate::support::scenes::{Mean, SPLITTING, films_of, scene};
+use crate::support::scenes::{Mean, SPLITTING, film_of, films_of, mean_color, scene};
 
 const WIDTH: usize = 4;
 /// Rows from the top: nothing is symmetric.
@@ -255,8 +255,7 @@ fn patterns_too_fine_to_be_told_apart_shine_like_their_mean() {
     let lit = |lamp: &str, shape: &str| {
         let scene = scene(&floor("\"rgb\"").replace(LAMP, lamp).replace(quad, shape));
         let method = Method { transport: SPLITTING, ..plan(&scene).method };
-        let film = film_of(&scene, method);
-        film.pixels.iter().map(|pixel| f64::from(pixel.rgb[0])).sum::<f64>() / film.pixels.len() as f64
+        mean_color(&film_of(&scene, method))[0]
     };
     let even = lit("emissive = { radiance = { rgb = [3, 2, 1] } }", quad);
     let (of_quad, of_mesh) = (lit(fine, quad), lit(fine, mesh));

@@ -78,15 +78,10 @@ class Program:
     """A renderer that is a process for each picture; user and system time of the whole process count."""
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:
-        with subprocess.Popen(
-            [str(word) for word in self.command(samples, seed)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-        ) as process:
-            said = process.stderr.read().decode()
-            _, status, used = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-        if status:
+        took, code, said = render.measured(self.command(samples, seed))
+        if code:
             raise RuntimeError(f"{self.label} failed: {said.strip()[-2000:]}")
-        return self.picture(), used.ru_utime + used.ru_stime
+        return self.picture(), took.processor
 
     def close(self) -> None:
         pass

@@ -64,30 +64,21 @@ def make_lenses():
     yield "ring", [*shapes.arc((0.86, 0), 0.085, 0, 360, 17)]
 
 
-def make_pottery():
-    yield "vase", shapes.vase()
-    yield "bowl", shapes.bowl()
-
-
 def make():
     """Every mesh and image that a scene names."""
     meshes, images = SCENES / "meshes", SCENES / "textures"
     shapes.write_ply(meshes / "brilliant.ply", *shapes.brilliant())
     for name, profile in [("tumbler", shapes.tumbler()), ("water", shapes.water()), *make_lenses()]:
         shapes.write_ply(meshes / f"{name}.ply", *shapes.lathe(profile, 72))
-    for name, profile in make_pottery():
+    for name, profile in (("vase", shapes.vase()), ("bowl", shapes.bowl())):
         shapes.write_ply(meshes / f"{name}.ply", *shapes.lathe(profile, 48))
     points, faces, uv = shapes.tube()
     shapes.write_ply(meshes / "straw.ply", points, faces, uv=uv)
     shapes.write_ply(meshes / "sweep.ply", *shapes.sweep())
     shapes.write_ply(meshes / "curtain.ply", *shapes.curtain())
     shapes.write_ply(meshes / "waves.ply", *shapes.block(shapes.waves(), 5.2, 5.2, -1.5))
-    textures.write_png(images / "stripes.png", textures.stripes())
-    textures.write_png(images / "wood.png", textures.wood())
-    textures.write_png(images / "tiles.png", textures.tiles())
-    textures.write_png(images / "chart.png", textures.chart())
-    textures.write_png(images / "painting.png", textures.painting())
-    textures.write_png(images / "soap.png", textures.soap())
+    for image in (textures.stripes, textures.wood, textures.tiles, textures.chart, textures.painting, textures.soap):
+        textures.write_png(images / f"{image.__name__}.png", image())
     textures.write_hdr(images / "evening.hdr", textures.sky())
     make_sunflower(SCENES / "large/instances.toml")
     make_landscape()

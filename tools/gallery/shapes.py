@@ -185,6 +185,13 @@ def bowl():
     return [(0, 0), (0.06, 0), (0.06, 0.008), *outside, *inside, (0, 0.021)]
 
 
+def grid(rows, columns):
+    """The triangles between points in rows and columns."""
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
+    upper = np.stack([corner, corner + columns, corner + 1], 1)
+    return np.concatenate([upper, np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
+
+
 def curtain(width=0.55, height=2.15, folds=5, columns=61, rows=15):
     """A hanging cloth from the origin down, gathered toward the top, with smooth normals; its folds run along +x and swing in z."""
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
@@ -192,10 +199,7 @@ def curtain(width=0.55, height=2.15, folds=5, columns=61, rows=15):
     points = np.stack([(s - 0.5) * width * (0.9 + 0.12 * t), -height * t, swing], axis=-1)
     normals = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
-    lower = np.stack([corner, corner + columns, corner + 1], 1)
-    faces = np.concatenate([lower, np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
-    return points.reshape(-1, 3), faces, normals.reshape(-1, 3)
+    return points.reshape(-1, 3), grid(rows, columns), normals.reshape(-1, 3)
 
 
 def noise(size, cells, seed):
@@ -225,9 +229,7 @@ def sheet(heights, width, depth):
     rows, columns = heights.shape
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     points = np.stack([(s - 0.5) * width, heights, (t - 0.5) * depth], axis=-1).reshape(-1, 3)
-    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
-    faces = np.concatenate([np.stack([corner, corner + columns, corner + 1], 1), np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
-    return points, faces, np.stack([s, 1 - t], axis=-1).reshape(-1, 2)
+    return points, grid(rows, columns), np.stack([s, 1 - t], axis=-1).reshape(-1, 2)
 
 
 def waves(size=65, width=5.2):

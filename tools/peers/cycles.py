@@ -34,15 +34,13 @@ class Renderer:
             add(bpy, self.scene, triangles(kind, values, path.parent), materials[name])
 
     def picture(self, samples: int, seed: int) -> np.ndarray:
-        import OpenEXR
+        import render
 
         self.scene.cycles.samples, self.scene.cycles.seed = samples, seed
         with tempfile.TemporaryDirectory() as folder:
             self.scene.render.filepath = f"{folder}/picture.exr"
             self.bpy.ops.render.render(write_still=True)
-            with OpenEXR.File(self.scene.render.filepath, separate_channels=True) as file:
-                channels = file.channels()
-                return np.stack([np.array(channels[name].pixels, np.float64) for name in "RGB"], -1)
+            return render.read(self.scene.render.filepath).rgb
 
 
 def set_up(scene, film: dict) -> None:

@@ -13,6 +13,8 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import render
+
 from .scene import parts, read, rgb, shapes, triangles
 
 
@@ -95,8 +97,4 @@ def command(path: Path, quality: int, seed: int, folder: Path) -> list:
 
 
 def read_picture(folder: Path) -> np.ndarray:
-    import OpenEXR
-
-    with OpenEXR.File(str(folder / "povray.exr"), separate_channels=True) as file:
-        channels = file.channels()
-        return np.stack([np.array(channels[name].pixels, np.float64) for name in "RGB"], -1)
+    return render.read(folder / "povray.exr").rgb

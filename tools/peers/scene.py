@@ -11,6 +11,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+from gallery.shapes import write_ply
 
 WALL, LAMP = 1e4, 100.0
 BALL = (256, 512)  # rings and sectors of a sphere made of triangles
@@ -108,13 +109,7 @@ def bumpy_ball(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
 
 def write_bumpy_ball(path: Path, rings: int = BUMPY[0], sectors: int = BUMPY[1]) -> None:
     """A bumpy ball, of 1.3 million triangles unless told otherwise, as a PLY file."""
-    points, faces = bumpy_ball(rings, sectors)
-    records = np.zeros(len(faces), [("count", "u1"), ("corners", "<i4", 3)])
-    records["count"], records["corners"] = 3, faces
-    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
-    header += [f"property float {axis}" for axis in "xyz"]
-    header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", ""]
-    path.write_bytes("\n".join(header).encode() + points.astype("<f4").tobytes() + records.tobytes())
+    write_ply(path, *bumpy_ball(rings, sectors))
 
 
 def ball(center, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -97,6 +97,11 @@ def render_reference(folder: Path) -> dict:
     }
 
 
+def line(region: str, changes, errors) -> str:
+    """The changes of a region in percent, each with its standard error."""
+    return f"  {region:<12}" + "".join(f"  {100 * x:+8.3f} ({100 * e:.3f})" for x, e in zip(changes, errors))
+
+
 def compare(reference: dict) -> str:
     """Abbe's means beside the program's, each with its standard error."""
     text = scene_text(*SIZE)
@@ -105,9 +110,7 @@ def compare(reference: dict) -> str:
     for name, (mean, error) in mean_and_error(runs).items():
         values = reference["reference"]["regions"][name]
         expected = np.array(values["mean"])
-        errors = np.hypot(error, values["error"]) / expected
-        pairs = zip(mean / expected - 1, errors)
-        lines.append(f"  {name:<12}" + "".join(f"  {100 * x:+8.3f} ({100 * e:.3f})" for x, e in pairs))
+        lines.append(line(name, mean / expected - 1, np.hypot(error, values["error"]) / expected))
     return "\n".join(lines)
 
 
@@ -116,9 +119,7 @@ def table(reference: dict) -> str:
     lines = ["changes in percent (one standard error), R G B"]
     for habit, entry in reference["relative_changes"].items():
         lines.append(f"\n{habit}")
-        for name, values in entry["regions"].items():
-            pairs = zip(values["mean"], values["error"])
-            lines.append(f"  {name:<12}" + "".join(f"  {100 * x:+8.3f} ({100 * e:.3f})" for x, e in pairs))
+        lines += [line(name, values["mean"], values["error"]) for name, values in entry["regions"].items()]
     return "\n".join(lines)
 
 

@@ -1,8 +1,10 @@
 """Stability rows S1, S6, T1: where rays meet surfaces. Naive methods in numpy, ours on rendered images."""
 
 import numpy as np
+from validation.scenes import plane, quad, sphere
+
 from .plot import Plot, Series
-from .scenes import WHITE_SKY, fresnel, photograph, plane, sphere, view
+from .scenes import WHITE_SKY, fresnel, photograph, view
 
 INDEX = 1.5
 
@@ -66,7 +68,7 @@ def s1(quick: bool) -> Plot:
     ours = []
     for distance in distances:
         fov = 2 * np.degrees(np.arctan(0.999 / distance))
-        scene = view([("black glass", sphere())], [WHITE_SKY], eye=(0, 0, distance), fov=fov, rows=count)
+        scene = view([("black_glass", sphere())], [WHITE_SKY], eye=(0, 0, distance), fov=fov, rows=count)
         slope = np.tan(np.radians(fov) / 2) * (2 * np.arange(count) + 1 - count) / count
         truth = ball_reflectance(np.sqrt(1 - (distance * slope / np.hypot(1, slope)) ** 2))
         ours.append(rms(photograph(scene).channels["G"][:, 0].astype(float) / truth - 1))
@@ -99,12 +101,11 @@ def scaled_scene(size: float) -> str:
         "gray": {"diffuse": {"reflectance": 0.6}},
         "bright": {"emissive": {"radiance": 5}},
     }
-    quad = {"quad": {"center": [0, 4 * size, 0], "u": [size, 0, 0], "v": [0, 0, size]}}
     objects = [
         ("glass", sphere((0, size, 0), size)),
         ("metal", sphere((2 * size, size, -size), size)),
         ("gray", plane((0, 0, 0), (0, 1, 0))),
-        ("bright", quad),
+        ("bright", quad((0, 4 * size, 0), (size, 0, 0), (0, 0, size))),
     ]
     lights = [{"environment": {"radiance": 0.2}}]
     return view(
@@ -212,7 +213,7 @@ def t1(quick: bool) -> Plot:
         [1e-1, 1e-8, 1e-16] if quick else [1e-1, 1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17]
     )
     rows = 64
-    mesh = {"mesh": {"points": points, "faces": faces}}
+    mesh = {"mesh": {"points": points.tolist(), "faces": faces.tolist()}}
     leaks = np.zeros((len(aims), 3))
     for index in chosen:
         a, b = (points[i] for i in edges[index])

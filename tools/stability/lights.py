@@ -1,8 +1,10 @@
 """Stability rows A6, L1, L3, L4: lights that are small, far or close. Naive methods in numpy, ours on images."""
 
 import numpy as np
+from validation.scenes import glow, plane, quad, sphere
+
 from .plot import Plot, Series, times
-from .scenes import green, plane, sphere, timed, view
+from .scenes import green, timed, view
 
 
 def caustic_scene(radius: float, samples: int, caustics: str, **settings) -> str:
@@ -73,22 +75,19 @@ def a6(quick: bool) -> Plot:
     )
 
 
+def floor_under(shape: dict, radiance: float, eye, side: int) -> float:
+    """The mean of a white floor about the origin, by light straight from a lamp."""
+    objects = [("white", plane((0, 0, 0), (0, 1, 0))), ("shining", shape)]
+    shining = {"shining": glow(radiance)}
+    scene = view(objects, materials=shining, eye=eye, columns=side, rows=side, samples=64, diffuse_bounces=0)
+    return float(green(scene).mean())
+
+
 def l1(quick: bool) -> Plot:
     """A floor under a far, small ball of light of the same irradiance."""
     sizes = 10.0 ** np.arange(-1, -6.1, -2 if quick else -0.5)
-    ours = []
-    for size in sizes:
-        objects = [("white", plane((0, 0, 0), (0, 1, 0))), ("far", sphere((0, 1, 0), float(size)))]
-        scene = view(
-            objects,
-            materials={"far": {"emissive": {"radiance": float(1 / size**2)}}},
-            eye=(3, 1, 0),
-            columns=8,
-            rows=8,
-            samples=64,
-            diffuse_bounces=0,
-        )
-        ours.append(abs(float(green(scene).mean()) - 1))
+    lamps = [(sphere((0, 1, 0), float(size)), float(1 / size**2)) for size in sizes]
+    ours = [abs(floor_under(*lamp, eye=(3, 1, 0), side=8) - 1) for lamp in lamps]
     s = sizes.astype(np.float32)
     with np.errstate(divide="ignore"):
         cone = np.float32(1) - np.sqrt(np.float32(1) - s * s)
@@ -143,7 +142,7 @@ def l3(quick: bool) -> Plot:
         exact = wall_share(h)
         naive.append(area_deviation(h))
         biases.append(estimate.mean() / exact)
-        lamp = {"quad": {"center": [0, 1, 0], "u": [0, 0, -1], "v": [0, 1, 0]}}
+        lamp = quad((0, 1, 0), (0, 0, -1), (0, 1, 0))
         scene = view(
             [("white", plane((0, 0, 0), (0, 1, 0))), ("lamp", lamp)],
             eye=(float(h), 3, 0),
@@ -164,7 +163,7 @@ def l3(quick: bool) -> Plot:
         f"deviate by at most {max(ours):.2f} of the mean at any distance, and the mean is within {max(misses):.1f} "
         "standard errors."
     )
-    plot = Plot(
+    return Plot(
         "L3",
         "A lamp that touches the floor",
         "half side of the lamp / distance",
@@ -176,9 +175,8 @@ def l3(quick: bool) -> Plot:
         words,
         bound=1.1,
         source="Shirley, Wang & Zimmerman 1996; Veach 1997",
+        z=max(misses),
     )
-    plot.notes.append(f"z {max(misses):.3f}")
-    return plot
 
 
 def girard_f32(size: float) -> float:
@@ -220,17 +218,8 @@ def l4(quick: bool) -> Plot:
     for size in sizes:
         naive.append(abs(girard_f32(size) / triangle_integral(size, 1) - 1))
         radiance = float(np.pi / triangle_integral(size, 2))
-        lamp = {"triangle": {"points": triangle_points(size)}}
-        scene = view(
-            [("white", plane((0, 0, 0), (0, 1, 0))), ("small", lamp)],
-            materials={"small": {"emissive": {"radiance": radiance}}},
-            eye=(3, 0.8, 0),
-            columns=16,
-            rows=16,
-            samples=64,
-            diffuse_bounces=0,
-        )
-        ours.append(abs(float(green(scene).mean()) - 1))
+        lamp = {"triangle": {"points": triangle_points(size).tolist()}}
+        ours.append(abs(floor_under(lamp, radiance, eye=(3, 0.8, 0), side=16) - 1))
     bad = int(np.argmin(abs(sizes - 1e-3)))
     words = (
         f"The solid angle of a triangle of edge {sizes[bad]:.1g} by the excess of its angles in f32 is off by "

@@ -3,8 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
+from validation.scenes import plane, sphere
+
 from .plot import Plot, Series, times
-from .scenes import WHITE_SKY, fresnel, green, mean_and_error, plane, slab, sphere, view
+from .scenes import WHITE_SKY, fresnel, green, mean_and_error, slab, view
 
 GLASS, WATER = 1.5168, 1.333
 

@@ -6,7 +6,7 @@ A value of 0 has no place on a logarithmic axis: it is drawn as an open mark on 
 """
 
 import csv
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -62,7 +62,7 @@ class Plot:
     source: str = ""  # where the naive method is from
     bound: float = 0.0  # what our values stay below
     least: float = 0.0  # values below it are drawn as 0
-    notes: list[str] = field(default_factory=list)
+    z: float = 0.0  # where chance is left: how far our values are off at most, in standard errors
 
     def __post_init__(self):
         self.words = self.words.replace("%", " %").replace("  %", " %")
@@ -135,13 +135,11 @@ def draw(plot: Plot, path: Path) -> None:
 
 def label_ends(axes, ends: list[tuple[float, str, str]]) -> None:
     """Writes each line's name beside its last point."""
-    to_axes = axes.transLimits.transform if axes.get_yscale() == "linear" else None
+    linear = axes.get_yscale() == "linear"
     low, high = axes.get_ylim()
 
     def height(y: float) -> float:
-        if to_axes:
-            return (y - low) / (high - low)
-        return float(np.log(y / low) / np.log(high / low))
+        return (y - low) / (high - low) if linear else float(np.log(y / low) / np.log(high / low))
 
     lines = [label.count("\n") + 1 for _, _, label in ends]
     heights = spread_apart([height(y) for y, _, _ in ends], 0.075 * max(lines), 0.03, 0.97)

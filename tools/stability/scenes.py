@@ -1,4 +1,4 @@
-"""Scenes for the stability plots, as TOML text made from numbers, and what is read from their images.
+"""Scenes for the stability plots, made of what the validation book's are, and what is read from their images.
 
 from stability.scenes import photograph, view
 image = photograph(view([...], eye=(0, 0, 3), rows=64, height=2))
@@ -8,57 +8,19 @@ import resource
 
 import numpy as np
 import render
+from validation import scenes
 
-WHITE_SKY = {"environment": {"radiance": 1}}
+WHITE_SKY = scenes.SKY
 MATERIALS = {
-    "black glass": {"dielectric": {"index": 1.5, "absorption": 1e4}},
-    "lamp": {"emissive": {"radiance": 1}},
-    "white": {"diffuse": {"reflectance": 1}},
+    "black_glass": scenes.glass(1.5, absorption=1e4),
+    "lamp": scenes.glow(),
+    "white": scenes.diffuse(1),
 }
 
 
-def toml(value) -> str:
-    """An inline TOML value; floats with all their digits."""
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f'"{key}" = {toml(item)}' for key, item in value.items()) + " }"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(map(toml, value)) + "]"
-    if isinstance(value, (bool, np.bool_)):
-        return str(bool(value)).lower()
-    if isinstance(value, str):
-        return f'"{value}"'
-    return repr(int(value) if isinstance(value, (int, np.integer)) else float(value))
-
-
-def view(
-    objects,
-    lights=(),
-    materials=None,
-    *,
-    eye,
-    target=(0, 0, 0),
-    up=(0, 1, 0),
-    fov=None,
-    height=None,
-    columns=1,
-    rows=1,
-    space=None,
-    **settings,
-) -> str:
-    """A scene's text. `objects` pairs materials with shapes; `fov` is in degrees; or the `height` of a parallel view.
-
-    Without `samples`, rays go through the centers of pixels, and smooth surfaces leave nothing to chance."""
-    lens = {"projection": "orthographic", "height": height} if height else {"vertical_fov": fov or 1e-4}
-    film = {"width": columns, "height": rows, "filter": "box" if "samples" in settings else "center"}
-    tables = {
-        "camera": {"position": eye, "look_at": target, "up": up, **lens},
-        "film": film | ({"color_space": space} if space else {}),
-        "render": {"model": "rgb", **settings},
-        "material": MATERIALS | (materials or {}),
-        "object": [{"material": name, "shape": shape} for name, shape in objects],
-        "light": list(lights),
-    }
-    return "".join(f"{key} = {toml(value)}\n" for key, value in tables.items())
+def view(objects, lights=(), materials=None, *, columns=1, rows=1, **more) -> str:
+    """A scene's text; `more` as of the book's `view`. `objects` pairs materials with shapes."""
+    return scenes.toml_file(scenes.view(MATERIALS | (materials or {}), objects, lights, size=(columns, rows), **more))
 
 
 def photograph(text: str, **flags) -> render.Image:
@@ -94,14 +56,6 @@ def fresnel(index: float, cosine):
     return (s**2 + p**2) / 2
 
 
-def sphere(center=(0.0, 0.0, 0.0), radius=1.0) -> dict:
-    return {"sphere": {"center": list(center), "radius": radius}}
-
-
-def plane(point, normal) -> dict:
-    return {"plane": {"point": list(point), "normal": list(normal)}}
-
-
 def slab(top: float, bottom: float, side=40.0) -> dict:
     """A wide box between two heights."""
-    return {"cube": {"center": [0, (top + bottom) / 2, 0], "size": [side, top - bottom, side]}}
+    return scenes.cube((0, (top + bottom) / 2, 0), [side, top - bottom, side])

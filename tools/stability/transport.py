@@ -1,8 +1,10 @@
 """Stability rows W2, W4, W6, A1: trees of paths and sums of samples. Naive methods in numpy, ours on images."""
 
 import numpy as np
+from validation.scenes import plane, sphere
+
 from .plot import Plot, Series
-from .scenes import green, mean_and_error, plane, slab, sphere, view
+from .scenes import green, mean_and_error, slab, view
 
 R = 0.04  # one boundary of glass of index 1.5 at normal incidence
 
@@ -88,11 +90,8 @@ def stack_plot(row, title, quick, methods, source):
         "number of panes."
     )
     series = [*naive, Series("Abbe, rendered\n(noise)", panes, ours, True)]
-    plot = Plot(
-        row, title, "panes", "share of the light that is missed", series, words, bound=5e-3, least=1e-6, source=source
-    )
-    plot.notes.append(f"z {z:.3f}")
-    return plot
+    ylabel = "share of the light that is missed"
+    return Plot(row, title, "panes", ylabel, series, words, bound=5e-3, least=1e-6, source=source, z=z)
 
 
 def w2(quick: bool) -> Plot:
@@ -136,7 +135,7 @@ def w6(quick: bool) -> Plot:
         "a closed room's; Abbe's roulette on the "
         f"throughput is off by at most {max(ours):.1%}, {z:.1f} standard errors."
     )
-    plot = Plot(
+    return Plot(
         "W6",
         "Light in a closed white room",
         "1 / share that a wall absorbs",
@@ -146,9 +145,8 @@ def w6(quick: bool) -> Plot:
         bound=0.05,
         least=1e-6,
         source="Arvo & Kirk 1990",
+        z=z,
     )
-    plot.notes.append(f"z {z:.3f}")
-    return plot
 
 
 def sum_f32(value: np.float32, counts) -> list[float]:

@@ -50,18 +50,14 @@ def test_panes_keep_the_light_that_a_depth_limit_and_a_weight_cut_lose():
     for plot in (transport.w2(quick=True), transport.w4(quick=True)):
         assert plot.naive.max() > 0.15
         assert plot.abbe.max() <= plot.bound
-        assert z_of(plot) < 7, "8 seeds, six values: one chance in 700"
+        assert plot.z < 7, "8 seeds, six values: one chance in 700"
 
 
 def test_a_white_room_keeps_the_light_that_a_depth_limit_loses():
     plot = transport.w6(quick=True)
     assert plot.naive.max() > 0.9
     assert plot.abbe.max() <= plot.bound
-    assert z_of(plot) < 7
-
-
-def z_of(plot):
-    return next(float(note.removeprefix("z ")) for note in plot.notes)
+    assert plot.z < 7
 
 
 def test_every_path_through_a_stack_sums_to_the_closed_form():

@@ -6,7 +6,7 @@ import numpy as np
 
 from . import formulas, readers
 from .row import Row
-from .scenes import cube, diffuse, extrude, glass, quad, rgb, sphere, view
+from .scenes import cube, diffuse, extrude, glass, quad, rgb, sphere, sun, view
 
 GROUP = "caustics"
 # So dark that what it sends back up and down again through the glass, some tenth of it, is no part of any answer.
@@ -39,12 +39,6 @@ def lit(
         return reader(image).mean(axis=0, keepdims=True) / factor
 
     return Row(GROUP, name, formula, scene, read, expected, guards, mistake, words, seeds)
-
-
-def sun(degrees, irradiance=1.0):
-    angle = np.radians(degrees)
-    toward = [float(np.sin(angle)), float(np.cos(angle)), 0.0]
-    return {"sun": {"toward": toward, "angular_diameter": 0, "irradiance": irradiance}}
 
 
 def slabs(quick):

@@ -81,7 +81,7 @@ def chart(name):
         f"ColorChecker under {name}",
         "sum of light x reflectance x observer",
         scene,
-        readers.columns(),
+        readers.columns,
         expected.ravel(),
         "the 10 degree observer of 1964",
         by_ten_degrees(light, reflectances).ravel(),

@@ -11,7 +11,7 @@ import colors
 
 from . import formulas, readers
 from .color import XYZ, line_powers
-from .plates import looking_down
+from .plates import LAMPS, looking_down
 from .polarized_row import RIGHT
 from .row import LIMIT, ROUNDING, Row
 from .scenes import disc, glass, glow, plane, quad, sphere, view
@@ -75,15 +75,14 @@ def seen(name, material, degrees, expected, guards, mistake, words, *, behind=Fa
     below, lamps on both sides."""
     powers, amplified = line_powers(lines)
     light = {"lines": [[nm, 1] for nm in lines]}
-    lamp = plane((0, -5, 0), (0, 1, 0)) if behind else plane((0, 30, 0), (0, -1, 0))
     surface = plane((0, 0, 0), (0, 1, 0))
     if behind:
         surface = {"quad": {"center": [0.0, 0.0, 0.0], "u": [90.0, 0.0, 0.0], "v": [0.0, 0.0, -90.0]}}
-    materials, objects = {"surface": material, "glow": glow(light)}, [("surface", surface), ("glow", lamp)]
+    materials, objects = {"surface": material, "glow": glow(light)}, [("surface", surface), ("glow", LAMPS["T" if behind else "R"])]
     if body:
         # Radiance goes by the square of the index.
         materials["below"] = glow({"lines": [[nm, body**2] for nm in lines]})
-        objects.append(("below", plane((0, -5, 0), (0, 1, 0))))
+        objects.append(("below", LAMPS["T"]))
     scene = view(materials, objects, eye=looking_down(degrees), up=(0, 0, 1), model="auto", space=XYZ)
     words = f"{words}, at {degrees} degrees, in the light of lines at {lines} nm; in CIE XYZ."
     read = lambda image: readers.colors(image) @ powers.T  # noqa: E731
@@ -337,7 +336,7 @@ def daylight(name, material, layers, body, degrees, words):
     expected, white, gray = under_d65(layers, body, degrees)
     scene = view(
         {"film": material, "glow": glow({"illuminant": "D65"})},
-        [("film", plane((0, 0, 0), (0, 1, 0))), ("glow", plane((0, 30, 0), (0, -1, 0)))],
+        [("film", plane((0, 0, 0), (0, 1, 0))), ("glow", LAMPS["R"])],
         eye=looking_down(degrees),
         up=(0, 0, 1),
         model="auto",

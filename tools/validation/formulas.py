@@ -127,7 +127,7 @@ TITANIUM = np.transpose(
         (892, 3.29, 3.96),
     ]
 )
-F_LINE, D_LINE, C_LINE, E_LINE = 486.13, 587.56, 656.27, 546.07  # nm
+F_LINE, D_LINE, C_LINE = 486.13, 587.56, 656.27  # nm
 # The wavelengths of red, green and blue where an index is measured and lanes are three: C, e and F.
 RED_GREEN_BLUE = (656.27, 546.07, 486.13)
 

@@ -10,19 +10,18 @@ import numpy as np
 import colors
 
 from . import angles, formulas, readers
-from .plates import BANDS, looking_down
+from .plates import BANDS, LAMPS, looking_down, pile
 from .row import ROUNDING, Row
-from .scenes import cube, glass, glow, plane, rgb, view
+from .scenes import cube, glass, glow, plane, rgb, sun, view
 
 GROUP = "optics"
-CEILING = plane((0, 30, 0), (0, -1, 0))
 FLOOR = plane((0, 0, 0), (0, 1, 0))
 
 
 def reflection(name, material, degrees, expected, formula, guards, mistake, what, reader=readers.colors):
     scene = view(
         {"surface": material, "glow": glow()},
-        [("surface", FLOOR), ("glow", CEILING)],
+        [("surface", FLOOR), ("glow", LAMPS["R"])],
         eye=looking_down(degrees),
         up=(0, 0, 1),
     )
@@ -118,10 +117,9 @@ def daylight(name, degrees, kind):
     expected, _ = by_wavelength(name, degrees, share)
     n = formulas.index(name, formulas.D_LINE)
     mistake = colors.illuminant("D65").xyz() * share(formulas.fresnel(n, degrees))
-    shines = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}[kind]
     scene = view(
         {"glass": glass(name), "glow": glow({"illuminant": "D65"})},
-        [("glass", cube((0, -0.005, 0), [400.0, 0.01, 400.0])), ("glow", shines)],
+        [("glass", cube((0, -0.005, 0), [400.0, 0.01, 400.0])), ("glow", LAMPS[kind])],
         eye=looking_down(degrees),
         up=(0, 0, 1),
         model={"bands": 16},
@@ -158,7 +156,7 @@ def inside(quick):
         angle = np.radians(degrees)
         scene = view(
             {"glass": glass(index), "glow": glow()},
-            [("glass", FLOOR), ("glow", CEILING)],
+            [("glass", FLOOR), ("glow", LAMPS["R"])],
             eye=(-np.sin(angle), -np.cos(angle), 0),
             up=(0, 0, 1),
         )
@@ -189,7 +187,7 @@ def critical(name):
     angle, half = np.radians(middle), np.tan(np.radians(fov / 2))
     scene = view(
         {"glass": glass(name), "glow": glow()},
-        [("glass", FLOOR), ("glow", CEILING)],
+        [("glass", FLOOR), ("glow", LAMPS["R"])],
         eye=(-np.sin(angle), -np.cos(angle), 0),
         fov=fov,
         size=(1, count),
@@ -243,13 +241,16 @@ def metals(quick):
 def piles(quick):
     """Plates in a row, all reflections between them."""
     for plates, degrees in ((1, 45), (2, 45), (4, 45), (4, 0), (3, 60)):
-        index, gap = 1.5168, 0.02
-        objects = [("glass", cube((0, -gap * number - 0.005, 0), [40.0, 0.01, 40.0])) for number in range(plates)]
-        objects.append(("glow", plane((0, -5, 0), (0, 1, 0))))
+        index = 1.5168
         # Of more plates the plan follows some ways of light, chosen by chance.
         chance = {"size": 32, "samples": 16 if quick else 64} if plates > 2 else {}
         scene = view(
-            {"glass": glass(index), "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1), polarization="on", **chance
+            {"glass": glass(index), "glow": glow()},
+            [*pile(plates), ("glow", LAMPS["T"])],
+            eye=looking_down(degrees),
+            up=(0, 0, 1),
+            polarization="on",
+            **chance,
         )
         r = formulas.fresnel(index, degrees)
         words = (
@@ -275,12 +276,11 @@ def panes(quick):
     indices = np.array(BANDS)
     for degrees in (0, 45, 60, 80):
         objects = [("pane", {"quad": {"center": [0.0, 0.0, 0.0], "u": [20.0, 0.0, 0.0], "v": [0.0, 0.0, -20.0]}})]
-        objects.append(("glow", plane((0, -5, 0), (0, 1, 0))))
+        objects.append(("glow", LAMPS["T"]))
         scene = view(
             {"pane": {"thin": {"index": rgb(BANDS)}}, "glow": glow()}, objects, eye=looking_down(degrees), up=(0, 0, 1)
         )
-        s, p = formulas.both_polarizations(indices, degrees)
-        average = (s + p) / 2
+        average = formulas.fresnel(indices, degrees)
         at_right_angles = degrees == 0
         yield Row(
             GROUP,
@@ -288,7 +288,7 @@ def panes(quick):
             "the mean of (1 - r) / (1 + r) over s and p",
             scene,
             readers.colors,
-            ((1 - s) / (1 + s) + (1 - p) / (1 + p)) / 2,
+            formulas.pile(indices, degrees, 1),
             "one passage through both faces" if at_right_angles else "the series of the averaged reflectance",
             (1 - average) ** 2 if at_right_angles else (1 - average) / (1 + average),
             f"A pane without thickness of indices {BANDS} at {degrees} degrees before a plane of radiance 1.",
@@ -298,26 +298,22 @@ def panes(quick):
 def window(quick):
     """A floor under a pane: parallel sunlight loses what the pane sends back, once."""
     for degrees in (0, 50, 70):
-        toward = [float(np.sin(np.radians(degrees))), float(np.cos(np.radians(degrees))), 0.0]
         objects = [("pane", plane((0, 1, 0), (0, -1, 0))), ("floor", plane((0, 0, 0), (0, 1, 0)))]
         # So dark a floor that what comes back to it from the pane counts for nothing.
         dark = 1e-5
         materials = {"pane": {"thin": {"index": rgb(BANDS)}}, "floor": {"diffuse": {"reflectance": dark}}}
-        sun = {"sun": {"toward": toward, "irradiance": float(np.pi / dark), "angular_diameter": 0.0}}
-        scene = view(materials, objects, [sun], eye=(0.3, 0.7, 0.2), up=(0, 0, 1), samples=16)
-        index, cos = np.array(BANDS), toward[1]
-        beyond = np.sqrt(index**2 - 1 + cos**2) / index
-        s = ((cos - index * beyond) / (cos + index * beyond)) ** 2
-        p = ((index * cos - beyond) / (index * cos + beyond)) ** 2
+        lights = [sun(degrees, float(np.pi / dark))]
+        scene = view(materials, objects, lights, eye=(0.3, 0.7, 0.2), up=(0, 0, 1), samples=16)
+        index, cos = np.array(BANDS), np.cos(np.radians(degrees))
         yield Row(
             GROUP,
             f"sun through a window pane at {degrees} degrees",
             "cos times the mean of (1 - r) / (1 + r) over s and p",
             scene,
             readers.colors,
-            cos * ((1 - s) / (1 + s) + (1 - p) / (1 + p)) / 2,
+            cos * formulas.pile(index, degrees, 1),
             "one passage through both faces",
-            cos * (1 - (s + p) / 2) ** 2,
+            cos * (1 - formulas.fresnel(index, degrees)) ** 2,
             f"Parallel sunlight of irradiance pi at {degrees} degrees on a white floor, behind a pane of indices {BANDS}, once reflected.",
         )
 

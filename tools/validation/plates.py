@@ -7,6 +7,8 @@ from .row import Row
 from .scenes import cube, disc, glass, glow, plane, rgb, view
 
 BANDS = (1.333, 1.52, 2.42)
+# Planes that glow, to see what a surface at the origin reflects and what comes through it.
+LAMPS = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}
 
 
 def looking_down(degrees):
@@ -14,13 +16,17 @@ def looking_down(degrees):
     return (10 * np.sin(angle), 10 * np.cos(angle), 0)
 
 
-def plate(kind, degrees, index, optical_depth=0.0, surfaces=None):
+def pile(count):
+    """Plates of glass 0.01 thick and 0.01 apart, the first one below the origin."""
+    return [("glass", cube((0, -0.02 * number - 0.005, 0), [40.0, 0.01, 40.0])) for number in range(count)]
+
+
+def plate(kind, degrees, index, optical_depth=0.0, discs=()):
     """Rays through a plate 0.01 thick toward a plane that glows, before it (R), behind it (T), or on both sides."""
     depth = np.broadcast_to(np.asarray(optical_depth, float), 3)
     materials = {"glass": glass(rgb(index), absorption=rgb(depth / 0.01)), "glow": glow()}
-    planes = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}
-    surfaces = surfaces or [cube((0, -0.005, 0), [40.0, 0.01, 40.0])]
-    objects = [*(("glass", surface) for surface in surfaces), *(("glow", planes[side]) for side in kind.split("+"))]
+    bodies = [("glass", disc) for disc in discs] or pile(1)
+    objects = [*bodies, *(("glow", LAMPS[side]) for side in kind.split("+"))]
     scene = view(materials, objects, eye=looking_down(degrees), up=(0, 0, 1), polarization="on")
     answer = dict(zip("RT", formulas.slab(np.array(index), degrees, depth), strict=True))
     once = formulas.fresnel(np.array(index), degrees)
@@ -33,7 +39,7 @@ def plate(kind, degrees, index, optical_depth=0.0, surfaces=None):
         f"plane of radiance 1 {'on both sides' if total else 'before it' if kind == 'R' else 'behind it'}."
     )
     name = f"{kind} of a plate at {degrees} degrees" + (", absorbing" if depth.any() else "")
-    name += " of two discs" if len(surfaces) > 1 else ""
+    name += " of two discs" if discs else ""
     formula = "1 - A" if total else {"T": "(1 - r)^2 a / (1 - r^2 a^2)", "R": "r + r a T"}[kind]
     mistake = "reflections inside that are left out" if not total else "the light of inner reflections that is lost"
     return Row(
@@ -57,4 +63,4 @@ def rows(quick):
         for kind in ("R", "T", "R+T"):
             yield plate(kind, degrees, (1.5, 1.5, 2.0), (1.0, 0.1, 0.5))
     discs = [disc((0, 0, 0), (0, 1, 0), 20), disc((0, -0.01, 0), (0, -1, 0), 20)]
-    yield plate("T", 60, BANDS, surfaces=discs)
+    yield plate("T", 60, BANDS, discs=discs)

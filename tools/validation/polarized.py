@@ -5,7 +5,7 @@ import numpy as np
 from . import formulas, surfaces
 from .polarized_row import AVERAGED, DOWN, NOT_TURNED, RIGHT, components, in_plane, polarizer, row, untraced
 from .plates import looking_down
-from .scenes import disc, extrude, glass, glow, plane, quad, sphere
+from .scenes import disc, extrude, glass, glow, plane, quad, sphere, sun
 from .stokes import Light, unit
 
 GOLD, SILVER, ALUMINUM = 0.43 - 2.455j, 0.06 - 3.586j, 1.015 - 6.627j
@@ -392,7 +392,6 @@ def varnish(quick):
     """What a matte surface scatters below a coat is polarized on its way out."""
     for degrees in (30, 45, 60, 75, 85):
         s, p = (1 - share for share in formulas.both_polarizations(1.5, degrees))
-        sun = {"sun": {"toward": [0.0, 1.0, 0.0], "irradiance": 1.0, "angular_diameter": 0.0}}
         found = row(
             f"the base of plastic at {degrees} degrees",
             "(T_p - T_s) / (T_p + T_s)",
@@ -402,7 +401,7 @@ def varnish(quick):
             "a base that leaves light unpolarized",
             0,
             f"Plastic of index 1.5 in light along its normal, seen at {degrees} degrees: S1 over S0, along the image.",
-            lights=[sun],
+            lights=[sun(0)],
             film={"stokes": True},
             eye=looking_down(degrees),
             up=(0, 0, 1),

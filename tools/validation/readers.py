@@ -36,23 +36,6 @@ def per_coverage(image):
     return np.array([[green.mean() / alpha.mean()]])
 
 
-def rows(count, channel=1):
-    """The mean of each of `count` equal bands of rows, from the top: one estimate per column."""
-
-    def read(image):
-        pixels = image.rgb[..., channel]
-        if len(pixels) % count:
-            raise ValueError(f"the picture has {len(pixels)} rows, no multiple of {count}")
-        return pixels.reshape(count, -1, pixels.shape[1]).mean(axis=1).T
-
-    return read
-
-
-def columns(channels=(0, 1, 2)):
-    """Every pixel of the first row, channel by channel: one estimate."""
-    return lambda image: image.rgb[:1, :, list(channels)].reshape(1, -1)
-
-
-def flat(image):
-    """Every pixel's green, in reading order: one estimate."""
-    return image.rgb[..., 1].reshape(1, -1)
+def columns(image):
+    """Red, green and blue of every pixel of the first row: one estimate."""
+    return image.rgb[:1].reshape(1, -1)

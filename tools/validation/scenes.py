@@ -92,6 +92,13 @@ def glow(radiance=1, **more):
     return {"emissive": {"radiance": radiance, **more}}
 
 
+def sun(degrees, irradiance=1.0, angular_diameter=0):
+    """Light from so far beside straight above, toward +x."""
+    angle = np.radians(degrees)
+    toward = [float(np.sin(angle)), float(np.cos(angle)), 0.0]
+    return {"sun": {"toward": toward, "angular_diameter": angular_diameter, "irradiance": irradiance}}
+
+
 def glass(index, **more):
     return {"dielectric": {"index": index, **more}}
 

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from . import formulas
-from .plates import looking_down
+from .plates import LAMPS, looking_down, pile
 from .polarized_row import AVERAGED, RIGHT, components, row, untraced
 from .row import ROUNDING
-from .scenes import cube, disc, glass, glow, plane
+from .scenes import disc, glass, glow, plane
 from .stokes import Light, unit
 
 STOKES = {"stokes": True}
@@ -128,17 +128,13 @@ def piles(quick):
             s, p = ((1 - r) / (1 + (2 * plates - 1) * r) for r in both)
             mean = sum(both) / 2
             averaged = (1 - mean) / (1 + (2 * plates - 1) * mean)
-            gap, objects = 0.02, []
-            for number in range(plates):
-                objects.append(("glass", cube((0, -gap * number - 0.005, 0), [40.0, 0.01, 40.0])))
-            objects.append(("glow", plane((0, -5, 0), (0, 1, 0))))
             # Of more plates the plan follows some ways of light, chosen by chance.
             chance = {"size": 32, "samples": 8 if quick else 64} if plates > 1 else {}
             found = row(
                 f"S0 and S1 through {plates} {'plates' if plates > 1 else 'plate'} of {index} at {degrees:.6g} degrees",
                 "(1 - r) / (1 + (2 m - 1) r), of s and of p",
                 {"glass": glass(index), "glow": glow()},
-                objects,
+                [*pile(plates), ("glow", LAMPS["T"])],
                 [(s + p) / 2, (p - s) / 2, 0, 0],
                 AVERAGED,
                 [averaged, 0, 0, 0],

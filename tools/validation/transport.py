@@ -4,7 +4,7 @@ import numpy as np
 
 from . import formulas, readers
 from .row import Row
-from .scenes import diffuse, disc, glow, plane, quad, sphere, view
+from .scenes import diffuse, disc, glow, plane, quad, sphere, sun, view
 
 GROUP = "transport"
 FLOOR = plane((0, 0, 0), (0, 1, 0))
@@ -121,8 +121,7 @@ def small_lights(quick):
             )
     for tilt in (0, 30, 80):
         angle = np.radians(tilt)
-        toward = [float(np.sin(angle)), float(np.cos(angle)), 0.0]
-        light = {"sun": {"toward": toward, "angular_diameter": 0, "irradiance": 3}}
+        light = sun(tilt, 3)
         yield row(
             f"parallel light at {tilt} degrees",
             light,
@@ -130,7 +129,7 @@ def small_lights(quick):
             "E cos t",
             "the cosine left out, or its square",
             3 * np.cos(angle) ** 2 if tilt else 3 / np.pi,
-            f"parallel light of irradiance 3 toward {toward}",
+            f"parallel light of irradiance 3 toward {light['sun']['toward']}",
         )
     for degrees in (0, 14, 18, 25):
         angle, t = np.radians(degrees), (30 - degrees) / 15
@@ -150,9 +149,8 @@ def small_lights(quick):
         )
     for diameter in (0.533, 20, 90):
         samples, size = (256, 8) if quick else (1024, 16)
-        light = {"sun": {"toward": [0.0, 1.0, 0.0], "angular_diameter": diameter, "irradiance": 3}}
         scene = view(
-            {"floor": diffuse(1)}, [("floor", FLOOR)], [light], eye=(9, 1, 0), samples=samples, size=size, **ONCE
+            {"floor": diffuse(1)}, [("floor", FLOOR)], [sun(0, 3, diameter)], eye=(9, 1, 0), samples=samples, size=size, **ONCE
         )
         solid = 2 * np.pi * (1 - np.cos(np.radians(diameter / 2)))
         radiance = 3 / (np.pi * np.sin(np.radians(diameter / 2)) ** 2)
