@@ -27,6 +27,7 @@ mod open_glass;
 mod out_of_focus;
 mod parts;
 mod place;
+mod probe;
 mod radiometry;
 mod relief;
 mod render;
@@ -50,10 +51,8 @@ use self::place::Placed;
 use self::shining::surfaces_that_shine;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
-use super::{ModelText, NamedMaterial, Object, PolarizationText, RenderText, Scene};
+use super::{ModelText, NamedMaterial, PolarizationText, RenderText, Scene};
 use crate::film::Format;
-use crate::material::Material;
-use crate::shape::Shape;
 use crate::spectrum::Curve;
 
 /// The sections that a scene may have.
@@ -113,9 +112,9 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     namesakes(context, &objects);
     let placed = place::placed(objects, &materials);
     unused(context, &placed, &drafts);
-    contacts(context, &placed);
-    faces_inward(context, &placed);
-    swallowed::swallowed(&placed).into_iter().for_each(|warning| context.warn(warning));
+    contact::contacts(context, &placed);
+    let of_bodies = [inside_out::inside_out(&placed), swallowed::swallowed(&placed)];
+    of_bodies.into_iter().flatten().for_each(|warning| context.warn(warning));
     let mut others = light::Lights::default();
     lights.map(|lights| entries(lights, |light| others.read(context, light)));
     let Placed { objects, materials, .. } = placed;
@@ -193,50 +192,6 @@ fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>
     }
     let entries = value.list(|entry| Some(read(entry)));
     entries.into_iter().flatten().flatten().collect()
-}
-
-fn is_clear(placed: &Placed, object: &Object) -> bool {
-    placed.materials[object.material as usize].material.medium().is_some()
-}
-
-/// A lamp that has no inside.
-fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
-    let shines = matches!(placed.materials[object.material as usize].material, Material::Emissive(_));
-    shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
-}
-
-/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp
-/// in another surface nothing may be seen.
-fn contacts(context: &mut Context, placed: &Placed) {
-    let counts = |object: &Object| is_clear(placed, object) || is_flat_lamp(placed, object);
-    for (first, second) in contact::coinciding(&placed.objects, counts) {
-        let [body, other] = [first, second].map(|number| &placed.objects[number].name);
-        if [first, second].iter().all(|&number| is_clear(placed, &placed.objects[number])) {
-            let message = format!("a part of the surfaces of {body} and {other} lies in one place");
-            let help = "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
-            placed.shapes[first.max(second)].advise::<()>(message, help);
-            continue;
-        }
-        context.warn(match is_flat_lamp(placed, &placed.objects[first]) {
-            true => format!("a part of {body}, which shines, lies exactly in {other}, which may hide it: move it a little"),
-            false => format!(
-                "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, \
-                 apart or into the other"
-            ),
-        });
-    }
-}
-
-/// A clear body whose faces look inward fills all that is outside of it, and light that meets it is lost.
-fn faces_inward(context: &mut Context, placed: &Placed) {
-    let found = inside_out::inside_out(&placed.objects, |object| is_clear(placed, object));
-    let Some(&first) = found.first() else { return };
-    let others = if found.len() > 1 { format!(" and {} more", found.len() - 1) } else { String::new() };
-    context.warn(format!(
-        "{}{others}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
-         each face's corners",
-        placed.objects[first].name
-    ));
 }
 
 /// Warns of objects that have one name.

@@ -23,6 +23,18 @@ pub(super) struct Placed<'d> {
     pub(super) materials: Vec<NamedMaterial<Curve>>,
 }
 
+impl Placed<'_> {
+    /// The material of an object, with its name.
+    pub(super) fn material(&self, object: &Object) -> &NamedMaterial<Curve> {
+        &self.materials[object.material as usize]
+    }
+
+    /// Whether an object is a clear body, or a part of its surface.
+    pub(super) fn is_clear(&self, object: &Object) -> bool {
+        self.material(object).material.medium().is_some()
+    }
+}
+
 /// All objects that are right where they are.
 pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> Placed<'d> {
     let (mut placed, mut numbers) = (Placed::default(), BTreeMap::<&str, u32>::new());
