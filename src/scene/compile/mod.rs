@@ -115,8 +115,8 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     contact::contacts(context, &placed);
     let of_bodies = [inside_out::inside_out(&placed), swallowed::swallowed(&placed)];
     of_bodies.into_iter().flatten().for_each(|warning| context.warn(warning));
-    let mut others = light::Lights::default();
-    lights.map(|lights| entries(lights, |light| others.read(context, light)));
+    let mut has_environment = false;
+    let lights = lights.map(|lights| entries(lights, |light| light::light(context, light, &mut has_environment)));
     let Placed { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
     let (camera, film, format, render) = (camera?, film?, format?, render?);
@@ -140,7 +140,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);
-    others.add_to(&mut scene);
+    light::add_lights(&mut scene, lights.unwrap_or_default());
     Some(scene)
 }
 
