@@ -166,11 +166,10 @@ fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> 
 }
 
 /// That every value of a list is possible.
-fn each(text: &CurveText, quantity: Quantity, mut values: impl Iterator<Item = f64>) -> Option<()> {
-    let (scale, mut number) = (text.scale.it, 0..);
-    values.try_for_each(|value| {
-        let place = text.place.entry(number.next().unwrap_or_default());
-        told(place, possible(quantity, value * scale, &with_scale(scale)))
+fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
+    let scale = text.scale.it;
+    values.enumerate().try_for_each(|(number, value)| {
+        told(text.place.entry(number), possible(quantity, value * scale, &with_scale(scale)))
     })
 }
 

@@ -7,11 +7,8 @@ use crate::scene::text::{Fields, Value};
 use crate::spectrum::Curve;
 
 pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<Asked<'d>>> {
-    let (reflectance, dye) = (spectrum(fields, "reflectance"), fields.get("fluorescence"));
-    let fluorescence = match dye {
-        Some(dye) => Some(Fields::read(dye, fluorescence)?),
-        None => None,
-    };
+    let reflectance = spectrum(fields, "reflectance");
+    let fluorescence = fields.maybe("fluorescence", |dye| Fields::read(dye, fluorescence))?;
     Some(Diffuse { reflectance, fluorescence })
 }
 

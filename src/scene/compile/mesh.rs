@@ -73,7 +73,7 @@ fn points(value: Value) -> Option<Vec<DVec3>> {
 
 fn faces(value: Value) -> Option<Vec<[u32; 3]>> {
     match value.rows() {
-        Some(Rows { width: 3, numbers: Numbers::Whole(numbers) }) => Some(in_rows(numbers)),
+        Some(Rows { width: 3, numbers: Numbers::Whole(numbers) }) => Some(numbers.as_chunks().0.to_vec()),
         Some(_) => value.advise("`faces` has rows of 3 whole numbers", "cut faces with more corners into triangles"),
         None => value.list(face),
     }
@@ -103,12 +103,8 @@ fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
     };
     match numbers.iter().position(|number| !is_near(*number)) {
         Some(first) => value.refuse(format!("row {}: {}", first / N, far(COORDINATE, numbers[first]))),
-        None => Some(in_rows(numbers)),
+        None => Some(numbers.as_chunks().0.to_vec()),
     }
-}
-
-fn in_rows<T: Copy, const N: usize>(numbers: &[T]) -> Vec<[T; N]> {
-    numbers.chunks_exact(N).map(|row| std::array::from_fn(|column| row[column])).collect()
 }
 
 fn face(value: Value) -> Option<[u32; 3]> {
