@@ -130,7 +130,7 @@ impl Source {
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
             mistakes.sort_by_key(|mistake| mistake.span.start);
-            mistakes.dedup();
+            mistakes.dedup_by(|a, b| (&a.span, &a.message) == (&b.span, &b.message));
             let keys = match place {
                 Place::Line => HashMap::new(),
                 Place::Key => keys(&texts, &parts, &mistakes),
@@ -215,12 +215,8 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`]; the file is called `scene.toml` in messages.
     pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
-        Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() }.compile_by(
-            Place::Line,
-            &[],
-            Vec::new(),
-            false,
-        )
+        let source = Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() };
+        source.compile_by(Place::Line, &[], Vec::new(), false)
     }
 
     /// Reads a scene that a program has built: a value that means what a scene file with the same keys means.
