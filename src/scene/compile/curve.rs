@@ -180,6 +180,9 @@ fn with_scale(scale: f64) -> String {
 
 /// That samples are a spectrum of a quantity.
 fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), Refusal> {
+    if let Some(at) = samples.as_flattened().iter().position(|x| !x.is_finite()) {
+        return Err(Refusal::new(not_finite(samples.as_flattened()[at])).at(at / 2));
+    }
     ascending(samples)?;
     if let ([[nm, power]], Quantity::Emission) = (samples, quantity) {
         let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
@@ -251,11 +254,7 @@ fn file_of_samples<'d>(
     };
     context.has_read(place.path(file), table.as_bytes());
     let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
-    let all_finite = samples.iter().position(|pair| pair.iter().any(|x| !x.is_finite())).map_or(Ok(()), |entry| {
-        let wrong = samples[entry].into_iter().find(|x| !x.is_finite()).unwrap_or_default();
-        Err(Refusal::new(not_finite(wrong)).at(entry))
-    });
-    match all_finite.and_then(|()| samples_fit(&samples, quantity, text.scale.it)) {
+    match samples_fit(&samples, quantity, text.scale.it) {
         Ok(()) => Some(CurveKind::Samples(samples)),
         Err(Refusal { message, help, entry: Some(entry), .. }) => {
             place.tell(format!("{file}, line {}: {message}", rows[entry].line), help)

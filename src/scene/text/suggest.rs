@@ -366,8 +366,8 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
 
 /// How to write what a list seems to mean that stands in place of a spectrum.
 fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
-    let is_number = |entry: &Node| matches!(entry.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
-    let are_numbers = |list: &DeArray, count: usize| list.len() == count && list.iter().all(is_number);
+    let are_numbers =
+        |list: &DeArray, count: usize| list.len() == count && list.iter().all(|entry| is_number(entry.get_ref()));
     if are_numbers(entries, 3) {
         return Some(format!("write {{ rgb = {written} }} for a color"));
     }
