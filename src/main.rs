@@ -122,23 +122,24 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
         job.keep.check_standard()?;
     }
     let part = exr_file.and_then(|exr| job.keep.part(exr));
+    // A part stands in place of the image.
+    let [exr, exr_file] = [exr, exr_file].map(|exr| exr.filter(|_| part.is_none()));
     let spectral = exr_file.filter(|_| scene.format.spectral.is_some()).map(|exr| exr.with_extension("spectral.exr"));
-    let outputs: Vec<&Path> = match &part {
-        Some(part) => vec![part],
-        None => [exr_file, spectral.as_deref(), png].into_iter().flatten().collect(),
-    };
+    let outputs = [part.as_deref(), exr_file, spectral.as_deref(), png];
+    let outputs: Vec<&Path> = outputs.into_iter().flatten().collect();
     let report = job.report.as_deref();
+    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
     let main = outputs.first().copied().unwrap_or(Path::new("image"));
     let checkpoint = job.keep.checkpoint(main);
     let all: Vec<&Path> = outputs.iter().copied().chain(checkpoint.as_deref()).chain(report).collect();
     check_outputs(scene, &all)?;
-    let plan = job.options.plan.as_deref();
-    all.iter().try_for_each(|output| plan.map_or(Ok(()), |plan| spare(plan, "plan that is followed", output)))?;
+    if let Some(plan) = &job.options.plan {
+        all.iter().try_for_each(|output| spare(plan, "plan that is followed", output))?;
+    }
     check_words("--report", "frame.json", report)?;
     let _folders = Folders::of_files(&all)?;
     let way = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
     let mut keep = Keep::new(&job.keep, main, checkpoint, way)?;
-    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
     if keep.has_finished(scene, &job.options, &files) {
         return Ok(ExitCode::SUCCESS);
     }
@@ -159,12 +160,11 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     let mut written = Written::default();
     written.file(part.as_deref(), |part| rendering.write_part(part));
     let image = if part.is_some() { rendering.summary() } else { rendering.image() };
-    written.file(exr.filter(|_| part.is_none()), |exr| {
+    written.file(exr, |exr| {
         messages::warn_of_clamped(image.format(), write(&image, exr)?);
         Ok(())
     });
-    let spectral = spectral.as_deref().filter(|_| part.is_none());
-    written.file(spectral, |spectral| image.write_spectral_exr(spectral));
+    written.file(spectral.as_deref(), |spectral| image.write_spectral_exr(spectral));
     written.file(png, |png| {
         image.write_png(png, job.exposure)?;
         messages::warn_of_exposure(&image, png, exr_file, job.exposure);
