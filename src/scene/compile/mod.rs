@@ -38,6 +38,7 @@ mod spectrum_file;
 mod swallowed;
 mod transform;
 mod unlit;
+mod written;
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -3,31 +3,13 @@
 use super::context::Context;
 use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
 use super::mesh::mesh;
+use super::written::Written;
 use crate::math::{DVec3, Transform};
 use crate::scene::text::{At, Choice, Fields, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Smallest size relative to the coordinates: some thousand roundings.
 const RESOLVED: f64 = 1e-12;
-
-/// A shape before any transform.
-pub(super) struct Written<'d> {
-    pub(super) shape: Shape,
-    /// The file that it is read from.
-    pub(super) file: Option<&'d str>,
-    /// The edges of a cube, or of that around a sphere.
-    pub(super) edges: Option<[f64; 3]>,
-}
-
-impl From<Shape> for Written<'_> {
-    fn from(shape: Shape) -> Self {
-        let edges = match &shape {
-            Shape::Sphere(_) => shape.bounds().map(|bounds| (bounds.max - bounds.min).to_array()),
-            _ => None,
-        };
-        Self { shape, file: None, edges }
-    }
-}
 
 /// What reads a kind of shape: of the object that has a name.
 type Reader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
@@ -57,10 +39,7 @@ pub(super) const SHAPE: Choice<Reader> = Choice {
         ("disc", |_, _, value| disc(value).map(Written::from)),
         ("quad", |_, _, value| quad(value).map(Written::from)),
         ("cube", |_, _, value| cube(value)),
-        ("mesh", |context, name, value| {
-            let mesh = mesh(context, name, value)?;
-            Some(Written { shape: Shape::Mesh(mesh.mesh), file: mesh.file, edges: None })
-        }),
+        ("mesh", mesh),
     ],
 };
 
