@@ -17,20 +17,19 @@ const RAYS: u32 = 64;
 /// Where others close the body, or opaque surfaces such as the ground of a pond do, light that enters meets them.
 pub(super) fn open_glass(scene: &Scene<Curve>) -> Option<String> {
     let is_flat = |shape: &Shape| matches!(shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_));
-    let is_clear = |object: usize| scene.material_of(object as u32).medium().is_some();
-    let flat = (0..scene.objects.len()).filter(|&object| is_flat(&scene.objects[object].shape) && is_clear(object));
-    let mut open = flat.take(MOST).filter(|&object| is_open(scene, object));
+    let objects = (0..).zip(scene.objects.iter());
+    let flat = objects.filter(|(number, object)| is_flat(&object.shape) && scene.is_clear(*number));
+    let mut open = flat.take(MOST).map(|(_, object)| object).filter(|object| is_open(scene, &object.shape));
     let first = open.next()?;
     Some(format!(
         "{}: light that enters this dielectric by a flat surface may never leave it, as nothing closes the body \
          behind; a pane is thin = {{ index = 1.5 }}, or a cube",
-        and_more(&scene.objects[first].name, open.count())
+        and_more(&first.name, open.count())
     ))
 }
 
 /// Whether light that enters by a surface may meet nothing more.
-fn is_open(scene: &Scene<Curve>, object: usize) -> bool {
-    let shape = &scene.objects[object].shape;
+fn is_open(scene: &Scene<Curve>, shape: &Shape) -> bool {
     (0..RAYS).any(|number| {
         let sampler = Sampler::new(5, [number, 0], 0);
         let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 0);
