@@ -11,13 +11,13 @@ use toml::de::DeTable;
 use super::Scene;
 use super::compile::{SECTIONS, compile};
 use super::foreign::{A_SCENE, foreign};
-use super::text::{Document, Fault, Included, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8};
+use super::text::{
+    Document, Fault, Included, MOST_BYTES, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8,
+};
 use crate::error::{Error, Result, nearest_file};
 
 /// What the text of settings is called in messages; each has a line of it.
 pub const SETTINGS: &str = "--set";
-/// Most bytes of a scene, as of a file that it includes. A device may never end.
-const MOST_BYTES: u64 = 1 << 30;
 
 /// A scene file that was read.
 #[derive(Clone, Debug)]

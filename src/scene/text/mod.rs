@@ -19,7 +19,7 @@ mod variables;
 
 pub(super) use document::Document;
 pub(super) use fields::{Choice, Fields};
-pub(super) use include::{INCLUDE, Included, merged};
+pub(super) use include::{INCLUDE, Included, MOST_BYTES, merged};
 pub(super) use mistake::Mistake;
 pub(super) use named_file::{Fault, FileKind};
 pub use rows::{Numbers, Rows};
