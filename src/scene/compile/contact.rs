@@ -2,10 +2,10 @@
 
 use super::context::Context;
 use super::place::Placed;
-use super::probe::ray_into;
 use crate::material::Material;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
+use crate::scene::checks::ray_into;
 use crate::shape::Shape;
 
 /// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.

@@ -43,11 +43,6 @@ struct Warning {
     message: String,
 }
 
-/// One of several things, of which so many more are not named.
-pub(super) fn and_more(named: &str, more: usize) -> String {
-    if more > 0 { format!("{named} and {more} more") } else { named.to_owned() }
-}
-
 impl Context {
     pub(super) fn new(text: &str) -> Self {
         Self { hash: Sha256::new_with_prefix(text.as_bytes()), ..Self::default() }

@@ -7,11 +7,11 @@ use super::curve_name::{
     color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
     unknown_metal, unknown_reflectance,
 };
-use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, shown, told};
+use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
-use crate::scene::text::{At, FileKind, Value, utf8};
+use crate::scene::text::{At, FileKind, Value, shown, utf8};
 use crate::scene::web_color::of_bytes;
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach,

@@ -1,9 +1,8 @@
 //! Dyes in matte surfaces.
 
 use super::asked::{Asked, spectrum};
-use super::curve_range::shown;
 use crate::material::{Diffuse, Fluorescence};
-use crate::scene::text::{Fields, Value};
+use crate::scene::text::{Fields, Value, shown};
 use crate::spectrum::Curve;
 
 pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<Asked<'d>>> {

@@ -1,10 +1,10 @@
 //! Closed meshes of clear bodies whose faces look inward, so that their inside is taken for the outside.
 
-use super::context::and_more;
 use super::place::Placed;
-use super::probe::met_from_outside;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
+use crate::scene::checks::met_from_outside;
+use crate::scene::text::and_more;
 use crate::shape::Shape;
 
 /// Rays that vote on a mesh: an odd number, so that one that grazes an edge does not decide.

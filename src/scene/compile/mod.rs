@@ -22,22 +22,16 @@ mod material;
 mod measures;
 mod mesh;
 mod object;
-mod on_surface;
-mod open_glass;
-mod out_of_focus;
 mod parts;
 mod place;
-mod probe;
 mod radiometry;
 mod relief;
 mod render;
 mod shape;
 mod shining;
-mod sight;
 mod spectrum_file;
 mod swallowed;
 mod transform;
-mod unlit;
 mod written;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,6 +44,7 @@ use self::material::Drafts;
 use self::object::{Draft, Names};
 use self::place::Placed;
 use self::shining::surfaces_that_shine;
+use super::checks::check;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
 use super::{ModelText, NamedMaterial, PolarizationText, RenderText, Scene};
@@ -69,15 +64,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     }
     let mut scene = scene?;
     scene.warnings = context.warnings(document);
-    let dark = match scene.lights.iter().all(|light| light.emission().is_dark()) {
-        true => vec!["nothing shines, so the image will be black".into()],
-        false => unlit::unlit(&scene),
-    };
-    scene.is_dark_told = !dark.is_empty();
-    scene.warnings.extend(dark);
-    scene.warnings.extend(on_surface::on_surface(&scene));
-    scene.warnings.extend(open_glass::open_glass(&scene));
-    scene.warnings.extend(out_of_focus::out_of_focus(&scene));
+    check(&mut scene);
     scene.files = context.files;
     scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Some(scene)

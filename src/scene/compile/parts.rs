@@ -2,11 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::context::and_more;
 use super::material::{Draft, Drafts};
 use crate::error::nearest;
 use crate::material::{Mask, Material, Mix, Part};
-use crate::scene::text::Value;
+use crate::scene::text::{Value, and_more};
 use crate::spectrum::Curve;
 
 /// Materials by name; those that are wrong are known but not there.

@@ -1,11 +1,11 @@
 //! Clear bodies of which nothing is seen, as another of the same priority is there in their place.
 
-use super::context::and_more;
 use super::inside_out::bodies_around;
 use super::place::Placed;
-use super::probe::met_from_outside;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
+use crate::scene::checks::met_from_outside;
+use crate::scene::text::and_more;
 use crate::shape::{Shape, SurfacePoint};
 
 /// Points of a body that all have to lie in the other.

@@ -1,9 +1,9 @@
 //! Flat surfaces of clear bodies that nothing closes.
 
-use super::context::and_more;
 use super::probe::met_from_outside;
 use crate::math::{BranchKey, DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::scene::Scene;
+use crate::scene::text::and_more;
 use crate::shape::Shape;
 use crate::spectrum::Curve;
 
