@@ -93,9 +93,10 @@ fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<Ex
 
 /// Says how the scene is rendered, and writes it down if that is asked for.
 fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
-    check_outputs(scene, &Vec::from_iter(file))?;
+    let files = Vec::from_iter(file);
+    check_outputs(scene, &files)?;
     check_words("--plan-file", "frame.plan", file)?;
-    let _folders = Folders::of_files(&Vec::from_iter(file))?;
+    let _folders = Folders::of_files(&files)?;
     let plan = plan(scene);
     messages::answer_plan(&plan)?;
     if let Some(file) = file {

@@ -16,9 +16,9 @@ pub(super) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
 /// # Errors
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> {
-    let whole = TextureOf { path, meaning: Meaning::Light(None), channel: None, srgb: false };
+    let light = TextureOf { path, meaning: Meaning::Light(None), channel: None, srgb: false };
     match ending(path).as_str() {
-        "exr" | "hdr" => whole.of_floats(floats(path, bytes, false)?),
+        "exr" | "hdr" => light.of_floats(floats(path, bytes, false)?),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
             Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help))
