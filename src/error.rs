@@ -216,13 +216,9 @@ pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> 
 /// The letters that only one of two words has.
 fn foreign_letters(a: &str, b: &str) -> usize {
     let mut rest: Vec<char> = b.chars().collect();
-    let missing = a.chars().filter(|letter| match rest.iter().position(|other| other == letter) {
-        Some(at) => {
-            rest.remove(at);
-            false
-        }
-        None => true,
+    let missing = a.chars().filter(|letter| {
+        let at = rest.iter().position(|other| other == letter);
+        at.map(|at| rest.swap_remove(at)).is_none()
     });
-    let missing = missing.count();
-    missing + rest.len()
+    missing.count() + rest.len()
 }

@@ -4,9 +4,9 @@ mod command;
 
 use std::collections::HashSet;
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use abbe::plan::plan;
 use abbe::scene::Source;
@@ -93,9 +93,10 @@ fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<Ex
 
 /// Says how the scene is rendered, and writes it down if that is asked for.
 fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
-    check_outputs(scene, &Vec::from_iter(file))?;
+    let files = Vec::from_iter(file);
+    check_outputs(scene, &files)?;
     check_words("--plan-file", "frame.plan", file)?;
-    let _folders = Folders::of_files(&Vec::from_iter(file))?;
+    let _folders = Folders::of_files(&files)?;
     let plan = plan(scene);
     messages::answer_plan(&plan)?;
     if let Some(file) = file {
@@ -115,30 +116,21 @@ fn write(image: &Image, exr: &Path) -> Result<u64> {
     Ok(clamped)
 }
 
+/// Renders a scene, as far as an earlier run has not, and writes its files.
 fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instant) -> Result<ExitCode> {
-    let exr_file = exr.filter(|exr| !is_standard(exr));
-    if exr_file != exr {
-        check_standard(scene.format.spectral.is_some())?;
-        job.keep.check_standard()?;
-    }
-    let part = exr_file.and_then(|exr| job.keep.part(exr));
-    let spectral = exr_file.filter(|_| scene.format.spectral.is_some()).map(|exr| exr.with_extension("spectral.exr"));
-    let outputs: Vec<&Path> = match &part {
-        Some(part) => vec![part],
-        None => [exr_file, spectral.as_deref(), png].into_iter().flatten().collect(),
-    };
-    let report = job.report.as_deref();
-    let main = outputs.first().copied().unwrap_or(Path::new("image"));
+    let outputs = Outputs::new(job, scene, [exr, png])?;
+    let (images, files) = (outputs.images(), outputs.files());
+    let main = images.first().copied().unwrap_or(Path::new("image"));
     let checkpoint = job.keep.checkpoint(main);
-    let all: Vec<&Path> = outputs.iter().copied().chain(checkpoint.as_deref()).chain(report).collect();
+    let all: Vec<&Path> = images.iter().copied().chain(checkpoint.as_deref()).chain(outputs.report).collect();
     check_outputs(scene, &all)?;
-    let plan = job.options.plan.as_deref();
-    all.iter().try_for_each(|output| plan.map_or(Ok(()), |plan| spare(plan, "plan that is followed", output)))?;
-    check_words("--report", "frame.json", report)?;
+    if let Some(plan) = &job.options.plan {
+        all.iter().try_for_each(|output| spare(plan, "plan that is followed", output))?;
+    }
+    check_words("--report", "frame.json", outputs.report)?;
     let _folders = Folders::of_files(&all)?;
     let way = format!("exposure {:?}, stamp {}", job.exposure, job.options.stamp);
     let mut keep = Keep::new(&job.keep, main, checkpoint, way)?;
-    let files: Vec<&Path> = outputs.iter().copied().chain(report).collect();
     if keep.has_finished(scene, &job.options, &files) {
         return Ok(ExitCode::SUCCESS);
     }
@@ -154,30 +146,74 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
         keep.say_how_to_resume();
         return Ok(ExitCode::from(signals::STOPPED_CODE));
     }
-    let expected = rendering.expected();
-    let took = progress.finish(expected);
-    let mut written = Written::default();
-    written.file(part.as_deref(), |part| rendering.write_part(part));
-    let image = if part.is_some() { rendering.summary() } else { rendering.image() };
-    written.file(exr.filter(|_| part.is_none()), |exr| {
-        messages::warn_of_clamped(image.format(), write(&image, exr)?);
-        Ok(())
-    });
-    let spectral = spectral.as_deref().filter(|_| part.is_none());
-    written.file(spectral, |spectral| image.write_spectral_exr(spectral));
-    written.file(png, |png| {
-        image.write_png(png, job.exposure)?;
-        messages::warn_of_exposure(&image, png, exr_file, job.exposure);
-        Ok(())
-    });
-    messages::print_report(&image, rendering.plan(), took, expected);
-    let images = written.files.clone();
-    written.file(report, |report| {
-        let (plan, end) = (Event::plan(rendering.plan()), Event::report(&image, took, expected));
-        write_account(report, plan, end, &images)
-    });
+    let took = progress.finish(rendering.expected());
+    let written = outputs.write(&rendering, job.exposure, took);
     keep.finish(&rendering, &written.files);
     written.end()
+}
+
+/// What a render writes.
+struct Outputs<'j> {
+    /// The image, to a file or to standard output.
+    exr: Option<&'j Path>,
+    /// A part of the image, in its place.
+    part: Option<PathBuf>,
+    spectral: Option<PathBuf>,
+    png: Option<&'j Path>,
+    report: Option<&'j Path>,
+}
+
+impl<'j> Outputs<'j> {
+    fn new(job: &'j Job, scene: &Scene, [exr, png]: [Option<&'j Path>; 2]) -> Result<Self> {
+        let has_spectra = scene.format.spectral.is_some();
+        if exr.is_some_and(is_standard) {
+            check_standard(has_spectra)?;
+            job.keep.check_standard()?;
+        }
+        let part = exr.and_then(|exr| job.keep.part(exr));
+        let exr = exr.filter(|_| part.is_none());
+        let spectral = exr.filter(|_| has_spectra).map(|exr| exr.with_extension("spectral.exr"));
+        Ok(Self { exr, part, spectral, png, report: job.report.as_deref() })
+    }
+
+    fn exr_file(&self) -> Option<&Path> {
+        self.exr.filter(|exr| !is_standard(exr))
+    }
+
+    /// The files of the image, the main one first.
+    fn images(&self) -> Vec<&Path> {
+        let images = [self.part.as_deref(), self.exr_file(), self.spectral.as_deref(), self.png];
+        images.into_iter().flatten().collect()
+    }
+
+    /// All files.
+    fn files(&self) -> Vec<&Path> {
+        self.images().into_iter().chain(self.report).collect()
+    }
+
+    /// Writes all of a finished render, and says what it noticed.
+    fn write(&self, rendering: &Rendering, exposure: f64, took: Duration) -> Written<'_> {
+        let mut written = Written::default();
+        written.file(self.part.as_deref(), |part| rendering.write_part(part));
+        let image = if self.part.is_some() { rendering.summary() } else { rendering.image() };
+        written.file(self.exr, |exr| {
+            messages::warn_of_clamped(image.format(), write(&image, exr)?);
+            Ok(())
+        });
+        written.file(self.spectral.as_deref(), |spectral| image.write_spectral_exr(spectral));
+        written.file(self.png, |png| {
+            image.write_png(png, exposure)?;
+            messages::warn_of_exposure(&image, png, self.exr_file(), exposure);
+            Ok(())
+        });
+        let (plan, expected) = (rendering.plan(), rendering.expected());
+        messages::print_report(&image, plan, took, expected);
+        let images = written.files.clone();
+        written.file(self.report, |report| {
+            write_account(report, Event::plan(plan), Event::report(&image, took, expected), &images)
+        });
+        written
+    }
 }
 
 /// Files of an image that are written: one that cannot be keeps no other from it.

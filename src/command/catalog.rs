@@ -57,13 +57,13 @@ const KINDS: [Kind; 4] = [
     Kind {
         name: "illuminant",
         titles: &["tabulated", "source"],
-        lines: illuminant_lines,
+        lines: |words| grid_lines(data::illuminants(), words),
         names: || data::illuminants().map(|light| light.name).collect(),
     },
     Kind {
         name: "reflectance",
         titles: &["tabulated", "source"],
-        lines: reflectance_lines,
+        lines: |words| grid_lines(data::reflectances(), words),
         names: || data::reflectances().map(|chip| chip.name).collect(),
     },
 ];
@@ -155,14 +155,6 @@ fn metal_lines(words: &[String]) -> Vec<Vec<String>> {
         vec![metal.name.into(), metal.aliases.join(", "), range(first, last), metal.source.into()]
     };
     found.map(line).collect()
-}
-
-fn illuminant_lines(words: &[String]) -> Vec<Vec<String>> {
-    grid_lines(data::illuminants(), words)
-}
-
-fn reflectance_lines(words: &[String]) -> Vec<Vec<String>> {
-    grid_lines(data::reflectances(), words)
 }
 
 fn grid_lines(grids: impl Iterator<Item = data::Grid>, words: &[String]) -> Vec<Vec<String>> {

@@ -108,11 +108,10 @@ fn window(full: &PixelBounds, there: &PixelBounds) -> Option<(&'static str, Stri
         return None;
     }
     let ([left, top], [right, bottom]) = (there.corner, there.last());
-    let beyond =
-        [0, 1].iter().any(|&axis| there.corner[axis] < full.corner[axis] || there.last()[axis] > full.last()[axis]);
-    let within =
-        [0, 1].iter().any(|&axis| there.corner[axis] > full.corner[axis] || there.last()[axis] < full.last()[axis]);
-    let key = match (within, beyond) {
+    let exceeds = |a: &PixelBounds, b: &PixelBounds| {
+        (0..2).any(|axis| a.corner[axis] < b.corner[axis] || a.last()[axis] > b.last()[axis])
+    };
+    let key = match (exceeds(full, there), exceeds(there, full)) {
         (true, false) => "crop",
         (false, _) => "overscan",
         (true, true) => "crop and overscan",

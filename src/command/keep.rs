@@ -120,17 +120,40 @@ impl Flags {
 
 /// What is kept of a render, and when.
 pub struct Keep {
-    /// Where the checkpoint is, if one is kept.
-    checkpoint: Option<PathBuf>,
+    files: Files,
     checkpoints: Timer,
-    /// The image that is kept fresh, if one is.
-    snapshot: Option<PathBuf>,
     snapshots: Timer,
-    /// Whether it shows the samples so far.
-    has_snapshot: Cell<bool>,
     resume: bool,
     /// What the files of a finished render depend on beside its samples.
     way: String,
+}
+
+/// Where something of a render is kept.
+struct Files {
+    /// Where the checkpoint is, if one is kept.
+    checkpoint: Option<PathBuf>,
+    /// The image that is kept fresh, if one is.
+    snapshot: Option<PathBuf>,
+    /// Whether it shows the samples so far.
+    has_snapshot: Cell<bool>,
+}
+
+impl Files {
+    fn save(&self, rendering: &Rendering) -> Result<()> {
+        self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save(path))
+    }
+
+    fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
+        let Some(path) = &self.snapshot else { return Ok(()) };
+        // Before the first samples, photons have shown a part of their light.
+        if rendering.camera_samples() == 0 {
+            return Ok(());
+        }
+        let image = rendering.image();
+        let (colors, spectra) = (image.write_exr(path), image.write_spectral_exr(path.with_extension("spectral.exr")));
+        self.has_snapshot.set(colors.is_ok());
+        colors.and(spectra.map(|_| ()))
+    }
 }
 
 impl Keep {
@@ -148,12 +171,11 @@ impl Keep {
             let help = "add --resume to go on from it, or delete it to begin anew";
             return Error::refuse(format!("{name} is there from an earlier run"), help);
         }
+        let snapshot = flags.snapshot.map(|_| file.to_owned());
         Ok(Self {
-            checkpoint,
+            files: Files { checkpoint, snapshot, has_snapshot: Cell::new(false) },
             checkpoints: Timer::new(flags.checkpoint.or(flags.resume.then_some(OFTEN))),
-            snapshot: flags.snapshot.map(|_| file.to_owned()),
             snapshots: Timer::new(flags.snapshot),
-            has_snapshot: Cell::new(false),
             resume: flags.resume,
             way,
         })
@@ -163,7 +185,7 @@ impl Keep {
     /// know.
     pub fn has_finished(&self, scene: &Scene, options: &Options, outputs: &[&Path]) -> bool {
         // A plan that is followed is looked at in any case.
-        let path = self.checkpoint.as_deref().filter(|_| self.resume && options.plan.is_none());
+        let path = self.files.checkpoint.as_deref().filter(|_| self.resume && options.plan.is_none());
         let finished = path.filter(|path| has_finished(path, scene, options.shard, outputs, &self.way));
         finished.inspect(|path| say_finished(path)).is_some()
     }
@@ -174,7 +196,7 @@ impl Keep {
     /// # Errors
     /// If the checkpoint is of something else, or damaged.
     pub fn resume(&self, rendering: &mut Rendering, outputs: &[&Path]) -> Result<bool> {
-        let Some(path) = self.checkpoint.as_deref().filter(|_| self.resume) else { return Ok(true) };
+        let Some(path) = self.files.checkpoint.as_deref().filter(|_| self.resume) else { return Ok(true) };
         if !path.exists() {
             say(&format!("there is no {}: the render begins", path.display()));
             return Ok(true);
@@ -242,8 +264,8 @@ impl Keep {
 
     /// Keeps what is done of a render that was stopped. One that fails does not keep the other from being written.
     fn keep_at_last(&self, rendering: &Rendering, progress: &Progress) -> Result<()> {
-        let (saved, taken) = (self.save(rendering), self.take_snapshot(rendering));
-        if self.checkpoint.is_some() && saved.is_ok() {
+        let (saved, taken) = (self.files.save(rendering), self.files.take_snapshot(rendering));
+        if self.files.checkpoint.is_some() && saved.is_ok() {
             // The render can go on without its snapshot.
             taken.err().iter().for_each(|error| progress.warn(&problem(error)));
             return Ok(());
@@ -251,7 +273,7 @@ impl Keep {
         match (&saved, &taken) {
             (Ok(()), Ok(())) => {}
             (Err(_), Err(error)) => progress.say(&format!("stopped; {}", problem(error))),
-            (Err(_), Ok(())) if self.has_snapshot.get() => {
+            (Err(_), Ok(())) if self.files.has_snapshot.get() => {
                 progress.say("stopped; the snapshot is kept, and no checkpoint");
             }
             _ => progress.say("stopped; what is done is not kept"),
@@ -261,49 +283,27 @@ impl Keep {
 
     /// Writes what is due.
     fn keep(&mut self, rendering: &Rendering) -> Result<()> {
-        let mut snapshots = std::mem::replace(&mut self.snapshots, Timer::new(None));
-        let mut checkpoints = std::mem::replace(&mut self.checkpoints, Timer::new(None));
-        let mut save = || checkpoints.run(|| self.save(rendering));
-        let kept = if snapshots.is_due() {
-            // The time of the checkpoint counts as well.
-            snapshots.run(|| {
-                let saved = save();
-                saved.and(self.take_snapshot(rendering))
-            })
-        } else {
-            save()
-        };
-        (self.checkpoints, self.snapshots) = (checkpoints, snapshots);
-        kept
+        let Self { files, checkpoints, snapshots, .. } = self;
+        let mut save = || checkpoints.run(|| files.save(rendering));
+        if !snapshots.is_due() {
+            return save();
+        }
+        // The time of the checkpoint counts as well.
+        snapshots.run(|| save().and(files.take_snapshot(rendering)))
     }
 
     /// Writes the checkpoint of a finished render and the files that are written of it, if one is kept. Where it cannot
     /// be written the image is there all the same.
     pub fn finish(&self, rendering: &Rendering, written: &[&Path]) {
-        let kept = self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written, &self.way));
+        let kept =
+            self.files.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written, &self.way));
         kept.unwrap_or_else(|error| warn(&format!("the render is finished, but {}", problem(&error))));
-    }
-
-    fn save(&self, rendering: &Rendering) -> Result<()> {
-        self.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save(path))
-    }
-
-    fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
-        let Some(path) = &self.snapshot else { return Ok(()) };
-        // Before the first samples, photons have shown a part of their light.
-        if rendering.camera_samples() == 0 {
-            return Ok(());
-        }
-        let image = rendering.image();
-        let (colors, spectra) = (image.write_exr(path), image.write_spectral_exr(path.with_extension("spectral.exr")));
-        self.has_snapshot.set(colors.is_ok());
-        colors.and(spectra.map(|_| ()))
     }
 
     /// Says what was kept, and how to go on.
     pub fn say_how_to_resume(&self) {
-        let Some(path) = &self.checkpoint else {
-            if !self.has_snapshot.get() {
+        let Some(path) = &self.files.checkpoint else {
+            if !self.files.has_snapshot.get() {
                 return say(signals::NOTHING_KEPT);
             }
             return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");

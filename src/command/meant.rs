@@ -8,19 +8,15 @@ use clap::error::{ContextKind, ErrorKind};
 const FLAGS: [(&str, &str); 4] = [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("render", "--exr")];
 
 /// Arguments of other renderers, and what does the same here.
-const ELSEWHERE: [(&str, &str); 12] = [
-    ("--spp", "--samples 64"),
-    ("--output", "--exr frame.exr"),
-    ("-o", "--exr frame.exr"),
-    ("--width", "--set film.width=640"),
-    ("--height", "--set film.height=360"),
-    ("--resolution", "--set film.width=640 --set film.height=360"),
-    ("--res", "--set film.width=640 --set film.height=360"),
-    ("--size", "--set film.width=640 --set film.height=360"),
-    ("--noise", "--error 0.01"),
-    ("--aov", "--layers albedo,N"),
-    ("--aovs", "--layers albedo,N"),
-    ("--frames", "--frame 1-24"),
+const ELSEWHERE: [(&[&str], &str); 8] = [
+    (&["--spp"], "--samples 64"),
+    (&["--output", "-o"], "--exr frame.exr"),
+    (&["--width"], "--set film.width=640"),
+    (&["--height"], "--set film.height=360"),
+    (&["--resolution", "--res", "--size"], "--set film.width=640 --set film.height=360"),
+    (&["--noise"], "--error 0.01"),
+    (&["--aov", "--aovs"], "--layers albedo,N"),
+    (&["--frames"], "--frame 1-24"),
 ];
 
 /// Most letters that are wrong in a command.
@@ -33,7 +29,7 @@ pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Optio
         ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),
         _ => return None,
     };
-    if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| *there == given) {
+    if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| there.contains(&given.as_str())) {
         return Some((format!("there is no argument {given}"), format!("write {here}")));
     }
     let first = words.get(1)?.to_str()?;

@@ -99,7 +99,7 @@ impl Progress {
             Lines::new(first, then, move || speak(&counts))
         });
         if listener() == Listener::Farm {
-            openjd::progress(before as f64 / work.max(1) as f64);
+            openjd::progress(share([before, work]));
         }
         Self { bar, lines, counts }
     }
@@ -151,17 +151,7 @@ impl Progress {
         let (start, work) = (self.counts.start, self.counts.work.load(Ordering::Relaxed));
         self.stop();
         let took = start.elapsed();
-        match listener() {
-            Listener::Program => {
-                Event::Progress { done: work, total: work, seconds: took.as_secs_f64(), seconds_left: Some(0.0) }
-                    .tell();
-            }
-            Listener::Farm => {
-                openjd::progress(1.0);
-                say(&rendered(took, expected));
-            }
-            _ => say(&rendered(took, expected)),
-        }
+        tell([work, work], took.as_secs_f64(), Some(0.0), &rendered(took, expected));
         took
     }
 
@@ -197,15 +187,24 @@ fn style() -> ProgressStyle {
 /// Says how much of the work is done.
 fn speak(counts: &Counts) {
     let (done, total, seconds) = (counts.done(), counts.total(), counts.start.elapsed().as_secs_f64());
-    let (part, seconds_left) = (done as f64 / total.max(1) as f64, counts.left());
+    let left = counts.left();
+    tell([done, total], seconds, left, &line(share([done, total]), seconds, left));
+}
+
+/// Says how much is done of how much, after and before how many seconds: to a program in numbers, to all others in
+/// words.
+fn tell(parts: [u64; 2], seconds: f64, seconds_left: Option<f64>, words: &str) {
+    let [done, total] = parts;
     match listener() {
-        Listener::Program => Event::Progress { done, total, seconds, seconds_left }.tell(),
-        Listener::Farm => {
-            openjd::progress(part);
-            say(&line(part, seconds, seconds_left));
-        }
-        _ => say(&line(part, seconds, seconds_left)),
+        Listener::Program => return Event::Progress { done, total, seconds, seconds_left }.tell(),
+        Listener::Farm => openjd::progress(share(parts)),
+        Listener::Person | Listener::Busy => {}
     }
+    say(words);
+}
+
+fn share([done, total]: [u64; 2]) -> f64 {
+    done as f64 / total.max(1) as f64
 }
 
 /// Seconds left after so many, in which the part that is done has grown.

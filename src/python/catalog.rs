@@ -19,16 +19,11 @@ pub(super) struct Metal(data::Metal);
 #[pyclass(frozen, module = "abbe._abbe")]
 pub(super) struct Tabulated(data::Grid);
 
-/// Wavelengths in nm, as the bytes of an array of 64-bit floats.
-fn wavelengths(bytes: &[u8]) -> impl Iterator<Item = f64> {
-    bytes.chunks_exact(size_of::<f64>()).map(|bytes| f64::from_ne_bytes(std::array::from_fn(|i| bytes[i])))
-}
-
-/// A value for each wavelength.
+/// A value for each wavelength in nm, given as the bytes of an array of 64-bit floats.
 fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
-    let values: Vec<f64> = wavelengths(bytes).map(value).collect();
-    let count = values.len();
-    Plane::owned(values, vec![count])
+    let values: Vec<f64> = bytes.as_chunks().0.iter().map(|nm| value(f64::from_ne_bytes(*nm))).collect();
+    let shape = vec![values.len()];
+    Plane::owned(values, shape)
 }
 
 #[pymethods]

@@ -93,14 +93,13 @@ pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
             .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
             .filter(|time| !time.is_zero()),
     };
-    found.map_or_else(
-        || {
-            let message =
-                format!("{name} is a number of seconds above 0 or a text such as \"10m\", not {}", shown(value));
-            refuse(message, "units are ms, s, m and h")
-        },
-        Ok,
-    )
+    match found {
+        Some(time) => Ok(time),
+        None => refuse(
+            format!("{name} is a number of seconds above 0 or a text such as \"10m\", not {}", shown(value)),
+            "units are ms, s, m and h",
+        ),
+    }
 }
 
 fn overscan(value: &Bound<'_, PyAny>) -> PyResult<Overscan> {
@@ -128,10 +127,10 @@ fn crop(value: &Bound<'_, PyAny>) -> PyResult<Window> {
         let ([left, top], [width, height]) = ([left, top].map(i32::try_from), [width, height].map(u32::try_from));
         Some(Window { left: left.ok()?, top: top.ok()?, width: width.ok()?, height: height.ok()? })
     };
-    read().map_or_else(
-        || refuse("a crop is first column, first row, width and height", "such as (100, 50, 320, 180)"),
-        Ok,
-    )
+    match read() {
+        Some(crop) => Ok(crop),
+        None => refuse("a crop is first column, first row, width and height", "such as (100, 50, 320, 180)"),
+    }
 }
 
 /// A list of names, or the word for all of them.

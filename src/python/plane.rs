@@ -55,17 +55,8 @@ impl Plane {
     /// Numbers one behind the other.
     pub(super) fn owned<N: Number>(numbers: Vec<N>, shape: Vec<usize>) -> Self {
         let numbers = Arc::new(numbers);
-        let mut step = size_of::<N>();
-        let mut strides: Vec<usize> = shape
-            .iter()
-            .rev()
-            .map(|count| {
-                let stride = step;
-                step *= count;
-                stride
-            })
-            .collect();
-        strides.reverse();
+        let within = |axis: usize| shape[axis + 1..].iter().product::<usize>();
+        let strides = (0..shape.len()).map(|axis| within(axis) * size_of::<N>()).collect();
         let address = numbers.as_ptr().expose_provenance();
         Self { _owner: numbers, address, shape, strides, kind: N::KIND }
     }

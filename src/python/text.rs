@@ -270,7 +270,7 @@ fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> PyResult<Option<Rows>> {
 
 /// A number of each eight bytes.
 fn each<T>(bytes: &[u8], number: impl Fn([u8; 8]) -> T) -> Vec<T> {
-    bytes.chunks_exact(8).map(|eight| number(std::array::from_fn(|i| eight[i]))).collect()
+    bytes.as_chunks().0.iter().map(|eight| number(*eight)).collect()
 }
 
 /// A value as Python shows it, if that is short.

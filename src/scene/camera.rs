@@ -6,17 +6,17 @@ use crate::math::{DVec2, DVec3, Frame, Ray, disk, unit};
 /// From where the scene is seen, and how directions become places in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    pub(super) position: DVec3,
-    pub(super) right: DVec3,
-    pub(super) up: DVec3,
-    pub(super) forward: DVec3,
-    pub(super) projection: Projection,
+    position: DVec3,
+    right: DVec3,
+    up: DVec3,
+    forward: DVec3,
+    projection: Projection,
     /// Half of the image in the plane one unit before the camera, or half of an orthographic view.
-    pub(super) half: DVec2,
+    half: DVec2,
     /// The middle of the image there.
-    pub(super) center: DVec2,
-    pub(super) size: DVec2,
-    pub(super) near: f64,
+    center: DVec2,
+    size: DVec2,
+    near: f64,
     pub(super) lens: Option<Lens>,
     /// Distance of the point looked at.
     reach: f64,

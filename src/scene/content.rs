@@ -124,6 +124,11 @@ impl<S> Scene<S> {
         &self.materials[self.objects[object as usize].material as usize].material
     }
 
+    /// Whether an object is a clear body, or a part of its surface.
+    pub(super) fn is_clear(&self, object: u32) -> bool {
+        self.material_of(object).medium().is_some()
+    }
+
     /// The nearest surface along a ray; of equally near ones, that of the object listed first.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         self.intersect_from(ray, None)

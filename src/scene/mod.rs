@@ -4,6 +4,7 @@
 //! spectrum on the lanes; the tracer reads it.
 
 mod camera;
+mod checks;
 mod compile;
 mod content;
 mod decode;

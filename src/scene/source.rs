@@ -11,13 +11,13 @@ use toml::de::DeTable;
 use super::Scene;
 use super::compile::{SECTIONS, compile};
 use super::foreign::{A_SCENE, foreign};
-use super::text::{Document, Fault, Included, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8};
+use super::text::{
+    Document, Fault, Included, MOST_BYTES, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8,
+};
 use crate::error::{Error, Result, nearest_file};
 
 /// What the text of settings is called in messages; each has a line of it.
 pub const SETTINGS: &str = "--set";
-/// Most bytes of a scene, as of a file that it includes. A device may never end.
-const MOST_BYTES: u64 = 1 << 30;
 
 /// A scene file that was read.
 #[derive(Clone, Debug)]
@@ -130,7 +130,7 @@ impl Source {
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
         let refuse = |mut mistakes: Vec<Mistake>| {
             mistakes.sort_by_key(|mistake| mistake.span.start);
-            mistakes.dedup();
+            mistakes.dedup_by(|a, b| (&a.span, &a.message) == (&b.span, &b.message));
             let keys = match place {
                 Place::Line => HashMap::new(),
                 Place::Key => keys(&texts, &parts, &mistakes),
@@ -215,12 +215,8 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`]; the file is called `scene.toml` in messages.
     pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
-        Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() }.compile_by(
-            Place::Line,
-            &[],
-            Vec::new(),
-            false,
-        )
+        let source = Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() };
+        source.compile_by(Place::Line, &[], Vec::new(), false)
     }
 
     /// Reads a scene that a program has built: a value that means what a scene file with the same keys means.

@@ -59,7 +59,7 @@ const COUNTS: [(&str, &str, &str); 17] = [
     ("materials that one", "src/scene/compile/parts.rs", "MOST_PARTS"),
     ("materials within", "src/scene/compile/parts.rs", "DEEPEST"),
     ("pixels of an image", "src/film/guard.rs", "MOST_TEXELS"),
-    ("bytes of a scene", "src/scene/source.rs", "MOST_BYTES"),
+    ("bytes of a scene", "src/scene/text/include.rs", "MOST_BYTES"),
     ("files that include", "src/scene/text/include.rs", "DEEPEST"),
     ("bytes of an OpenEXR file", "src/film/exr_file.rs", "MOST_BYTES"),
     ("corners of a face", "src/shape/ears.rs", "MOST_CORNERS"),

@@ -35,15 +35,13 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let filter = camera.maybe("polarizer", filter);
         let named = camera.get("projection");
         let kind = named.map_or(Some(ProjectionKind::Perspective), |value| value.word(&PROJECTIONS));
-        let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
+        let projection = projection(context, camera, kind);
+        let shift = camera.or("shift", [0.0; 2], shift);
+        let lens = camera.maybe("lens", lens);
         let near = camera.or("near", 0.0, |value| {
             value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
         let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
-        let projection = kind.and_then(|kind| projection(context, camera, kind, keys));
-        let [_, _, shifted, opened] = keys;
-        let shift = shifted.map_or(Some([0.0; 2]), shift);
-        let lens = opened.map_or(Some(None), |value| lens(value).map(Some));
         let (position, target, up) = (position?, target?, up?);
         if (target.it - position).try_normalize().is_none() {
             return target.place.refuse("the camera looks at the very point where it stands");
@@ -81,15 +79,11 @@ const PROJECTIONS: [(&str, ProjectionKind); 3] = [
     ("equirectangular", ProjectionKind::Equirectangular),
 ];
 
-/// The projection, if the camera has the keys for it and no other: of a vertical field of view in degrees, the height
-/// of the view in scene units, a shift and a lens.
-fn projection(
-    context: &mut Context,
-    camera: &mut Fields,
-    kind: ProjectionKind,
-    [vertical_fov, height, shift, lens]: [Option<Value>; 4],
-) -> Option<Projection> {
-    match (kind, vertical_fov, height) {
+/// The projection, if the camera has the keys for it and no other.
+fn projection(context: &mut Context, camera: &mut Fields, kind: Option<ProjectionKind>) -> Option<Projection> {
+    let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
+    let [vertical_fov, height, ..] = keys;
+    match (kind?, vertical_fov, height) {
         (ProjectionKind::Perspective, _, Some(height)) => {
             let help = "give its vertical_fov, or write projection = \"orthographic\"";
             height.advise("a perspective camera has no height", help)
@@ -115,8 +109,7 @@ fn projection(
             Some(Projection::Orthographic { height: length(height, "the height of a view")? })
         }
         (ProjectionKind::Orthographic, None, None) => camera.lack("height", Some(HEIGHT)),
-        (ProjectionKind::Equirectangular, ..) => match [vertical_fov, height, shift, lens].into_iter().flatten().next()
-        {
+        (ProjectionKind::Equirectangular, ..) => match keys.into_iter().flatten().next() {
             Some(value) => {
                 let message = format!("an equirectangular camera sees the full sphere and has no {}", value.key());
                 value.advise(message, "leave it out, or choose another projection")

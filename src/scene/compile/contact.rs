@@ -1,7 +1,11 @@
 //! Clear bodies and flat lamps that share a part of their surface with something else.
 
-use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, ball_surface};
+use super::context::Context;
+use super::place::Placed;
+use crate::material::Material;
+use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
+use crate::scene::checks::ray_into;
 use crate::shape::Shape;
 
 /// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.
@@ -13,11 +17,43 @@ const NEAR: f64 = 1e-9;
 /// Pairs of bodies that are compared at most; a scene with more is not searched further.
 const MOST_PAIRS: usize = 20_000;
 
-/// Pairs of objects whose surfaces coincide in part, the first one such as counts.
+/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp
+/// in another surface nothing may be seen.
+pub(super) fn contacts(context: &mut Context, placed: &Placed) {
+    for (first, second) in coinciding(placed) {
+        let [body, other] = [first, second].map(|number| &placed.objects[number]);
+        let (name, other_name) = (&body.name, &other.name);
+        if placed.is_clear(body) && placed.is_clear(other) {
+            let message = format!("a part of the surfaces of {name} and {other_name} lies in one place");
+            let help = "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
+            placed.shapes[first.max(second)].advise::<()>(message, help);
+            continue;
+        }
+        context.warn(match is_flat_lamp(placed, body) {
+            true => {
+                format!("a part of {name}, which shines, lies exactly in {other_name}, which may hide it: move it a little")
+            }
+            false => format!(
+                "a part of the surface of {name} lies exactly in {other_name}, where light may pass by it: move it a little, \
+                 apart or into the other"
+            ),
+        });
+    }
+}
+
+/// A lamp that has no inside.
+fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
+    let shines = matches!(placed.material(object).material, Material::Emissive(_));
+    shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
+}
+
+/// Pairs of objects whose surfaces coincide in part, the first one a clear body or a flat lamp.
 ///
 /// A ray that leaves one of them starts beyond the other and never meets it (row M2 of the stability catalog).
-pub(super) fn coinciding(objects: &[Object], counts: impl Fn(&Object) -> bool) -> Vec<(usize, usize)> {
-    let counting: Vec<bool> = objects.iter().map(counts).collect();
+fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
+    let objects = &placed.objects;
+    let counting: Vec<bool> =
+        objects.iter().map(|object| placed.is_clear(object) || is_flat_lamp(placed, object)).collect();
     let boxes: Vec<Option<Bounds>> = objects.iter().map(|object| object.shape.bounds()).collect();
     let mut pairs = near_pairs(&boxes, &counting);
     pairs.sort_unstable();
@@ -73,14 +109,6 @@ fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
     };
     let reach = reach(&a);
     (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
-}
-
-/// A ray from outside of a box to the place at these shares of its sides, by way of a ball around it.
-pub(super) fn ray_into(bounds: &Bounds, place: DVec3, on_ball: [f64; 2]) -> Option<Ray> {
-    let size = (bounds.max - bounds.min).length();
-    let target = bounds.min + (bounds.max - bounds.min) * place;
-    let direction = (target - (bounds.center() + ball_surface(on_ball) * size)).try_normalize()?;
-    Some(Ray { origin: target - direction * (2.0 * size), direction })
 }
 
 fn share_a_surface(body: &Object, other: &Object) -> bool {

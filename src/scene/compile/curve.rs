@@ -7,11 +7,11 @@ use super::curve_name::{
     color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
     unknown_metal, unknown_reflectance,
 };
-use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, shown, told};
+use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, told};
 use super::curve_text::{CurveText, KindText, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
-use crate::scene::text::{At, FileKind, Value, utf8};
+use crate::scene::text::{At, FileKind, Value, shown, utf8};
 use crate::scene::web_color::of_bytes;
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach,
@@ -166,11 +166,10 @@ fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> 
 }
 
 /// That every value of a list is possible.
-fn each(text: &CurveText, quantity: Quantity, mut values: impl Iterator<Item = f64>) -> Option<()> {
-    let (scale, mut number) = (text.scale.it, 0..);
-    values.try_for_each(|value| {
-        let place = text.place.entry(number.next().unwrap_or_default());
-        told(place, possible(quantity, value * scale, &with_scale(scale)))
+fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
+    let scale = text.scale.it;
+    values.enumerate().try_for_each(|(number, value)| {
+        told(text.place.entry(number), possible(quantity, value * scale, &with_scale(scale)))
     })
 }
 
@@ -181,6 +180,9 @@ fn with_scale(scale: f64) -> String {
 
 /// That samples are a spectrum of a quantity.
 fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), Refusal> {
+    if let Some(at) = samples.as_flattened().iter().position(|x| !x.is_finite()) {
+        return Err(Refusal::new(not_finite(samples.as_flattened()[at])).at(at / 2));
+    }
     ascending(samples)?;
     if let ([[nm, power]], Quantity::Emission) = (samples, quantity) {
         let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
@@ -252,11 +254,7 @@ fn file_of_samples<'d>(
     };
     context.has_read(place.path(file), table.as_bytes());
     let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
-    let all_finite = samples.iter().position(|pair| pair.iter().any(|x| !x.is_finite())).map_or(Ok(()), |entry| {
-        let wrong = samples[entry].into_iter().find(|x| !x.is_finite()).unwrap_or_default();
-        Err(Refusal::new(not_finite(wrong)).at(entry))
-    });
-    match all_finite.and_then(|()| samples_fit(&samples, quantity, text.scale.it)) {
+    match samples_fit(&samples, quantity, text.scale.it) {
         Ok(()) => Some(CurveKind::Samples(samples)),
         Err(Refusal { message, help, entry: Some(entry), .. }) => {
             place.tell(format!("{file}, line {}: {message}", rows[entry].line), help)

@@ -9,8 +9,6 @@ use crate::scene::share;
 use crate::scene::web_color::web_color;
 use crate::spectrum::data::{self, bare};
 
-const LISTS: &str = "lists the known names";
-
 pub(super) fn unknown_glass(name: &str) -> Refusal {
     unknown(name, "glass", data::known_as())
 }
@@ -24,14 +22,7 @@ pub(super) fn unknown_reflectance(name: &str) -> Refusal {
         return Refusal::new(format!("there is no reflectance named {name:?}")).help(help);
     }
     let full = || data::reflectances().map(|patch| patch.name);
-    let refusal = unknown(name, "reflectance", full().map(bare).chain(full()));
-    match refusal.help.as_deref() {
-        Some(help) if help.ends_with(LISTS) => {
-            let help = format!("{help}; a color is {{ rgb = [red, green, blue] }}");
-            refusal.help(help)
-        }
-        _ => refusal,
-    }
+    unknown(name, "reflectance", full().map(bare).chain(full()))
 }
 
 /// How to write what stands in quotes and is no name: a file, or a share in percent.
@@ -81,7 +72,10 @@ fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> 
     let help = match (elsewhere(name), nearest(name, names)) {
         (Some(other), _) => format!("it is {other}"),
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
-        (None, None) => format!("`render catalog {what}` {LISTS}"),
+        (None, None) => {
+            let colors = if what == "reflectance" { "; a color is { rgb = [red, green, blue] }" } else { "" };
+            format!("`render catalog {what}` lists the known names{colors}")
+        }
     };
     Refusal::new(format!("there is no {what} named {name:?}")).help(help)
 }

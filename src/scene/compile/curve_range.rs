@@ -1,6 +1,6 @@
 //! Whether a value is possible for what a spectrum describes.
 
-use crate::scene::text::Value;
+use crate::scene::text::{Value, shown};
 use crate::spectrum::Quantity;
 
 /// Largest emission: far within f32, which film and lanes hold.
@@ -124,12 +124,6 @@ pub(super) fn hardly_a_layer(nm: f64) -> Option<String> {
 
 /// Below this, no layer is seen.
 const ONE_NM: f64 = 1.0;
-
-/// Six digits of a number.
-pub(super) fn shown(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-4..1e15).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
-}
 
 pub(super) fn article(quantity: Quantity) -> &'static str {
     match quantity {

@@ -1,17 +1,13 @@
 //! Dyes in matte surfaces.
 
 use super::asked::{Asked, spectrum};
-use super::curve_range::shown;
 use crate::material::{Diffuse, Fluorescence};
-use crate::scene::text::{Fields, Value};
+use crate::scene::text::{Fields, Value, shown};
 use crate::spectrum::Curve;
 
 pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<Asked<'d>>> {
-    let (reflectance, dye) = (spectrum(fields, "reflectance"), fields.get("fluorescence"));
-    let fluorescence = match dye {
-        Some(dye) => Some(Fields::read(dye, fluorescence)?),
-        None => None,
-    };
+    let reflectance = spectrum(fields, "reflectance");
+    let fluorescence = fields.maybe("fluorescence", |dye| Fields::read(dye, fluorescence))?;
     Some(Diffuse { reflectance, fluorescence })
 }
 

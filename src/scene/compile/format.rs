@@ -118,13 +118,10 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
         }
         None => {}
     }
-    let layers =
-        value.as_list("layer", "write a list such as [\"albedo\", \"N\"], or \"all\"").each(|layer| {
-            match layer.node().as_str() {
-                Some(Layer::ALL) => Some(Layer::all()),
-                _ => layer.word(&Layer::NAMES).map(|layer| vec![layer]),
-            }
-        });
+    let layers = value.each(|layer| match layer.node().as_str() {
+        Some(Layer::ALL) => Some(Layer::all()),
+        _ => layer.word(&Layer::NAMES).map(|layer| vec![layer]),
+    });
     layers.map(|layers| layers.concat())
 }
 

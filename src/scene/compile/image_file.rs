@@ -16,19 +16,15 @@ pub(super) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
 /// # Errors
 /// What is wrong with it, and what to do.
 pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> {
-    let image = match ending(path).as_str() {
-        "exr" | "hdr" => floats(path, bytes, false)?,
+    let light = TextureOf { path, meaning: Meaning::Light(None), channel: None, srgb: false };
+    match ending(path).as_str() {
+        "exr" | "hdr" => light.of_floats(floats(path, bytes, false)?),
         ending @ ("png" | "jpg" | "jpeg") => {
             let help = "use an OpenEXR (.exr) or Radiance (.hdr) image";
-            return Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help));
+            Err(Fault::new(format!("a .{ending} image holds no light brighter than white"), help))
         }
-        _ => return Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
-    };
-    let Floats { width, channels, is_lossy, to_rec709, numbers, .. } = image;
-    let mut texels = Texels { path, width, channels, numbers };
-    texels.check(Meaning::Light(None), is_lossy)?;
-    let warnings = rec709(&mut texels, &to_rec709).into_iter().collect();
-    Ok(ImageFile { image: Image::of_floats(width, channels, texels.numbers), warnings })
+        _ => Err(unknown(path, "images end in .exr (OpenEXR) or .hdr (Radiance)")),
+    }
 }
 
 /// An image, and what is to be said of its file.
@@ -133,7 +129,8 @@ impl TextureOf<'_> {
         let picked = self.picked(image.channels, image.has_alpha)?;
         let ignores_alpha = !directions && picked.ignores(&image.numbers, 1.0);
         let (width, channels) = (image.width, picked.channels());
-        let mut texels = Texels { path: self.path, width, channels, numbers: picked.of(&image.numbers).collect() };
+        let numbers = if picked.is_all() { image.numbers } else { picked.of(&image.numbers).collect() };
+        let mut texels = Texels { path: self.path, width, channels, numbers };
         texels.check(self.meaning, image.is_lossy)?;
         if directions {
             texels.numbers.iter_mut().for_each(|x| *x = 2.0 * *x - 1.0);
@@ -191,6 +188,10 @@ impl Picked {
 
     fn channels(&self) -> usize {
         self.last - self.first + 1
+    }
+
+    fn is_all(&self) -> bool {
+        self.channels() == self.stride
     }
 
     fn of<'a, T: Copy>(&'a self, numbers: &'a [T]) -> impl Iterator<Item = T> + 'a {

@@ -1,8 +1,10 @@
 //! Closed meshes of clear bodies whose faces look inward, so that their inside is taken for the outside.
 
-use super::contact::ray_into;
+use super::place::Placed;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
+use crate::scene::checks::met_from_outside;
+use crate::scene::text::and_more;
 use crate::shape::Shape;
 
 /// Rays that vote on a mesh: an odd number, so that one that grazes an edge does not decide.
@@ -12,15 +14,19 @@ const TRIES: u32 = 16;
 /// Surfaces that a ray crosses at most.
 const MOST: usize = 1000;
 
-/// Clear objects (`clear` says which) that are closed meshes with their faces inward, and no bubbles: a bubble lies in
-/// a body of the same material, which its faces end.
-pub(super) fn inside_out(objects: &[Object], clear: impl Fn(&Object) -> bool) -> Vec<usize> {
+/// What is wrong with closed meshes of clear bodies whose faces look inward: each fills all that is outside of it, and
+/// light that meets it is lost. A bubble is none of them: it lies in a body of the same material, which its faces end.
+pub(super) fn inside_out(placed: &Placed) -> Option<String> {
+    let objects = &placed.objects;
     let is_mesh = |object: &Object| matches!(*object.shape, Shape::Mesh(_) | Shape::Instance(_));
-    let candidates = (0..objects.len()).filter(|&number| {
-        let object = &objects[number];
-        clear(object) && is_mesh(object) && object.shape.is_closed()
-    });
-    candidates.filter(|&number| looks_inward(objects, number)).collect()
+    let is_body = |object: &Object| placed.is_clear(object) && is_mesh(object) && object.shape.is_closed();
+    let mut found = (0..objects.len()).filter(|&number| is_body(&objects[number]) && looks_inward(objects, number));
+    let first = found.next()?;
+    Some(format!(
+        "{}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
+         each face's corners",
+        and_more(&objects[first].name, found.count())
+    ))
 }
 
 fn looks_inward(objects: &[Object], number: usize) -> bool {
@@ -40,13 +46,11 @@ fn looks_inward(objects: &[Object], number: usize) -> bool {
 
 /// A ray that starts just behind the first surface of a shape that is met from outside.
 fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
-    let bounds = shape.bounds()?;
     (0..TRIES).find_map(|attempt| {
         let [u, v, x, y] = Sampler::new(0, [number, attempt], 0).four_plain(BranchKey::CAMERA, 0);
         let [z, ..] = Sampler::new(0, [number, attempt], 1).four_plain(BranchKey::CAMERA, 0);
-        let ray = ray_into(&bounds, DVec3::new(x, y, z), [u, v])?;
-        let crossing = shape.intersect(&ray, f64::INFINITY)?;
-        Some(shape.point(&ray, &crossing).leave(ray.direction))
+        let (point, direction) = met_from_outside(shape, DVec3::new(x, y, z), [u, v])?;
+        Some(point.leave(direction))
     })
 }
 

@@ -9,85 +9,74 @@ use super::measures::{direction, point};
 use super::object;
 use super::radiometry;
 use super::transform::{Step, map_of, steps};
-use crate::light::{Environment, Light, LightId, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
+use crate::light::{Environment, Light, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::Scene;
 use crate::scene::text::{At, Fields, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
 
-/// The lights of a scene that are right, and which of them rays see that meet nothing.
-#[derive(Default)]
-pub(super) struct Lights {
-    all: Vec<Light<Curve>>,
-    infinite_lights: Vec<LightId>,
-    /// Those of them that the camera does not see.
-    hidden: Vec<LightId>,
-    /// The group of each light.
-    groups: Vec<String>,
-    has_environment: bool,
+/// A light of a scene.
+pub(super) struct Entry {
+    light: Light<Curve>,
+    group: String,
+    /// Whether the camera sees it, if it is infinite.
+    is_visible: bool,
 }
 
-impl Lights {
-    /// ```toml
-    /// [[light]]
-    /// environment = { radiance = 1 }     # or `point`, `spot` or `sun`
-    /// ```
-    pub(super) fn read<'d>(&mut self, context: &mut Context, value: Value<'d>) -> Option<()> {
-        let (mut group, mut visible) = (None, true);
-        let light = Fields::read(value, |light| {
-            let name = light.maybe("name", object::name);
-            let own = light.maybe("group", object::group);
-            let seen = light.maybe("visible_to_camera", at(Value::yes_or_no));
-            let kinds = ["environment", "point", "spot", "sun"].map(|kind| light.get(kind));
-            let given: Vec<Value> = kinds.into_iter().flatten().collect();
-            let place = match given.as_slice() {
-                [] if light.has_unknown() => return None,
-                [] => {
-                    let message = "a light needs a kind: `environment`, `point`, `spot` or `sun`";
-                    return value.advise(message, "such as environment = { radiance = 1 }");
-                }
-                [place] => *place,
-                [first, others @ ..] => {
-                    let last = others.iter().fold(*first, |last, other| last.later(*other));
-                    return last.advise("a light has exactly one kind", "start another [[light]] for the second");
-                }
-            };
-            group = own?.or(name?);
-            if let Some(seen) = seen? {
-                visible = seen.it;
-                if matches!(place.key(), "point" | "spot") {
-                    let message = "a point and a spot are too small to be seen";
-                    return seen.place.advise(message, "leave `visible_to_camera` out");
-                }
+/// ```toml
+/// [[light]]
+/// environment = { radiance = 1 }     # or `point`, `spot` or `sun`
+/// ```
+pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment: &mut bool) -> Option<Entry> {
+    Fields::read(value, |entry| {
+        let name = entry.maybe("name", object::name);
+        let own = entry.maybe("group", object::group);
+        let seen = entry.maybe("visible_to_camera", at(Value::yes_or_no));
+        let kinds = ["environment", "point", "spot", "sun"].map(|kind| entry.get(kind));
+        let given: Vec<Value> = kinds.into_iter().flatten().collect();
+        let place = match given.as_slice() {
+            [] if entry.has_unknown() => return None,
+            [] => {
+                let message = "a light needs a kind: `environment`, `point`, `spot` or `sun`";
+                return value.advise(message, "such as environment = { radiance = 1 }");
             }
-            match place.key() {
-                "point" => point_light(context, place),
-                "spot" => spot_light(context, place),
-                "sun" => sun_light(context, place),
-                _ => {
-                    let help = "environment = { radiance = .., transform = [..] }".into();
-                    light.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
-                    if std::mem::replace(&mut self.has_environment, true) {
-                        return place.refuse("a scene has at most one environment");
-                    }
-                    even_or_image(context, place).map(Light::Environment)
-                }
+            [place] => *place,
+            [first, others @ ..] => {
+                let last = others.iter().fold(*first, |last, other| last.later(*other));
+                return last.advise("a light has exactly one kind", "start another [[light]] for the second");
             }
-        })?;
-        self.infinite_lights.extend(light.is_infinite().then_some(self.all.len()));
-        self.hidden.extend((!visible).then_some(self.all.len()));
-        self.groups.push(group.unwrap_or(light.kind_name()).to_owned());
-        self.all.push(light);
-        Some(())
-    }
+        };
+        let (group, seen) = (own?.or(name?), seen?);
+        if let Some(seen) = seen.filter(|_| matches!(place.key(), "point" | "spot")) {
+            let message = "a point and a spot are too small to be seen";
+            return seen.place.advise(message, "leave `visible_to_camera` out");
+        }
+        let light = match place.key() {
+            "point" => point_light(context, place),
+            "spot" => spot_light(context, place),
+            "sun" => sun_light(context, place),
+            _ => {
+                let help = "environment = { radiance = .., transform = [..] }".into();
+                entry.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
+                if std::mem::replace(has_environment, true) {
+                    return place.refuse("a scene has at most one environment");
+                }
+                even_or_image(context, place).map(Light::Environment)
+            }
+        }?;
+        let group = group.unwrap_or(light.kind_name()).to_owned();
+        Some(Entry { light, group, is_visible: seen.is_none_or(|seen| seen.it) })
+    })
+}
 
-    /// Adds them to a scene, behind the lights that it has.
-    pub(super) fn add_to(self, scene: &mut Scene<Curve>) {
-        let behind = |light: LightId| light + scene.lights.len();
-        scene.infinite_lights.extend(self.infinite_lights.into_iter().map(behind));
-        scene.hidden_lights.extend(self.hidden.into_iter().map(behind));
-        scene.light_groups.extend(self.groups);
-        scene.lights.extend(self.all);
+/// Adds lights to a scene, behind those that it has.
+pub(super) fn add_lights(scene: &mut Scene<Curve>, entries: Vec<Entry>) {
+    for Entry { light, group, is_visible } in entries {
+        let id = scene.lights.len();
+        scene.infinite_lights.extend(light.is_infinite().then_some(id));
+        scene.hidden_lights.extend((!is_visible).then_some(id));
+        scene.light_groups.push(group);
+        scene.lights.push(light);
     }
 }
 

@@ -6,7 +6,6 @@ use super::asked::{Asked, spectrum, spectrum_or};
 use super::camera::extinction;
 use super::coating::{coating, film};
 use super::context::Context;
-use super::curve_range::shown;
 use super::curve_text::CurveText;
 use super::fluorescence::{conserves, diffuse, written};
 use super::image::surface_curve;
@@ -15,7 +14,7 @@ use crate::material::{
     Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
     Roughness, Thin,
 };
-use crate::scene::text::{Choice, Fields, Value, exactly};
+use crate::scene::text::{Choice, Fields, Value, exactly, shown};
 use crate::shape::Sides;
 use crate::spectrum::{Curve, Quantity};
 

@@ -4,19 +4,13 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, point};
+use super::written::Written;
 use crate::math::DVec3;
 use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
-use crate::shape::{Attributes, Mesh, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
+use crate::shape::{Attributes, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
 /// How the names of mesh files end.
 const MESHES: [&str; 4] = ["ply", "obj", "gltf", "glb"];
-
-/// A mesh as written, before any transform.
-pub(super) struct WrittenMesh<'d> {
-    pub(super) mesh: Arc<Mesh>,
-    /// The file that it is read from.
-    pub(super) file: Option<&'d str>,
-}
 
 /// What a mesh is made of.
 struct Parts {
@@ -34,7 +28,7 @@ struct Inline<'d> {
 }
 
 /// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
-pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<WrittenMesh<'d>> {
+pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<Written<'d>> {
     Fields::read(value, |mesh| {
         let file = mesh.maybe("file", at(Value::text));
         let points = mesh.maybe("points", at(points));
@@ -45,10 +39,11 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let is_vague = mesh.has_unknown();
         let (file, smooth) = (file?, smooth?);
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
+        let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file, edges: None };
         let parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
                 if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
-                    return Some(WrittenMesh { mesh: mesh.clone(), file: Some(file.it) });
+                    return Some(written(mesh, Some(file.it)));
                 }
                 read_file(context, name, file, smooth)?
             }
@@ -57,10 +52,11 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
             _ => return value.refuse("a mesh has either a `file`, or `points` and `faces`"),
         };
         let mesh = built(context, name, value, parts, smooth)?;
+        let written = written(&mesh, file.map(|file| file.it));
         if let Some(At { place, it: file }) = file {
-            context.meshes.insert((place.path(file), smooth), mesh.clone());
+            context.meshes.insert((place.path(file), smooth), mesh);
         }
-        Some(WrittenMesh { mesh, file: file.map(|file| file.it) })
+        Some(written)
     })
 }
 
@@ -73,7 +69,7 @@ fn points(value: Value) -> Option<Vec<DVec3>> {
 
 fn faces(value: Value) -> Option<Vec<[u32; 3]>> {
     match value.rows() {
-        Some(Rows { width: 3, numbers: Numbers::Whole(numbers) }) => Some(in_rows(numbers)),
+        Some(Rows { width: 3, numbers: Numbers::Whole(numbers) }) => Some(numbers.as_chunks().0.to_vec()),
         Some(_) => value.advise("`faces` has rows of 3 whole numbers", "cut faces with more corners into triangles"),
         None => value.list(face),
     }
@@ -103,12 +99,8 @@ fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
     };
     match numbers.iter().position(|number| !is_near(*number)) {
         Some(first) => value.refuse(format!("row {}: {}", first / N, far(COORDINATE, numbers[first]))),
-        None => Some(in_rows(numbers)),
+        None => Some(numbers.as_chunks().0.to_vec()),
     }
-}
-
-fn in_rows<T: Copy, const N: usize>(numbers: &[T]) -> Vec<[T; N]> {
-    numbers.chunks_exact(N).map(|row| std::array::from_fn(|column| row[column])).collect()
 }
 
 fn face(value: Value) -> Option<[u32; 3]> {

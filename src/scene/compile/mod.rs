@@ -22,9 +22,6 @@ mod material;
 mod measures;
 mod mesh;
 mod object;
-mod on_surface;
-mod open_glass;
-mod out_of_focus;
 mod parts;
 mod place;
 mod radiometry;
@@ -32,11 +29,10 @@ mod relief;
 mod render;
 mod shape;
 mod shining;
-mod sight;
 mod spectrum_file;
 mod swallowed;
 mod transform;
-mod unlit;
+mod written;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -48,12 +44,11 @@ use self::material::Drafts;
 use self::object::{Draft, Names};
 use self::place::Placed;
 use self::shining::surfaces_that_shine;
+use super::checks::check;
 use super::index::Index;
 use super::text::{Document, Fields, INCLUDE, SET, Value};
-use super::{ModelText, NamedMaterial, Object, PolarizationText, RenderText, Scene};
+use super::{ModelText, NamedMaterial, PolarizationText, RenderText, Scene};
 use crate::film::Format;
-use crate::material::Material;
-use crate::shape::Shape;
 use crate::spectrum::Curve;
 
 /// The sections that a scene may have.
@@ -69,15 +64,7 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     }
     let mut scene = scene?;
     scene.warnings = context.warnings(document);
-    let dark = match scene.lights.iter().all(|light| light.emission().is_dark()) {
-        true => vec!["nothing shines, so the image will be black".into()],
-        false => unlit::unlit(&scene),
-    };
-    scene.is_dark_told = !dark.is_empty();
-    scene.warnings.extend(dark);
-    scene.warnings.extend(on_surface::on_surface(&scene));
-    scene.warnings.extend(open_glass::open_glass(&scene));
-    scene.warnings.extend(out_of_focus::out_of_focus(&scene));
+    check(&mut scene);
     scene.files = context.files;
     scene.hash = context.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     Some(scene)
@@ -113,11 +100,11 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     namesakes(context, &objects);
     let placed = place::placed(objects, &materials);
     unused(context, &placed, &drafts);
-    contacts(context, &placed);
-    faces_inward(context, &placed);
-    swallowed::swallowed(&placed).into_iter().for_each(|warning| context.warn(warning));
-    let mut others = light::Lights::default();
-    lights.map(|lights| entries(lights, |light| others.read(context, light)));
+    contact::contacts(context, &placed);
+    let of_bodies = [inside_out::inside_out(&placed), swallowed::swallowed(&placed)];
+    of_bodies.into_iter().flatten().for_each(|warning| context.warn(warning));
+    let mut has_environment = false;
+    let lights = lights.map(|lights| entries(lights, |light| light::light(context, light, &mut has_environment)));
     let Placed { objects, materials, .. } = placed;
     let index = Index::new(objects.iter().map(|object| &*object.shape));
     let (camera, film, format, render) = (camera?, film?, format?, render?);
@@ -141,7 +128,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
         index: index.into(),
     };
     surfaces_that_shine(&mut scene);
-    others.add_to(&mut scene);
+    light::add_lights(&mut scene, lights.unwrap_or_default());
     Some(scene)
 }
 
@@ -193,50 +180,6 @@ fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>
     }
     let entries = value.list(|entry| Some(read(entry)));
     entries.into_iter().flatten().flatten().collect()
-}
-
-fn is_clear(placed: &Placed, object: &Object) -> bool {
-    placed.materials[object.material as usize].material.medium().is_some()
-}
-
-/// A lamp that has no inside.
-fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
-    let shines = matches!(placed.materials[object.material as usize].material, Material::Emissive(_));
-    shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
-}
-
-/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp
-/// in another surface nothing may be seen.
-fn contacts(context: &mut Context, placed: &Placed) {
-    let counts = |object: &Object| is_clear(placed, object) || is_flat_lamp(placed, object);
-    for (first, second) in contact::coinciding(&placed.objects, counts) {
-        let [body, other] = [first, second].map(|number| &placed.objects[number].name);
-        if [first, second].iter().all(|&number| is_clear(placed, &placed.objects[number])) {
-            let message = format!("a part of the surfaces of {body} and {other} lies in one place");
-            let help = "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
-            placed.shapes[first.max(second)].advise::<()>(message, help);
-            continue;
-        }
-        context.warn(match is_flat_lamp(placed, &placed.objects[first]) {
-            true => format!("a part of {body}, which shines, lies exactly in {other}, which may hide it: move it a little"),
-            false => format!(
-                "a part of the surface of {body} lies exactly in {other}, where light may pass by it: move it a little, \
-                 apart or into the other"
-            ),
-        });
-    }
-}
-
-/// A clear body whose faces look inward fills all that is outside of it, and light that meets it is lost.
-fn faces_inward(context: &mut Context, placed: &Placed) {
-    let found = inside_out::inside_out(&placed.objects, |object| is_clear(placed, object));
-    let Some(&first) = found.first() else { return };
-    let others = if found.len() > 1 { format!(" and {} more", found.len() - 1) } else { String::new() };
-    context.warn(format!(
-        "{}{others}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
-         each face's corners",
-        placed.objects[first].name
-    ));
 }
 
 /// Warns of objects that have one name.

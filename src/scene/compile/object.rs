@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::context::Context;
 use super::parts::{Materials, defined, unknown_material};
 use super::relief::{ReliefText, relief};
-use super::shape::{SHAPE, Written};
+use super::shape::SHAPE;
 use super::transform::{map_of, steps};
+use super::written::Written;
 use crate::material::Material;
 use crate::math::Transform;
 use crate::scene::Sight;
@@ -152,20 +153,17 @@ fn sight(object: &mut Fields) -> Option<Sight> {
 
 /// The name of an object or a light.
 pub(super) fn name(value: Value<'_>) -> Option<&str> {
-    let name = value.text()?;
-    match name.is_empty() {
-        true => value.advise("a name has a letter or more", "leave `name` out where there is none"),
-        false => Some(name),
-    }
+    not_empty(value, "a name has a letter or more", "leave `name` out where there is none")
 }
 
 /// The name of a group of lights.
 pub(super) fn group(value: Value<'_>) -> Option<&str> {
-    let name = value.text()?;
-    match name.is_empty() {
-        true => value.advise("a group of lights has a name", "such as group = \"key\""),
-        false => Some(name),
-    }
+    not_empty(value, "a group of lights has a name", "such as group = \"key\"")
+}
+
+fn not_empty<'d>(value: Value<'d>, message: &str, help: &str) -> Option<&'d str> {
+    let text = value.text()?;
+    if text.is_empty() { value.advise(message, help) } else { Some(text) }
 }
 
 impl<'m, 'd> Names<'m, 'd> {

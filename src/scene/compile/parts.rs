@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::material::{Draft, Drafts};
 use crate::error::nearest;
 use crate::material::{Mask, Material, Mix, Part};
-use crate::scene::text::Value;
+use crate::scene::text::{Value, and_more};
 use crate::spectrum::Curve;
 
 /// Materials by name; those that are wrong are known but not there.
@@ -137,6 +137,5 @@ pub(super) fn unknown_material<'n, T>(
 /// The materials of a scene, in words.
 pub(super) fn defined<'n>(mut known: impl ExactSizeIterator<Item = &'n str>) -> String {
     let shown = known.by_ref().take(MOST_SHOWN).collect::<Vec<_>>().join(", ");
-    let more = if known.len() > 0 { format!(" and {} more", known.len()) } else { String::new() };
-    format!("the scene defines {shown}{more}")
+    format!("the scene defines {}", and_more(&shown, known.len()))
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::object::Draft;
 use super::parts::Materials;
-use super::shape::Fit;
+use super::shape::fits;
 use crate::material::Material;
 use crate::math::{DVec3, Transform};
 use crate::scene::text::{At, Value};
@@ -21,6 +21,18 @@ pub(super) struct Placed<'d> {
     pub(super) shapes: Vec<Value<'d>>,
     /// Their materials, in the order in which objects use them first.
     pub(super) materials: Vec<NamedMaterial<Curve>>,
+}
+
+impl Placed<'_> {
+    /// The material of an object, with its name.
+    pub(super) fn material(&self, object: &Object) -> &NamedMaterial<Curve> {
+        &self.materials[object.material as usize]
+    }
+
+    /// Whether an object is a clear body, or a part of its surface.
+    pub(super) fn is_clear(&self, object: &Object) -> bool {
+        self.material(object).material.medium().is_some()
+    }
 }
 
 /// All objects that are right where they are.
@@ -79,7 +91,6 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
     let Draft { name, material: material_name, shape: At { place, it: written }, map, instances, relief, .. } = draft;
     let (group, sight) = (draft.group.map(str::to_owned), draft.sight);
     let asset = name.clone();
-    let edges = written.edges;
     let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
         if varies && coordinates.is_none() {
             let message = format!("this mesh has no texture coordinates, by which {material_name} would lie on it");
@@ -97,13 +108,13 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
         let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
-        Fit { steps: map.place, whole: place, edges }.check(&shape, &map.it)?;
+        fits(written.edges, &shape, map, place)?;
         return Some(vec![object(name, shape, coordinates)?]);
     };
-    let instance = |(number, At { place, it: map }): (usize, At<Transform>)| {
-        let shape = written.shape.copied(&map);
-        Fit { steps: place, whole: place, edges }.check(&shape, &map)?;
-        object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map))
+    let instance = |(number, map): (usize, At<Transform>)| {
+        let shape = written.shape.copied(&map.it);
+        fits(written.edges, &shape, map, map.place)?;
+        object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.it))
     };
     let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();
     placed.into_iter().collect()

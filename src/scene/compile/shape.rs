@@ -3,31 +3,13 @@
 use super::context::Context;
 use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
 use super::mesh::mesh;
+use super::written::Written;
 use crate::math::{DVec3, Transform};
-use crate::scene::text::{Choice, Fields, Value, at, exactly};
+use crate::scene::text::{At, Choice, Fields, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Smallest size relative to the coordinates: some thousand roundings.
 const RESOLVED: f64 = 1e-12;
-
-/// A shape before any transform.
-pub(super) struct Written<'d> {
-    pub(super) shape: Shape,
-    /// The file that it is read from.
-    pub(super) file: Option<&'d str>,
-    /// The edges of a cube, or of that around a sphere.
-    pub(super) edges: Option<[f64; 3]>,
-}
-
-impl From<Shape> for Written<'_> {
-    fn from(shape: Shape) -> Self {
-        let edges = match &shape {
-            Shape::Sphere(_) => shape.bounds().map(|bounds| (bounds.max - bounds.min).to_array()),
-            _ => None,
-        };
-        Self { shape, file: None, edges }
-    }
-}
 
 /// What reads a kind of shape: of the object that has a name.
 type Reader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
@@ -57,10 +39,7 @@ pub(super) const SHAPE: Choice<Reader> = Choice {
         ("disc", |_, _, value| disc(value).map(Written::from)),
         ("quad", |_, _, value| quad(value).map(Written::from)),
         ("cube", |_, _, value| cube(value)),
-        ("mesh", |context, name, value| {
-            let mesh = mesh(context, name, value)?;
-            Some(Written { shape: Shape::Mesh(mesh.mesh), file: mesh.file, edges: None })
-        }),
+        ("mesh", mesh),
     ],
 };
 
@@ -133,30 +112,19 @@ fn cube(value: Value) -> Option<Written> {
     })
 }
 
-/// Where it is told of a shape that numbers do not hold it, after a map.
-pub(super) struct Fit<'d> {
-    /// Its steps.
-    pub(super) steps: Value<'d>,
-    pub(super) whole: Value<'d>,
-    /// The edges of a cube, or of that around a sphere.
-    pub(super) edges: Option<[f64; 3]>,
-}
-
-impl Fit<'_> {
-    /// That numbers hold the size and the place of a shape that a map has placed.
-    pub(super) fn check(&self, placed: &Shape, map: &Transform) -> Option<()> {
-        let Some(bounds) = placed.bounds() else { return Some(()) };
-        let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
-        let thin = self.edges.map_or(wide.max_element(), |edges| thickness(edges, map));
-        if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
-            return self.steps.refuse("this makes the shape too small, too large or too far");
-        }
-        if thin < RESOLVED * far {
-            let message = "this is so small or thin that the rounding of its coordinates would distort it";
-            return self.whole.refuse(message);
-        }
-        Some(())
+/// That numbers hold the size and the place of a shape that a map has placed; `whole` is where it stands, `edges` are
+/// those of a cube, or of that around a sphere, before the map.
+pub(super) fn fits(edges: Option<[f64; 3]>, placed: &Shape, map: At<Transform>, whole: Value) -> Option<()> {
+    let Some(bounds) = placed.bounds() else { return Some(()) };
+    let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
+    let thin = edges.map_or(wide.max_element(), |edges| thickness(edges, &map.it));
+    if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
+        return map.place.refuse("this makes the shape too small, too large or too far");
     }
+    if thin < RESOLVED * far {
+        return whole.refuse("this is so small or thin that the rounding of its coordinates would distort it");
+    }
+    Some(())
 }
 
 /// The least distance between two faces of a cube after a map.

@@ -3,7 +3,7 @@ use std::io::Cursor;
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
 use exr::meta::header::Header;
-use exr::prelude::{AttributeValue, Compression, SampleType, f16};
+use exr::prelude::{AttributeValue, Compression, SampleType, Vec2, f16};
 
 use super::exr_channels::Chosen;
 use super::texels::{Floats, Unreadable, fits};
@@ -24,22 +24,25 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
         exr::error::Error::NotSupported(what) if what.contains("deep") => Unreadable::Deep,
         other => other.into(),
     })?;
-    for header in reader.headers() {
-        let [width, height] = [header.layer_size.width(), header.layer_size.height()];
-        let length = (width as u64 * height as u64).saturating_mul(4 * if alpha { 4 } else { 3 });
-        fits(width, height, length, bytes)?;
-    }
+    let fit = |size: Vec2<usize>, channels: usize| {
+        let length = (size.width() as u64 * size.height() as u64).saturating_mul(4 * channels as u64);
+        fits(size.width(), size.height(), length, bytes)
+    };
+    reader.headers().iter().try_for_each(|header| fit(header.layer_size, if alpha { 4 } else { 3 }))?;
     claims_fit(bytes)?;
     let chosen = Chosen::of(reader.headers(), alpha)?;
     let header = reader.headers()[chosen.part].clone();
-    let display = header.shared_attributes.display_window;
-    let [width, height] = [display.size.width(), display.size.height()];
-    let length = (width as u64 * height as u64).saturating_mul(4 * chosen.channels() as u64);
-    fits(width, height, length, bytes)?;
-    let mut floats = Floats::new(width, height, chosen.channels());
-    floats.has_alpha = alpha;
-    floats.is_lossy = is_lossy(&header, &chosen);
-    floats.to_rec709 = to_rec709(&header);
+    let (size, channels) = (header.shared_attributes.display_window.size, chosen.channels());
+    fit(size, channels)?;
+    let mut floats = Floats {
+        width: size.width(),
+        channels,
+        has_alpha: alpha,
+        is_lossy: is_lossy(&header, &chosen),
+        to_rec709: to_rec709(&header),
+        // Black, and transparent.
+        numbers: vec![0.0; channels * size.width() * size.height()],
+    };
     let chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
     chunks.decompress_sequential(false, |_, block| {

@@ -1,7 +1,7 @@
 //! What files of images hold, and why they cannot be read.
 
 use crate::film;
-use crate::spectrum::{IDENTITY, Matrix};
+use crate::spectrum::Matrix;
 
 /// Whole numbers, texel by texel, rows from the top: gray, or red, green and blue, and maybe alpha behind them.
 pub(in crate::scene) struct Whole {
@@ -41,12 +41,6 @@ pub(in crate::scene) struct Floats {
 }
 
 impl Floats {
-    /// Black, and transparent.
-    pub(super) fn new(width: usize, height: usize, channels: usize) -> Self {
-        let numbers = vec![0.0; channels * width * height];
-        Self { width, channels, has_alpha: false, is_lossy: false, to_rec709: Ok(IDENTITY), numbers }
-    }
-
     /// Sets a number of a texel, if there is that texel.
     pub(super) fn put(&mut self, x: usize, y: usize, number: usize, value: f32) {
         let at = self.channels * (y * self.width + x) + number;

@@ -40,12 +40,9 @@ impl<'d> Document<'d> {
         self.mistakes.borrow().last().map(|mistake| mistake.span.clone())
     }
 
-    /// All mistakes, in the order of the file, none twice.
+    /// All mistakes, as they were told.
     pub(in crate::scene) fn mistakes(&self) -> Vec<Mistake> {
-        let mut mistakes = self.mistakes.borrow().clone();
-        mistakes.sort_by_key(|mistake| mistake.span.start);
-        mistakes.dedup_by(|a, b| (&a.span, &a.message) == (&b.span, &b.message));
-        mistakes
+        self.mistakes.borrow().clone()
     }
 
     /// The keys and positions that lead to keys and values, as in `object[3].shape.sphere.radius`; empty where there

@@ -125,11 +125,10 @@ impl<'d> Fields<'d> {
         key: &'static str,
         read: impl FnOnce(Value<'d>) -> Option<T>,
     ) -> Option<T> {
-        let value = self.get(key);
-        if value.is_none() {
-            self.missing.push((key, None));
+        match self.get(key) {
+            Some(value) => read(value),
+            None => self.lack(key, None),
         }
-        value.and_then(read)
     }
 
     /// Tells, unless it is misspelt, that a key is missing, which not every such table needs.

@@ -13,8 +13,10 @@ use super::utf8::utf8;
 
 /// The key of the names of such files.
 pub(in crate::scene) const INCLUDE: &str = "include";
+/// Most bytes of a scene, as of a file that it includes. A device may never end.
+pub(in crate::scene) const MOST_BYTES: u64 = 1 << 30;
 const SCENE: FileKind =
-    FileKind { nameless: "a file to include needs a name", most_bytes: 1 << 30, endings: &["toml"] };
+    FileKind { nameless: "a file to include needs a name", most_bytes: MOST_BYTES, endings: &["toml"] };
 /// Most files within one another: far fewer than would exhaust the stack.
 const DEEPEST: usize = 64;
 

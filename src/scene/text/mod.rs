@@ -16,10 +16,11 @@ mod tree;
 mod utf8;
 mod value;
 mod variables;
+mod words;
 
 pub(super) use document::Document;
 pub(super) use fields::{Choice, Fields};
-pub(super) use include::{INCLUDE, Included, merged};
+pub(super) use include::{INCLUDE, Included, MOST_BYTES, merged};
 pub(super) use mistake::Mistake;
 pub(super) use named_file::{Fault, FileKind};
 pub use rows::{Numbers, Rows};
@@ -29,3 +30,4 @@ pub(super) use tree::parsed;
 pub(super) use utf8::utf8;
 pub(super) use value::{At, Value, above_0_to, at, exactly};
 pub(super) use variables::{SET, fill};
+pub(super) use words::{and_more, shown};

@@ -195,10 +195,8 @@ fn put<'d>(table: &mut DeTable<'d>, path: &[Key<'d>], value: Node<'d>) -> Result
         table.insert(key.clone(), value);
         return Ok(());
     }
-    if !table.contains_key(word(key)) {
-        table.insert(key.clone(), Spanned::new(key.span(), DeValue::Table(DeTable::new())));
-    }
-    table.get_mut(word(key)).map_or(Ok(()), |node| put_into(node, key, rest, value))
+    let none = || Spanned::new(key.span(), DeValue::Table(DeTable::new()));
+    put_into(table.entry(key.clone()).or_insert_with(none), key, rest, value)
 }
 
 /// Puts a value into the value of a key.

@@ -11,69 +11,38 @@ use crate::scene::share;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 use crate::spectrum::ColorSpace;
 
-/// Words of other renderers, and what is called so here.
-const ELSEWHERE: [(&str, &str); 61] = [
-    ("ior", "index"),
-    ("eta", "index"),
-    ("albedo", "reflectance"),
-    ("color", "reflectance"),
-    ("color", "rgb"),
-    ("texture", "image"),
-    ("map", "image"),
-    ("temperature", "blackbody"),
-    ("kelvin", "blackbody"),
-    ("spectrum", "samples"),
-    ("direction", "toward"),
-    ("directional", "sun"),
-    ("distant", "sun"),
-    ("radiance", "intensity"),
-    ("power", "intensity"),
-    ("intensity", "irradiance"),
-    ("intensity", "radiance"),
-    ("target", "look_at"),
-    ("to", "look_at"),
-    ("from", "position"),
-    ("eye", "position"),
-    ("origin", "position"),
-    ("location", "position"),
-    ("path", "image"),
-    ("path", "file"),
-    ("filename", "image"),
-    ("filename", "file"),
-    ("position", "center"),
-    ("position", "point"),
-    ("center", "point"),
-    ("angle", "degrees"),
-    ("translate", "transform"),
-    ("rotate", "transform"),
-    ("scale", "transform"),
-    ("matte", "diffuse"),
-    ("lambert", "diffuse"),
-    ("lambertian", "diffuse"),
-    ("metal", "conductor"),
-    ("glass", "dielectric"),
-    ("glossy", "plastic"),
-    ("light", "emissive"),
-    ("spp", "samples"),
-    ("max_depth", "max_bounces"),
-    ("samples_per_pixel", "samples"),
-    ("sample_count", "samples"),
-    ("noise_threshold", "error"),
-    ("int_ior", "index"),
-    ("strength", "scale"),
-    ("multiplier", "scale"),
-    ("intensity", "scale"),
-    ("rotation", "transform"),
-    ("factor", "amount"),
-    ("rectangle", "quad"),
-    ("cylinder", "mesh"),
-    ("envmap", "environment"),
-    ("infinite", "environment"),
-    ("roughplastic", "plastic"),
-    ("coateddiffuse", "plastic"),
-    ("principled", "plastic"),
-    ("roughdielectric", "dielectric"),
-    ("roughconductor", "conductor"),
+/// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
+const ELSEWHERE: [(&str, &[&str]); 30] = [
+    ("index", &["ior", "eta", "int_ior"]),
+    ("reflectance", &["albedo", "color"]),
+    ("rgb", &["color"]),
+    ("image", &["texture", "map", "path", "filename"]),
+    ("blackbody", &["temperature", "kelvin"]),
+    ("samples", &["spectrum", "spp", "samples_per_pixel", "sample_count"]),
+    ("toward", &["direction"]),
+    ("sun", &["directional", "distant"]),
+    ("intensity", &["radiance", "power"]),
+    ("irradiance", &["intensity"]),
+    ("radiance", &["intensity"]),
+    ("look_at", &["target", "to"]),
+    ("position", &["from", "eye", "origin", "location"]),
+    ("file", &["path", "filename"]),
+    ("center", &["position"]),
+    ("point", &["position", "center"]),
+    ("degrees", &["angle"]),
+    ("transform", &["translate", "rotate", "scale", "rotation"]),
+    ("diffuse", &["matte", "lambert", "lambertian"]),
+    ("conductor", &["metal", "roughconductor"]),
+    ("dielectric", &["glass", "roughdielectric"]),
+    ("plastic", &["glossy", "roughplastic", "coateddiffuse", "principled"]),
+    ("emissive", &["light"]),
+    ("max_bounces", &["max_depth"]),
+    ("error", &["noise_threshold"]),
+    ("scale", &["strength", "multiplier", "intensity"]),
+    ("amount", &["factor"]),
+    ("quad", &["rectangle"]),
+    ("mesh", &["cylinder"]),
+    ("environment", &["envmap", "infinite"]),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
@@ -208,7 +177,7 @@ fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
         MISTAKEN_SECTIONS.iter().any(|(section, own, _)| known.contains(own) || known.contains(section));
     let has_it = |own: &str, keys: &[&str]| !known.contains(&own) && (own == word || keys.contains(&word));
     let (section, ..) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
-    let here = ELSEWHERE.iter().find(|(there, _)| *there == word).map_or(word, |(_, here)| here);
+    let here = ELSEWHERE.iter().find(|(_, words)| words.contains(&word)).map_or(word, |(here, _)| here);
     Some(format!("write {here} in [{section}]"))
 }
 
@@ -217,7 +186,10 @@ pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a 
     let lower = word.to_lowercase();
     let is_part = |name: &str| name.to_lowercase().starts_with(&lower) || name.split('_').any(|part| part == word);
     let part_of = || known.iter().copied().find(|name| is_part(name));
-    let elsewhere = || ELSEWHERE.iter().find(|pair| pair.0 == word && known.contains(&pair.1)).map(|pair| pair.1);
+    let elsewhere = || {
+        let mut meant = ELSEWHERE.iter().filter(|(_, words)| words.contains(&word)).map(|(here, _)| *here);
+        meant.find(|here| known.contains(here))
+    };
     let space = || (key == "color_space").then(|| ColorSpace::called(word)).flatten().map(ColorSpace::interop_id);
     nearest(word, known.iter().copied()).or_else(part_of).or_else(elsewhere).or_else(space)
 }
@@ -366,8 +338,8 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
 
 /// How to write what a list seems to mean that stands in place of a spectrum.
 fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
-    let is_number = |entry: &Node| matches!(entry.get_ref(), DeValue::Integer(_) | DeValue::Float(_));
-    let are_numbers = |list: &DeArray, count: usize| list.len() == count && list.iter().all(is_number);
+    let are_numbers =
+        |list: &DeArray, count: usize| list.len() == count && list.iter().all(|entry| is_number(entry.get_ref()));
     if are_numbers(entries, 3) {
         return Some(format!("write {{ rgb = {written} }} for a color"));
     }

@@ -74,23 +74,17 @@ fn unclosed(before: &str, bracket: char) -> Mistake {
 /// A table in braces has a key without a value, or a number with a comma in it.
 fn of_inline_table(before: &str) -> Mistake {
     let before = before.trim_end();
-    let (message, help) = ("a value is missing here".to_owned(), None);
-    if let Some((first, last)) = before.rsplit_once(',') {
-        let is_digit = |c: char| c.is_ascii_digit();
-        if first.ends_with(is_digit) && !last.is_empty() && last.chars().all(is_digit) {
-            let (message, help) = ("a number has no comma".into(), Some("a decimal point is written `.`".into()));
-            return Mistake { span: first.len()..first.len() + 1, message, help };
+    let is_digit = |c: char| c.is_ascii_digit();
+    let are_digits = |text: &str| !text.is_empty() && text.chars().all(is_digit);
+    let (start, message, help) = match before.rsplit_once(',') {
+        Some((first, last)) if first.ends_with(is_digit) && are_digits(last) => {
+            (first.len(), "a number has no comma", Some("a decimal point is written `.`".into()))
         }
-        if last.is_empty() {
-            let message = "there is a comma too many here".into();
-            return Mistake { span: first.len()..first.len() + 1, message, help };
-        }
-        if !last.contains(['=', '{']) {
-            let message = "a key is followed by `=` and its value".into();
-            return Mistake { span: before.len()..before.len(), message, help };
-        }
-    }
-    Mistake { span: before.len()..before.len(), message, help }
+        Some((first, "")) => (first.len(), "there is a comma too many here", None),
+        Some((_, last)) if !last.contains(['=', '{']) => (before.len(), "a key is followed by `=` and its value", None),
+        _ => (before.len(), "a value is missing here", None),
+    };
+    Mistake { span: start..before.len().min(start + 1), message: message.into(), help }
 }
 
 fn unquoted(written: &str) -> (String, Option<String>) {

@@ -28,8 +28,7 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
     let around = Bounds::around(places.iter().map(|place| place.1).chain([camera]));
     let around = boxes.fold(around, Bounds::union);
     let size = around.min.abs().max(around.max.abs()).max_element();
-    let is_clear = |object: u32| scene.material_of(object).medium().is_some();
-    let camera = surface_at(scene, camera, size).filter(|&object| is_clear(object)).map(|object| {
+    let camera = surface_at(scene, camera, size).filter(|&object| scene.is_clear(object)).map(|object| {
         let body = &scene.objects[object as usize].name;
         format!("the camera stands exactly in the surface of {body}, neither inside nor outside: move it a little")
     });

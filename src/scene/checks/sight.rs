@@ -7,7 +7,7 @@ use std::cell::Cell;
 use crate::light::Light;
 use crate::material::{Material, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
-use crate::scene::{Projection, Scene};
+use crate::scene::{Hit, Projection, Scene};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Curve;
 
@@ -105,11 +105,18 @@ impl<'a> Sight<'a> {
         self.scene.camera.ray(DVec2::new(at(number % SIDE, film.width), at(number / SIDE, film.height)))
     }
 
-    /// The objects that rays through all of the image meet first, each with whether it is met from its back.
-    pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
+    /// What rays through all of the image meet first.
+    fn first_hits(&self) -> impl Iterator<Item = Option<(Ray, Hit)>> {
         (0..SIDE * SIDE).map(|i| {
             let ray = self.camera_ray(i);
-            let hit = self.scene.intersect_seen(&ray, None)?;
+            Some((ray, self.scene.intersect_seen(&ray, None)?))
+        })
+    }
+
+    /// The objects that rays through all of the image meet first, each with whether it is met from its back.
+    pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
+        self.first_hits().map(|met| {
+            let (ray, hit) = met?;
             let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
             Some((hit.object, point.normal.dot(ray.direction) > 0.0))
         })
@@ -117,11 +124,8 @@ impl<'a> Sight<'a> {
 
     /// How far along the viewing direction that lies which rays through all of the image meet first.
     pub(super) fn depths(&self) -> impl Iterator<Item = f64> {
-        (0..SIDE * SIDE).filter_map(|i| {
-            let ray = self.camera_ray(i);
-            let hit = self.scene.intersect_seen(&ray, None)?;
-            Some(self.scene.camera.depth(ray.origin + ray.direction * hit.crossing.t))
-        })
+        let depth = |(ray, hit): (Ray, Hit)| self.scene.camera.depth(ray.origin + ray.direction * hit.crossing.t);
+        self.first_hits().flatten().map(depth)
     }
 
     /// Whether light never crosses an object.

@@ -113,7 +113,7 @@ fn reaches(sight: &Sight, light: &Light<Curve>, place: &Place) -> bool {
 
 /// Whether the light of a sky comes to a clear body, which may send it anywhere.
 fn reaches_a_clear_body(sight: &Sight, light: &Light<Curve>) -> bool {
-    let clear = (0..sight.scene.objects.len()).filter(|&object| is_clear(sight, object as u32));
+    let clear = (0..sight.scene.objects.len()).filter(|&object| sight.scene.is_clear(object as u32));
     let boxes: Vec<_> = clear.filter_map(|object| sight.scene.objects[object].shape.bounds()).collect();
     (0..POINTS).filter(|_| !boxes.is_empty()).any(|number| {
         let sampler = Sampler::new(4, [number as u32, 0], 0);
@@ -137,7 +137,7 @@ fn paths_of(sight: &Sight, light: &Light<Curve>) -> Paths {
             return Paths::Seen;
         }
         let first = sight.scene.intersect(&ray);
-        if first.is_some_and(|hit| is_clear(sight, hit.object)) {
+        if first.is_some_and(|hit| sight.scene.is_clear(hit.object)) {
             return Paths::Seen;
         }
         let seen = sight.walk(ray, &sampler, |place| {
@@ -150,10 +150,6 @@ fn paths_of(sight: &Sight, light: &Light<Curve>) -> Paths {
         }
     }
     if meets_others { Paths::Unseen } else { Paths::PastEverything }
-}
-
-fn is_clear(sight: &Sight, object: u32) -> bool {
-    sight.scene.material_of(object).medium().is_some()
 }
 
 /// Where a path leaves a light.

@@ -1,8 +1,8 @@
 //! Lenses by which nothing that the camera sees is in focus.
 
-use super::curve_range::shown;
 use super::sight::Sight;
 use crate::scene::Scene;
+use crate::scene::text::shown;
 use crate::spectrum::Curve;
 
 /// Least rays that meet something, of 576.

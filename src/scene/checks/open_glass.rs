@@ -1,8 +1,9 @@
 //! Flat surfaces of clear bodies that nothing closes.
 
-use super::contact::ray_into;
+use super::probe::met_from_outside;
 use crate::math::{BranchKey, DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::scene::Scene;
+use crate::scene::text::and_more;
 use crate::shape::Shape;
 use crate::spectrum::Curve;
 
@@ -14,31 +15,26 @@ const RAYS: u32 = 64;
 /// What is wrong with quads, discs and triangles of a dielectric behind which light goes on forever.
 ///
 /// Where others close the body, or opaque surfaces such as the ground of a pond do, light that enters meets them.
-pub(super) fn open_glass(scene: &Scene<Curve>) -> Vec<String> {
+pub(super) fn open_glass(scene: &Scene<Curve>) -> Option<String> {
     let is_flat = |shape: &Shape| matches!(shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_));
-    let is_clear = |object: usize| scene.material_of(object as u32).medium().is_some();
-    let flat = (0..scene.objects.len()).filter(|&object| is_flat(&scene.objects[object].shape) && is_clear(object));
-    let open: Vec<usize> = flat.take(MOST).filter(|&object| is_open(scene, object)).collect();
-    let Some(&first) = open.first() else { return Vec::new() };
-    let others = if open.len() > 1 { format!(" and {} more", open.len() - 1) } else { String::new() };
-    vec![format!(
-        "{}{others}: light that enters this dielectric by a flat surface may never leave it, as nothing closes the body \
+    let objects = (0..).zip(scene.objects.iter());
+    let flat = objects.filter(|(number, object)| is_flat(&object.shape) && scene.is_clear(*number));
+    let mut open = flat.take(MOST).map(|(_, object)| object).filter(|object| is_open(scene, &object.shape));
+    let first = open.next()?;
+    Some(format!(
+        "{}: light that enters this dielectric by a flat surface may never leave it, as nothing closes the body \
          behind; a pane is thin = {{ index = 1.5 }}, or a cube",
-        scene.objects[first].name
-    )]
+        and_more(&first.name, open.count())
+    ))
 }
 
 /// Whether light that enters by a surface may meet nothing more.
-fn is_open(scene: &Scene<Curve>, object: usize) -> bool {
-    let shape = &scene.objects[object].shape;
-    let Some(bounds) = shape.bounds() else { return false };
+fn is_open(scene: &Scene<Curve>, shape: &Shape) -> bool {
     (0..RAYS).any(|number| {
         let sampler = Sampler::new(5, [number, 0], 0);
         let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 0);
         let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 1);
-        let Some(line) = ray_into(&bounds, DVec3::new(x, y, z), [a, b]) else { return false };
-        let Some(crossing) = shape.intersect(&line, f64::INFINITY) else { return false };
-        let point = shape.point(&line, &crossing);
+        let Some((point, _)) = met_from_outside(shape, DVec3::new(x, y, z), [a, b]) else { return false };
         let inward = unit(Frame::about(-point.normal).to_world(cosine_hemisphere([c, d])));
         scene.intersect(&point.leave(inward)).is_none()
     })
