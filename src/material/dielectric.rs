@@ -1,4 +1,5 @@
 use super::coated_boundary::{CoatedBoundary, block_at};
+use super::last::Last;
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{
     Arrival, Block, Branch, Coating, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect,
@@ -126,21 +127,17 @@ impl Dielectric<Table> {
         let cos = arrival.wo.dot(arrival.normal);
         let first = branches.len();
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
-        let mut last: Option<([f64; 2], Interface)> = None;
+        let mut last = Last::NONE;
         let mut pair_of_branch = [[0.0; 2]; N];
         let own = arrival.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             let pair @ [here, beyond] = arrival.refracting(lane);
             let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
-            let interface = match last {
-                Some((of, interface)) if of == pair => interface,
-                _ => Interface::new(here, beyond, cos),
-            };
+            let interface = last.of(pair, |[here, beyond]| Interface::new(here, beyond, cos));
             let [reflects, lets_through] = match &own {
                 Some(own) => [1.0 - own[lane], own[lane]],
                 None => [interface.reflectance, interface.transmittance],
             };
-            last = Some((pair, interface));
             let weight = arrival.present[lane];
             // Between equal indices nothing happens at all, even along the surface.
             let straight = here == beyond;
@@ -228,12 +225,9 @@ impl Dielectric<Table> {
                 block_at(&met, arrival, lane, cos, crosses).times(f64::from(tint[lane]))
             });
         }
-        let (mut last, mut block) = (None, Block::default());
+        let mut last = Last::NONE;
         mueller.set_lanes(axis, incoming.lanes, |lane| {
-            let boundary = arrival.own_boundary(lane, cos);
-            if last.replace(boundary) != Some(boundary) {
-                block = Block::at_boundary(boundary, crosses);
-            }
+            let block = last.of(arrival.own_boundary(lane, cos), |boundary| Block::at_boundary(boundary, crosses));
             block.times(f64::from(tint[lane]))
         });
     }

@@ -1,4 +1,5 @@
 use super::degree::{degree, of_all_lanes};
+use super::last::Last;
 use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight};
 use crate::spectrum::{LaneSet, Lanes, Quantity, Table};
 
@@ -66,7 +67,7 @@ impl Thin<Table> {
     ) {
         let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
-        let (mut last, mut blocks) = (None, [Block::default(); 2]);
+        let mut last = Last::NONE;
         let film = self.film.as_ref().map(|film| film.met(arrival, false));
         mueller.set_lanes(axis, lanes, |lane| {
             if let Some(film) = &film {
@@ -78,10 +79,10 @@ impl Thin<Table> {
             if n1 == n2 {
                 return [Block::IDENTITY.times(t), Block::default()][way as usize];
             }
-            if last.replace(pane) != Some(pane) {
-                blocks = Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t);
-            }
-            blocks[way as usize]
+            let both = last.of(pane, |[n1, n2, t]| {
+                Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t)
+            });
+            both[way as usize]
         });
     }
 
@@ -94,18 +95,14 @@ impl Thin<Table> {
         let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let cos = arrival.wo.dot(arrival.normal);
         let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0_f64; 2]);
-        let mut last: Option<([f64; 3], [[f64; 2]; 2])> = None;
+        let mut last = Last::NONE;
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             if index[lane] == arrival.incident_of(lane) {
                 through.0[lane] = way[lane];
                 continue;
             }
             let pane = [arrival.incident_of(lane), index[lane], f64::from(way[lane])];
-            let summed = match last {
-                Some((of, summed)) if of == pane => summed,
-                _ => all_reflections(&Interface::new(pane[0], pane[1], cos), pane[2]),
-            };
-            last = Some((pane, summed));
+            let summed = last.of(pane, |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t));
             [through.0[lane], back.0[lane]] = summed.map(|[s, p]| (0.5 * (s + p)) as f32);
             (0..2).for_each(|way| degrees[way] = degree(summed[way]).max(degrees[way]));
         }
