@@ -1,5 +1,6 @@
-use super::coated_boundary::{CoatedBoundary, block_at};
+use super::coated_boundary::{self, block_at};
 use super::last::Last;
+use super::refractions::Refractions;
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{
     Arrival, Block, Branch, Coating, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect,
@@ -64,8 +65,7 @@ impl Dielectric<Table> {
         match (self.roughness.interface(), &self.coating) {
             (Some(interface), _) => self.rough(interface).scatter(arrival, u, branches),
             (None, Some(coating)) => {
-                let (reflectance, transmittance) = (&self.reflectance, &self.transmittance);
-                CoatedBoundary { coating, reflectance, transmittance }.scatter(arrival, branches);
+                coated_boundary::scatter(coating, [&self.reflectance, &self.transmittance], arrival, branches);
             }
             (None, None) => match arrival.one_direction() {
                 Some(directions) => self.scatter_as_one(arrival, directions, branches),
@@ -125,10 +125,8 @@ impl Dielectric<Table> {
         let parts = arrival.parts();
         let crossing = if parts { tint * arrival.draw.parting() } else { tint };
         let cos = arrival.wo.dot(arrival.normal);
-        let first = branches.len();
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
-        let mut last = Last::NONE;
-        let mut pair_of_branch = [[0.0; 2]; N];
+        let (mut refracted, mut last) = (Refractions::new(arrival, parts, branches), Last::NONE);
         let own = arrival.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             let pair @ [here, beyond] = arrival.refracting(lane);
@@ -140,8 +138,7 @@ impl Dielectric<Table> {
             };
             let weight = arrival.present[lane];
             // Between equal indices nothing happens at all, even along the surface.
-            let straight = here == beyond;
-            let same = straight && n1 == n2;
+            let same = here == beyond && n1 == n2;
             if !same {
                 reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
                 polarization = interface.polarization_reflected.abs().max(polarization);
@@ -150,17 +147,8 @@ impl Dielectric<Table> {
             if transmittance == 0.0 || crosses == 0.0 {
                 continue;
             }
-            let known = branches[first..].iter().zip(pair_of_branch).position(|(_, of)| !parts || of == pair);
-            let branch = known.unwrap_or_else(|| {
-                let eta_scale = (here / beyond) * (here / beyond);
-                let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
-                let polarization = 0.0;
-                pair_of_branch[branches.len() - first] = pair;
-                branches.push(Branch { wi, share: Lanes::ZERO, pdf: None, crosses: true, eta_scale, polarization });
-                branches.len() - first - 1
-            });
             let degree = if same { 0.0 } else { interface.polarization_refracted.abs() as f32 };
-            let branch = &mut branches[first + branch];
+            let branch = refracted.branch(pair, || interface);
             branch.polarization = branch.polarization.max(degree);
             branch.share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
         }

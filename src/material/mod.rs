@@ -31,6 +31,7 @@ mod part;
 mod plastic;
 mod plastic_film;
 mod polarizer;
+mod refractions;
 mod retarder;
 mod rough_coating;
 mod rough_dielectric;
