@@ -2,6 +2,7 @@ use super::coating::MetCoating;
 use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
 use super::last::Last;
+use super::roughness::above;
 use super::{
     Arrival, Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
     conductor_reflectance,
@@ -70,8 +71,7 @@ impl Conductor<Table> {
 
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         let surface = self.roughness.surface()?;
-        let frame = Frame::about(arrival.normal);
-        let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(wi))?;
+        let reflection = surface.evaluate_at(arrival, wi)?;
         Some((self.reflected(arrival, surface, &reflection, 1.0), reflection.pdf))
     }
 
@@ -115,9 +115,9 @@ impl Conductor<Table> {
         let (axis, cos, once) = match self.roughness.surface() {
             None if incoming.single => (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal), 1.0),
             Some(surface) if !incoming.single => {
-                let frame = Frame::about(arrival.normal);
-                let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
-                let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
+                let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
+                    return *mueller = Mueller::NONE;
+                };
                 (arrival.wo.cross(incoming.wi), reflection.cos, reflection.once)
             }
             _ => return *mueller = Mueller::NONE,
@@ -170,12 +170,6 @@ fn coated_by_facets<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]
         FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
     });
     [at(cos), averages.mean[0]]
-}
-
-/// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
-pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
-    let local = frame.to_local(wo);
-    DVec3 { z: local.z.max(0.0), ..local }
 }
 
 /// A metal's reflectance of diffuse light: twice the integral of reflectance times cosine over the cosine.

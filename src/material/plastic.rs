@@ -1,10 +1,10 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::coat::{Coat, Crossing};
-use super::conductor::above;
 use super::degree::{LANES, largest, of_all_lanes};
 use super::last::Last;
 use super::plastic_film::PlasticFilm;
+use super::roughness::above;
 use super::{
     Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, StackShares,
 };
@@ -184,9 +184,9 @@ impl Plastic<Table> {
         match self.coat.roughness().surface() {
             None => *mueller = Mueller::NONE,
             Some(surface) => {
-                let frame = Frame::about(arrival.normal);
-                let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
-                let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
+                let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
+                    return *mueller = Mueller::NONE;
+                };
                 let axis = arrival.wo.cross(incoming.wi);
                 let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
                 mueller.set_lanes(axis, incoming.lanes, facet);

@@ -2,8 +2,8 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::{Facets, RoughInterface, reflect};
-use crate::math::DVec3;
+use super::{Arrival, Facets, RoughInterface, reflect};
+use crate::math::{DVec3, Frame};
 
 /// How rough a surface is, from 0 (smooth) to 1, and what follows from it.
 #[derive(Clone, Debug, Default)]
@@ -125,11 +125,18 @@ impl RoughSurface {
         self.reflection(wo, wi, (wo + wi).try_normalize()?)
     }
 
+    /// The same where light arrives; `wi` and the viewer's direction are those of the world.
+    pub(super) fn evaluate_at<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<RoughReflection> {
+        let frame = Frame::about(arrival.normal);
+        self.evaluate(above(&frame, arrival.wo), frame.to_local(wi))
+    }
+
     fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Option<RoughReflection> {
         if wi.z <= 0.0 {
             return None;
         }
-        let (again, (blocked, lobe)) = (self.blocked(wo.z), self.blocked.value_and_density(wi.z));
+        let [blocked, lobe] = self.blocked.value_and_density(self.blocked.place(wi.z), wi.z);
+        let again = self.blocked(wo.z);
         Some(RoughReflection {
             wi,
             once: self.facets.reflection(wo, wi, h),
@@ -138,6 +145,12 @@ impl RoughSurface {
             pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe,
         })
     }
+}
+
+/// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
+pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
+    let local = frame.to_local(wo);
+    DVec3 { z: local.z.max(0.0), ..local }
 }
 
 /// The share of light from the cosine `z` that meets a second facet: the mean over the visible facets.
