@@ -19,6 +19,7 @@ pub(super) fn scatter<const N: usize>(
     let crossing = if parts { tint * arrival.draw.parting() } else { tint };
     let (met, cos) = (coating.met(arrival, arrival.from_inside), arrival.wo.dot(arrival.normal));
     let (mut reflected, mut of_lanes) = (Lanes::ZERO, [[[0.0; 2]; 2]; N]);
+    let first = branches.len();
     let mut refracted = Refractions::new(arrival, parts, branches);
     for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
         let pair @ [here, beyond] = arrival.refracting(lane);
@@ -37,7 +38,7 @@ pub(super) fn scatter<const N: usize>(
         let there = (0..N).filter(|&lane| share[lane] != 0.0);
         of_all_lanes(there.map(|lane| of_lanes[lane][way])) as f32
     };
-    refracted.all().iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
+    branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
     if !reflected.is_zero() {
         branches.push(Branch::mirrored(arrival, reflected, degree(&reflected, 0)));
     }

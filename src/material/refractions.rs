@@ -34,9 +34,4 @@ impl<'a, const N: usize> Refractions<'a, N> {
         });
         &mut self.branches[self.first + number]
     }
-
-    /// All of them.
-    pub(super) fn all(self) -> &'a mut [Branch<N>] {
-        &mut self.branches[self.first..]
-    }
 }
