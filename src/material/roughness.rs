@@ -28,25 +28,24 @@ impl Roughness {
         self.value
     }
 
+    /// How wide the slopes of its facets are.
+    fn alpha(&self) -> f64 {
+        self.value * self.value
+    }
+
     /// Whether the surface is too smooth to be told from a mirror.
     pub fn is_smooth(&self) -> bool {
-        self.value * self.value < SMOOTH
+        self.alpha() < SMOOTH
     }
 
     /// How the surface reflects; none if it is smooth.
     pub fn surface(&self) -> Option<&RoughSurface> {
-        if self.is_smooth() {
-            return None;
-        }
-        Some(self.surface.get_or_init(|| RoughSurface::new(self.value * self.value)))
+        (!self.is_smooth()).then(|| self.surface.get_or_init(|| RoughSurface::new(self.alpha())))
     }
 
     /// How a boundary between clear media reflects and refracts; none if it is smooth.
     pub fn interface(&self) -> Option<&RoughInterface> {
-        if self.is_smooth() {
-            return None;
-        }
-        Some(self.interface.get_or_init(|| RoughInterface::new(self.value * self.value)))
+        (!self.is_smooth()).then(|| self.interface.get_or_init(|| RoughInterface::new(self.alpha())))
     }
 }
 
