@@ -25,13 +25,6 @@ pub struct Thin<S> {
     pub film: Option<Coating<S>>,
 }
 
-/// The two ways on.
-#[derive(Clone, Copy)]
-pub(super) enum Way {
-    Through,
-    Back,
-}
-
 impl<S> Thin<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Thin<T> {
         Thin {
@@ -57,11 +50,11 @@ impl Thin<Table> {
         }
     }
 
-    /// What becomes of polarization one way, in some lanes.
+    /// What becomes of polarization in some lanes, of light that crosses the pane or is mirrored.
     pub(super) fn mueller<const N: usize>(
         &self,
         arrival: &Arrival<N>,
-        way: Way,
+        crosses: bool,
         lanes: LaneSet,
         mueller: &mut Mueller<N>,
     ) {
@@ -72,17 +65,17 @@ impl Thin<Table> {
         mueller.set_lanes(axis, lanes, |lane| {
             if let Some(film) = &film {
                 let n = arrival.incident_of(lane);
-                let shares = film.at_cosine(lane, n, n, cos);
-                return [shares.refracted, shares.reflected][way as usize].block();
+                let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
+                return if crosses { refracted.block() } else { reflected.block() };
             }
             let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
             if n1 == n2 {
-                return [Block::IDENTITY.times(t), Block::default()][way as usize];
+                return if crosses { Block::IDENTITY.times(t) } else { Block::default() };
             }
-            let both = last.of(pane, |[n1, n2, t]| {
+            let [through, back] = last.of(pane, |[n1, n2, t]| {
                 Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t)
             });
-            both[way as usize]
+            if crosses { through } else { back }
         });
     }
 
