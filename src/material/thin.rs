@@ -38,13 +38,13 @@ impl<S> Thin<S> {
 impl Thin<Table> {
     /// What goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
-        let [(panes, polarization), _] = self.shares(arrival);
+        let (panes, polarization) = self.share(arrival, true);
         Straight { holes: Lanes::ZERO, panes, polarization }
     }
 
     /// What is mirrored.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let [_, (share, polarization)] = self.shares(arrival);
+        let (share, polarization) = self.share(arrival, false);
         if !share.is_zero() {
             branches.push(Branch::mirrored(arrival, share, polarization));
         }
@@ -79,16 +79,16 @@ impl Thin<Table> {
         });
     }
 
-    /// What of each lane goes straight on and what is mirrored, each with the largest degree of polarization that this
-    /// gives to unpolarized light; of a film, in which light interferes, with that of all lanes together.
-    fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> [(Lanes<N>, f32); 2] {
+    /// What of each lane goes straight on, or is mirrored, and the largest degree of polarization that this gives to
+    /// unpolarized light; of a film, in which light interferes, that of all lanes together.
+    fn share<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> (Lanes<N>, f32) {
         let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let film = self.film.as_ref().map(|film| film.met(arrival, false));
         let (cos, mut last) = (arrival.wo.dot(arrival.normal), Last::NONE);
-        let mut ways = [[[0.0; 2]; N]; 2];
+        let mut lanes = [[0.0; 2]; N];
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             let (n1, t) = (arrival.incident_of(lane), f64::from(left[lane]));
-            let pane = match &film {
+            let [through, back] = match &film {
                 Some(film) => {
                     let StackShares { reflected, refracted } = film.at_cosine(lane, n1, n1, cos);
                     [refracted, reflected].map(|share| [share.s, share.p])
@@ -96,13 +96,11 @@ impl Thin<Table> {
                 None if index[lane] == n1 => [[t; 2], [0.0; 2]],
                 None => last.of([n1, index[lane], t], |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t)),
             };
-            (0..2).for_each(|way| ways[way][lane] = pane[way]);
+            lanes[lane] = if crosses { through } else { back };
         }
-        ways.map(|lanes| {
-            let share = Lanes::from_fn(|lane| (0.5 * (lanes[lane][0] + lanes[lane][1])) as f32);
-            let lanes = lanes.into_iter();
-            (share, if film.is_some() { of_all_lanes(lanes) as f32 } else { largest(lanes.map(degree)) })
-        })
+        let share = Lanes::from_fn(|lane| (0.5 * (lanes[lane][0] + lanes[lane][1])) as f32);
+        let lanes = lanes.into_iter();
+        (share, if film.is_some() { of_all_lanes(lanes) as f32 } else { largest(lanes.map(degree)) })
     }
 }
 
