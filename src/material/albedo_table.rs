@@ -94,16 +94,11 @@ impl AlbedoTable {
         between(&self.values, place)
     }
 
-    /// The share at the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws directions
-    /// there.
-    pub(super) fn value_and_density(&self, z: f64) -> (f64, f64) {
-        self.value_and_density_at(self.place(z), z)
-    }
-
-    /// The same where the place of `z` is known.
-    pub(super) fn value_and_density_at(&self, place: f64, z: f64) -> (f64, f64) {
+    /// The share at the place of the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws
+    /// directions there.
+    pub(super) fn value_and_density(&self, place: f64, z: f64) -> [f64; 2] {
         let place = place.max(f64::MIN_POSITIVE);
-        (self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z)))
+        [self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z))]
     }
 
     /// A direction in the frame in which +z is the normal, drawn by nearly the share times the cosine: its place is

@@ -92,7 +92,7 @@ pub struct Straight<const N: usize> {
 
 impl<const N: usize> Straight<N> {
     /// Nothing.
-    const NONE: Self = Self { holes: Lanes::ZERO, panes: Lanes::ZERO, polarization: 0.0 };
+    pub(super) const NONE: Self = Self { holes: Lanes::ZERO, panes: Lanes::ZERO, polarization: 0.0 };
 
     /// All that goes straight on.
     pub fn share(&self) -> Lanes<N> {

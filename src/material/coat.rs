@@ -219,6 +219,6 @@ fn reflected_once(surface: &RoughSurface, m: f64, z: f64) -> f64 {
 }
 
 /// Share of the light that crosses a smooth boundary; all of it where there is none.
-fn transmittance(n1: f64, n2: f64, cos: f64) -> f64 {
+pub(super) fn transmittance(n1: f64, n2: f64, cos: f64) -> f64 {
     if n1 == n2 { 1.0 } else { Interface::new(n1, n2, cos).transmittance }
 }

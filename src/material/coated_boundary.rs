@@ -2,61 +2,45 @@
 
 use super::coating::MetCoating;
 use super::degree::of_all_lanes;
+use super::refractions::Refractions;
 use super::stack::StackShares;
 use super::{Arrival, Block, Branch, Coating, Interface};
 use crate::spectrum::{Lanes, Table};
 
-/// A smooth surface of a clear body under a coating.
-pub(super) struct CoatedBoundary<'a> {
-    pub(super) coating: &'a Coating<Table>,
-    /// Factors on what it reflects and lets through.
-    pub(super) reflectance: &'a Table,
-    pub(super) transmittance: &'a Table,
-}
-
-impl CoatedBoundary<'_> {
-    /// One reflected branch, and one refracted branch for each distinct pair of indices that refract: those of the bare
-    /// surface, for layers with flat faces turn no ray.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
-        let parts = arrival.parts();
-        let crossing = if parts { tint * arrival.draw.parting() } else { tint };
-        let met = self.coating.met(arrival, arrival.from_inside);
-        let (cos, first) = (arrival.wo.dot(arrival.normal), branches.len());
-        let (mut reflected, mut of_lanes) = (Lanes::ZERO, [[[0.0; 2]; 2]; N]);
-        let mut pair_of_branch = [[0.0; 2]; N];
-        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let pair @ [here, beyond] = arrival.refracting(lane);
-            let of_ray = (here != beyond).then(|| Interface::new(here, beyond, cos));
-            let shares = shares_at(&met, arrival, lane, cos);
-            let (r, t) = (shares.reflected, shares.refracted);
-            reflected.0[lane] = arrival.present[lane] * reflectance[lane] * r.mean() as f32;
-            of_lanes[lane] = [[r.s, r.p], [t.s, t.p]];
-            let crosses = arrival.present[lane] * crossing[lane];
-            if t.mean() == 0.0 || crosses == 0.0 {
-                continue;
-            }
-            let known = branches[first..].iter().zip(pair_of_branch).position(|(_, of)| !parts || of == pair);
-            let branch = known.unwrap_or_else(|| {
-                let wi = of_ray.map_or(-arrival.wo, |interface| interface.refract(arrival.wo, arrival.normal));
-                let eta_scale = (here / beyond) * (here / beyond);
-                pair_of_branch[branches.len() - first] = pair;
-                let (share, polarization) = (Lanes::ZERO, 0.0);
-                branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale, polarization });
-                branches.len() - first - 1
-            });
-            let ratio = arrival.incident_of(lane) / arrival.beyond_of(lane);
-            let branch = &mut branches[first + branch];
-            branch.share.0[lane] = crosses * (t.mean() * (ratio * ratio)) as f32;
+/// One reflected branch, and one refracted branch for each distinct pair of indices that refract: those of the bare
+/// surface, for layers with flat faces turn no ray. `factors` are on what it reflects and lets through.
+pub(super) fn scatter<const N: usize>(
+    coating: &Coating<Table>,
+    factors: [&Table; 2],
+    arrival: &Arrival<N>,
+    branches: &mut Vec<Branch<N>>,
+) {
+    let ([reflectance, tint], parts) = (factors.map(|table| arrival.read(table)), arrival.parts());
+    let crossing = if parts { tint * arrival.draw.parting() } else { tint };
+    let (met, cos) = (coating.met(arrival, arrival.from_inside), arrival.wo.dot(arrival.normal));
+    let (mut reflected, mut of_lanes) = (Lanes::ZERO, [[[0.0; 2]; 2]; N]);
+    let first = branches.len();
+    let mut refracted = Refractions::new(arrival, parts, branches);
+    for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
+        let pair @ [here, beyond] = arrival.refracting(lane);
+        let StackShares { reflected: r, refracted: t } = shares_at(&met, arrival, lane, cos);
+        reflected.0[lane] = arrival.present[lane] * reflectance[lane] * r.mean() as f32;
+        of_lanes[lane] = [[r.s, r.p], [t.s, t.p]];
+        let crosses = arrival.present[lane] * crossing[lane];
+        if t.mean() == 0.0 || crosses == 0.0 {
+            continue;
         }
-        let degree = |share: &Lanes<N>, way: usize| {
-            let there = (0..N).filter(|&lane| share[lane] != 0.0);
-            of_all_lanes(there.map(|lane| of_lanes[lane][way])) as f32
-        };
-        branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
-        if !reflected.is_zero() {
-            branches.push(Branch::mirrored(arrival, reflected, degree(&reflected, 0)));
-        }
+        let ratio = arrival.incident_of(lane) / arrival.beyond_of(lane);
+        let branch = refracted.branch(pair, || Interface::new(here, beyond, cos));
+        branch.share.0[lane] = crosses * (t.mean() * (ratio * ratio)) as f32;
+    }
+    let degree = |share: &Lanes<N>, way: usize| {
+        let there = (0..N).filter(|&lane| share[lane] != 0.0);
+        of_all_lanes(there.map(|lane| of_lanes[lane][way])) as f32
+    };
+    branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
+    if !reflected.is_zero() {
+        branches.push(Branch::mirrored(arrival, reflected, degree(&reflected, 0)));
     }
 }
 

@@ -62,10 +62,12 @@ impl<S> Coating<S> {
             is_metal: layer.is_metal,
             thickness: convert(Quantity::Thickness, &layer.thickness),
         };
-        let layers = self.layers.iter().map(layer).collect();
-        let [wavelength, band] = [(Quantity::Wavelength, &self.wavelength), (Quantity::BandWidth, &self.band)]
-            .map(|(what, one)| convert(what, one));
-        Coating { layers, wavelength, band, known: unknown() }
+        Coating {
+            layers: self.layers.iter().map(layer).collect(),
+            wavelength: convert(Quantity::Wavelength, &self.wavelength),
+            band: convert(Quantity::BandWidth, &self.band),
+            known: unknown(),
+        }
     }
 }
 

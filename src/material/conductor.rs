@@ -1,6 +1,8 @@
 use super::coating::MetCoating;
 use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
+use super::last::Last;
+use super::roughness::above;
 use super::{
     Arrival, Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
     conductor_reflectance,
@@ -48,21 +50,19 @@ impl Conductor<Table> {
         Some(Branch::drawn(unit(frame.to_world(reflection.wi)), share, reflection.pdf))
     }
 
+    fn met<'a, const N: usize>(&'a self, arrival: &'a Arrival<'a, N>) -> MetConductor<'a, N> {
+        let [n, k] = [&self.n, &self.k].map(|table| arrival.draw.read_exact(table));
+        let coating = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        MetConductor { arrival, n, k, coating }
+    }
+
     /// Of a smooth metal.
     fn mirror<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
-        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
-        let cos = arrival.wo.dot(arrival.normal);
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
-        let reflected: [[f64; 2]; N] = std::array::from_fn(|i| match (arrival.present[i], &met) {
-            (0.0, _) => [0.0; 2],
-            (_, None) => conductor_reflectance(arrival.incident_of(i), n[i], k[i], cos),
-            (_, Some(met)) => {
-                let reflected = reflected_under(met, i, [arrival.incident_of(i), n[i], k[i]], cos);
-                [reflected.s, reflected.p]
-            }
-        });
+        let (met, cos) = (self.met(arrival), arrival.wo.dot(arrival.normal));
+        let reflected: [[f64; 2]; N] =
+            std::array::from_fn(|i| if arrival.present[i] == 0.0 { [0.0; 2] } else { met.reflected(i, cos) });
         let share = Lanes::from_fn(|i| (0.5 * (reflected[i][0] + reflected[i][1])) as f32);
-        let polarization = match met {
+        let polarization = match met.coating {
             None => largest(reflected.into_iter().map(degree)),
             Some(_) => of_all_lanes(reflected.into_iter()) as f32,
         };
@@ -71,8 +71,7 @@ impl Conductor<Table> {
 
     pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         let surface = self.roughness.surface()?;
-        let frame = Frame::about(arrival.normal);
-        let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(wi))?;
+        let reflection = surface.evaluate_at(arrival, wi)?;
         Some((self.reflected(arrival, surface, &reflection, 1.0), reflection.pdf))
     }
 
@@ -84,33 +83,22 @@ impl Conductor<Table> {
         reflection: &RoughReflection,
         factor: f64,
     ) -> Lanes<N> {
-        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
-        if let Some(coating) = &self.coating {
-            let met = coating.met(arrival, false);
-            return Lanes::from_fn(|i| match arrival.present[i] {
-                0.0 => 0.0,
-                _ => {
-                    let metal = [arrival.incident_of(i), n[i], k[i]];
-                    let [r, mean] = coated_by_facets(&met, i, metal, reflection.cos);
-                    let again = surface.reflected_again(mean);
-                    (factor * (r * reflection.once + again * reflection.again)) as f32
-                }
-            });
-        }
-        let (mut last, mut reflected) = (None, 0.0);
+        let (met, mut last) = (self.met(arrival), Last::NONE);
+        let light = |[once, mean]: [f64; 2]| {
+            factor * (once * reflection.once + surface.reflected_again(mean) * reflection.again)
+        };
         Lanes::from_fn(|i| {
             if arrival.present[i] == 0.0 {
                 return 0.0;
             }
-            let metal = [arrival.incident_of(i), n[i], k[i]];
-            if last != Some(metal) {
-                let [n1, n, k] = metal;
-                let again = surface.reflected_again(mean_reflectance(n1, n, k));
-                let [s, p] = conductor_reflectance(n1, n, k, reflection.cos);
-                (last, reflected) =
-                    (Some(metal), factor * (0.5 * (s + p) * reflection.once + again * reflection.again));
-            }
-            reflected as f32
+            let light = match &met.coating {
+                Some(coating) => light(coated_by_facets(coating, i, met.indices(i), reflection.cos)),
+                None => last.of(met.indices(i), |[n1, n, k]| {
+                    let [s, p] = conductor_reflectance(n1, n, k, reflection.cos);
+                    light([0.5 * (s + p), mean_reflectance(n1, n, k)])
+                }),
+            };
+            light as f32
         })
     }
 
@@ -118,16 +106,8 @@ impl Conductor<Table> {
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
-        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
-        let degree = |lane: usize| {
-            let (n1, n, k, cos) = (arrival.incident_of(lane), n[lane], k[lane], arrival.wo.dot(h));
-            match &met {
-                None => degree(conductor_reflectance(n1, n, k, cos)),
-                Some(met) => reflected_under(met, lane, [n1, n, k], cos).degree(),
-            }
-        };
-        largest((0..N).step_by(N.div_ceil(LANES)).map(degree))
+        let (met, cos) = (self.met(arrival), arrival.wo.dot(h));
+        largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(met.reflected(lane, cos))))
     }
 
     /// By the facet that mirrors the light; what is reflected more than once leaves unpolarized.
@@ -135,34 +115,51 @@ impl Conductor<Table> {
         let (axis, cos, once) = match self.roughness.surface() {
             None if incoming.single => (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal), 1.0),
             Some(surface) if !incoming.single => {
-                let frame = Frame::about(arrival.normal);
-                let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
-                let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
+                let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
+                    return *mueller = Mueller::NONE;
+                };
                 (arrival.wo.cross(incoming.wi), reflection.cos, reflection.once)
             }
             _ => return *mueller = Mueller::NONE,
         };
-        let (n, k) = (arrival.draw.read_exact(&self.n), arrival.draw.read_exact(&self.k));
-        if let Some(coating) = &self.coating {
-            let met = coating.met(arrival, false);
-            return mueller.set_lanes(axis, incoming.lanes, |lane| {
-                reflected_under(&met, lane, [arrival.incident_of(lane), n[lane], k[lane]], cos).block().times(once)
-            });
-        }
-        let (mut last, mut block) = (None, Block::default());
-        mueller.set_lanes(axis, incoming.lanes, |lane| {
-            let metal @ [n1, n, k] = [arrival.incident_of(lane), n[lane], k[lane]];
-            if last.replace(metal) != Some(metal) {
-                block = Block::of_metal(n1, n, k, cos).times(once);
-            }
-            block
+        let (met, mut last) = (self.met(arrival), Last::NONE);
+        mueller.set_lanes(axis, incoming.lanes, |lane| match met.coated(lane, cos) {
+            Some(share) => share.block().times(once),
+            None => last.of(met.indices(lane), |[n1, n, k]| Block::of_metal(n1, n, k, cos).times(once)),
         });
     }
 }
 
-/// What a metal n - i k under layers reflects of a lane, in a medium of index `n1`.
-fn reflected_under<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> PolarizedShare {
-    met.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected
+/// A metal where light arrives.
+struct MetConductor<'a, const N: usize> {
+    arrival: &'a Arrival<'a, N>,
+    n: [f64; N],
+    k: [f64; N],
+    coating: Option<MetCoating<'a, N>>,
+}
+
+impl<const N: usize> MetConductor<'_, N> {
+    /// The index of the medium before it, and its own, n - i k, for a lane.
+    fn indices(&self, lane: usize) -> [f64; 3] {
+        [self.arrival.incident_of(lane), self.n[lane], self.k[lane]]
+    }
+
+    /// What it reflects of a lane, (s, p), of light that meets it at an angle of a cosine.
+    fn reflected(&self, lane: usize, cos: f64) -> [f64; 2] {
+        match self.coated(lane, cos) {
+            Some(PolarizedShare { s, p, .. }) => [s, p],
+            None => {
+                let [n1, n, k] = self.indices(lane);
+                conductor_reflectance(n1, n, k, cos)
+            }
+        }
+    }
+
+    /// The same under layers, if it has any.
+    fn coated(&self, lane: usize, cos: f64) -> Option<PolarizedShare> {
+        let [n1, n, k] = self.indices(lane);
+        Some(self.coating.as_ref()?.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected)
+    }
 }
 
 /// The reflectance of a coated metal at a cosine, and its mean over the hemisphere.
@@ -173,12 +170,6 @@ fn coated_by_facets<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]
         FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
     });
     [at(cos), averages.mean[0]]
-}
-
-/// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
-pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
-    let local = frame.to_local(wo);
-    DVec3 { z: local.z.max(0.0), ..local }
 }
 
 /// A metal's reflectance of diffuse light: twice the integral of reflectance times cosine over the cosine.

@@ -1,4 +1,6 @@
-use super::coated_boundary::{CoatedBoundary, block_at};
+use super::coated_boundary::{self, block_at};
+use super::last::Last;
+use super::refractions::Refractions;
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{
     Arrival, Block, Branch, Coating, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect,
@@ -63,8 +65,7 @@ impl Dielectric<Table> {
         match (self.roughness.interface(), &self.coating) {
             (Some(interface), _) => self.rough(interface).scatter(arrival, u, branches),
             (None, Some(coating)) => {
-                let (reflectance, transmittance) = (&self.reflectance, &self.transmittance);
-                CoatedBoundary { coating, reflectance, transmittance }.scatter(arrival, branches);
+                coated_boundary::scatter(coating, [&self.reflectance, &self.transmittance], arrival, branches);
             }
             (None, None) => match arrival.one_direction() {
                 Some(directions) => self.scatter_as_one(arrival, directions, branches),
@@ -124,27 +125,20 @@ impl Dielectric<Table> {
         let parts = arrival.parts();
         let crossing = if parts { tint * arrival.draw.parting() } else { tint };
         let cos = arrival.wo.dot(arrival.normal);
-        let first = branches.len();
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
-        let mut last: Option<([f64; 2], Interface)> = None;
-        let mut pair_of_branch = [[0.0; 2]; N];
+        let (mut refracted, mut last) = (Refractions::new(arrival, parts, branches), Last::NONE);
         let own = arrival.own_transmittance(cos);
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
             let pair @ [here, beyond] = arrival.refracting(lane);
             let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
-            let interface = match last {
-                Some((of, interface)) if of == pair => interface,
-                _ => Interface::new(here, beyond, cos),
-            };
+            let interface = last.of(pair, |[here, beyond]| Interface::new(here, beyond, cos));
             let [reflects, lets_through] = match &own {
                 Some(own) => [1.0 - own[lane], own[lane]],
                 None => [interface.reflectance, interface.transmittance],
             };
-            last = Some((pair, interface));
             let weight = arrival.present[lane];
             // Between equal indices nothing happens at all, even along the surface.
-            let straight = here == beyond;
-            let same = straight && n1 == n2;
+            let same = here == beyond && n1 == n2;
             if !same {
                 reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
                 polarization = interface.polarization_reflected.abs().max(polarization);
@@ -153,17 +147,8 @@ impl Dielectric<Table> {
             if transmittance == 0.0 || crosses == 0.0 {
                 continue;
             }
-            let known = branches[first..].iter().zip(pair_of_branch).position(|(_, of)| !parts || of == pair);
-            let branch = known.unwrap_or_else(|| {
-                let eta_scale = (here / beyond) * (here / beyond);
-                let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
-                let polarization = 0.0;
-                pair_of_branch[branches.len() - first] = pair;
-                branches.push(Branch { wi, share: Lanes::ZERO, pdf: None, crosses: true, eta_scale, polarization });
-                branches.len() - first - 1
-            });
             let degree = if same { 0.0 } else { interface.polarization_refracted.abs() as f32 };
-            let branch = &mut branches[first + branch];
+            let branch = refracted.branch(pair, || interface);
             branch.polarization = branch.polarization.max(degree);
             branch.share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
         }
@@ -228,12 +213,9 @@ impl Dielectric<Table> {
                 block_at(&met, arrival, lane, cos, crosses).times(f64::from(tint[lane]))
             });
         }
-        let (mut last, mut block) = (None, Block::default());
+        let mut last = Last::NONE;
         mueller.set_lanes(axis, incoming.lanes, |lane| {
-            let boundary = arrival.own_boundary(lane, cos);
-            if last.replace(boundary) != Some(boundary) {
-                block = Block::at_boundary(boundary, crosses);
-            }
+            let block = last.of(arrival.own_boundary(lane, cos), |boundary| Block::at_boundary(boundary, crosses));
             block.times(f64::from(tint[lane]))
         });
     }

@@ -1,7 +1,6 @@
 //! A material of any kind. A new kind is a file of its own and a variant here: the compiler then lists every place that
 //! has to know it.
 
-use super::thin::Way;
 use super::{
     Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror,
     Mix, Mueller, Part, Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
@@ -338,7 +337,7 @@ impl Scatter for Material<Table> {
     fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         match self {
             Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival, mueller),
-            Self::Thin(thin) if incoming.single => thin.mueller(arrival, Way::Back, incoming.lanes, mueller),
+            Self::Thin(thin) if incoming.single => thin.mueller(arrival, false, incoming.lanes, mueller),
             Self::Conductor(conductor) => conductor.mueller(arrival, incoming, mueller),
             Self::Dielectric(dielectric) => dielectric.mueller(arrival, incoming, mueller),
             Self::Plastic(plastic) => plastic.mueller(arrival, incoming, mueller),
@@ -351,7 +350,7 @@ impl Scatter for Material<Table> {
 
     fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
         match self {
-            Self::Thin(thin) => thin.mueller(arrival, Way::Through, arrival.present.not_zero(), mueller),
+            Self::Thin(thin) => thin.mueller(arrival, true, arrival.present.not_zero(), mueller),
             Self::Polarizer(polarizer) => polarizer.mueller(arrival, mueller),
             Self::Retarder(retarder) => retarder.mueller(arrival, mueller),
             Self::Mix(mix) => mix.mueller_of_straight(arrival, mueller),

@@ -48,15 +48,10 @@ impl<M: Scatter> Mask<Table, M> {
 
     /// The share that goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
-        let (opacity, within) = (arrival.read(&self.opacity), self.material.material().straight(arrival));
-        let hole = Lanes::from_fn(|i| 1.0 - opacity[i]);
-        match within {
-            None => Straight { holes: hole, panes: Lanes::ZERO, polarization: 0.0 },
-            // 1 less what is met keeps its digits where all goes on.
-            Some(within) => {
-                let holes = Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within.holes[i]));
-                Straight { holes, panes: within.panes * opacity, ..within }
-            }
-        }
+        let opacity = arrival.read(&self.opacity);
+        let within = self.material.material().straight(arrival).unwrap_or(Straight::NONE);
+        // 1 less what is met keeps its digits where all goes on.
+        let holes = Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within.holes[i]));
+        Straight { holes, panes: within.panes * opacity, ..within }
     }
 }

@@ -57,24 +57,22 @@ impl<M: Scatter> Mix<Table, M> {
             while at < branches.len() {
                 let branch = branches[at].scaled(share);
                 let (before, rest) = branches.split_at_mut(start);
-                let same = |other: &&mut Branch<N>| other.is_same_way(&branch);
-                match (branch.pdf, before[first..].iter_mut().find(same)) {
+                let same_way = before[first..].iter_mut().find(|other| other.is_same_way(&branch));
+                let kept = match (branch.pdf, same_way) {
                     (Some(pdf), _) if number == chosen => {
-                        let chance = [1.0 - second, second];
-                        rest[at - start] = self.beside_other(arrival, branch, pdf, number, shares, chance);
-                        at += 1;
+                        let chances = [1.0 - second, second];
+                        Some(self.beside_other(arrival, branch, pdf, number, shares, chances))
                     }
-                    (None, None) => {
-                        rest[at - start] = branch;
-                        at += 1;
-                    }
-                    (Some(_), _) => {
-                        branches.remove(at);
-                    }
+                    (Some(_), _) => None,
                     (None, Some(other)) => {
                         other.join(&branch);
-                        branches.remove(at);
+                        None
                     }
+                    (None, None) => Some(branch),
+                };
+                match kept {
+                    Some(branch) => (rest[at - start], at) = (branch, at + 1),
+                    None => _ = branches.remove(at),
                 }
             }
         }

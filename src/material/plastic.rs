@@ -1,9 +1,10 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::coat::{Coat, Crossing};
-use super::conductor::above;
 use super::degree::{LANES, largest, of_all_lanes};
+use super::last::Last;
 use super::plastic_film::PlasticFilm;
+use super::roughness::above;
 use super::{
     Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, StackShares,
 };
@@ -145,19 +146,17 @@ impl Plastic<Table> {
     ) -> [T; N] {
         let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
-        let mut last: Option<([f64; 2], Crossing)> = None;
+        let mut last = Last::NONE;
         std::array::from_fn(|i| {
             if arrival.present[i] == 0.0 {
                 return T::default();
             }
             let indices = [arrival.incident_of(i), index[i]];
             let film = met.as_ref().map(|met| PlasticFilm::new(met, i, indices));
-            let crossing = match (&film, last) {
-                (Some(film), _) => film.crossing(&self.coat, cosines),
-                (None, Some((of, crossing))) if of == indices => crossing,
-                (None, _) => self.coat.crossing(indices, cosines),
+            let crossing = match &film {
+                Some(film) => film.crossing(&self.coat, cosines),
+                None => last.of(indices, |indices| self.coat.crossing(indices, cosines)),
             };
-            last = Some((indices, crossing));
             of_lane(&CoatLane { crossing, r: f64::from(base[i]), indices, film })
         })
     }
@@ -185,9 +184,9 @@ impl Plastic<Table> {
         match self.coat.roughness().surface() {
             None => *mueller = Mueller::NONE,
             Some(surface) => {
-                let frame = Frame::about(arrival.normal);
-                let reflection = surface.evaluate(above(&frame, arrival.wo), frame.to_local(incoming.wi));
-                let Some(reflection) = reflection else { return *mueller = Mueller::NONE };
+                let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
+                    return *mueller = Mueller::NONE;
+                };
                 let axis = arrival.wo.cross(incoming.wi);
                 let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
                 mueller.set_lanes(axis, incoming.lanes, facet);
@@ -208,7 +207,7 @@ impl Plastic<Table> {
         let index = arrival.draw.read_exact(&self.index);
         let crossings = self
             .lanes(arrival, [from, to], |lane| (lane.base() * to * FRAC_1_PI, [lane.crossing.from, lane.crossing.to]));
-        let mut last = None;
+        let mut last = Last::NONE;
         let mut crossed = |lane: usize, cos: f64, share: f64| {
             if arrival.present[lane] == 0.0 {
                 return 0.0;
@@ -217,10 +216,7 @@ impl Plastic<Table> {
                 return shares.refracted.block().degree();
             }
             let met = ([arrival.incident_of(lane), index[lane]], cos);
-            match last {
-                Some((known, degree)) if known == met => degree,
-                _ => last.insert((met, self.coat.degree_crossing(met.0, cos, share))).1,
-            }
+            last.of(met, |(indices, cos)| self.coat.degree_crossing(indices, cos, share))
         };
         let [leaving, arriving] = [(from, 0), (to, 1)]
             .map(|(cos, way)| -> [f64; N] { std::array::from_fn(|lane| crossed(lane, cos, crossings[lane].1[way])) });

@@ -1,7 +1,7 @@
-use super::coat::{Coat, Crossing};
+use super::coat::{Coat, Crossing, transmittance};
 use super::coating::MetCoating;
 use super::film_averages::{FilmAverages, mean};
-use super::{Interface, Stack, StackShares};
+use super::{Stack, StackShares};
 
 /// The film on the coat of an opaque body, for one lane.
 pub(super) struct PlasticFilm {
@@ -31,12 +31,9 @@ impl PlasticFilm {
 }
 
 fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
-    let film = |cos: f64| {
-        let shares = stack.shares(n1, n2.into(), n1 * cos);
-        [shares.reflected.mean(), shares.refracted.mean()]
-    };
+    let film = |cos: f64| stack.shares(n1, n2.into(), n1 * cos).means();
     let bare = |cos: f64| {
-        let crosses = if n1 == n2 { 1.0 } else { Interface::new(n1, n2, cos).transmittance };
+        let crosses = transmittance(n1, n2, cos);
         [1.0 - crosses, crosses]
     };
     // In a denser medium layers may reflect totally, from other angles on than the coat.
@@ -46,8 +43,8 @@ fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
     }
     let inside = stack.turned_around();
     let lost = |cos: f64| {
-        let shares = inside.shares(n2, n1.into(), n2 * cos);
-        [1.0 - shares.reflected.mean() - shares.refracted.mean(), 0.0]
+        let [reflected, crossing] = inside.shares(n2, n1.into(), n2 * cos).means();
+        [1.0 - reflected - crossing, 0.0]
     };
     FilmAverages { lost_inside: mean(stack.is_slow(), n1 / n2, lost)[0].max(0.0), ..averages }
 }

@@ -4,7 +4,7 @@ use super::polarizer::let_through;
 use super::stack::PHASE_STEP;
 use super::{Arrival, Block, Mueller, Straight};
 use crate::math::{DVec3, Transform};
-use crate::spectrum::{Draw, Lanes, Quantity, Table};
+use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A sheet in which light polarized along its fast axis is ahead of light across it: a wave plate. All light goes
 /// straight on.
@@ -52,9 +52,11 @@ impl<S> PathDifference<S> {
     }
 
     fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> PathDifference<T> {
-        let [wavelength, band] = [(Quantity::Wavelength, &self.wavelength), (Quantity::BandWidth, &self.band)]
-            .map(|(what, one)| convert(what, one));
-        PathDifference { nm: self.nm, wavelength, band }
+        PathDifference {
+            nm: self.nm,
+            wavelength: convert(Quantity::Wavelength, &self.wavelength),
+            band: convert(Quantity::BandWidth, &self.band),
+        }
     }
 
     /// c and q of light of a wavelength in nm and the relative width of its band: those of one phase, or where it
@@ -72,13 +74,6 @@ impl<S> PathDifference<S> {
     /// How much the phase differs between both ends of a band, in radians.
     pub fn phase_step(&self, wavelength_nm: f64, band: f64) -> f64 {
         TAU * self.nm.abs() / wavelength_nm * band
-    }
-}
-
-impl PathDifference<Table> {
-    fn block_of_lane<const N: usize>(&self, draw: &Draw<N>, lane: usize) -> Block<f64> {
-        let [nm, band] = [&self.wavelength, &self.band].map(|table| draw.read_lane(table, lane));
-        self.block(nm, band)
     }
 }
 
@@ -108,14 +103,16 @@ impl<S: Clone> Retarder<S> {
 impl Retarder<Table> {
     pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
         let Some(axis) = let_through(arrival, self.axis) else { return mueller.set_unchanged(arrival.present) };
+        let lanes = arrival.present.not_zero();
         match &self.retardance {
             Retardance::Phase(degrees) => {
                 let block = Block::of_retarder(degrees.to_radians());
-                mueller.set_lanes(axis, arrival.present.not_zero(), |_| block)
+                mueller.set_lanes(axis, lanes, |_| block);
             }
-            Retardance::Path(path) => {
-                mueller.set_lanes(axis, arrival.present.not_zero(), |lane| path.block_of_lane(arrival.draw, lane))
-            }
+            Retardance::Path(path) => mueller.set_lanes(axis, lanes, |lane| {
+                let read = |table| arrival.draw.read_lane(table, lane);
+                path.block(read(&path.wavelength), read(&path.band))
+            }),
         }
     }
 }

@@ -42,8 +42,7 @@ impl<'a> CoatedLane<'a> {
                 };
                 let film = |cos: f64| {
                     let goes_on = bare(cos)[1] > 0.0;
-                    let shares = shares_of_lane(from, lane, cos, goes_on, |n1, n2, q1| stack.shares(n1, n2.into(), q1));
-                    [shares.reflected.mean(), shares.refracted.mean()]
+                    shares_of_lane(from, lane, cos, goes_on, |n1, n2, q1| stack.shares(n1, n2.into(), q1)).means()
                 };
                 let make = || FilmAverages::new(stack.is_slow(), [here, there], there, film, bare);
                 met.averages(lane, met.is_inside() != beyond, [own[0], own[1], here, there], make)

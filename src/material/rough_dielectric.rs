@@ -2,8 +2,8 @@
 
 use super::coated_boundary::{block_at, shares_at};
 use super::coating::MetCoating;
-use super::conductor::above;
 use super::rough_coating::CoatedLane;
+use super::roughness::above;
 use super::{Arrival, Block, Branch, Coating, Facet, Flow, Incoming, Interface, Mueller, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
@@ -217,20 +217,11 @@ impl RoughBoundary<'_> {
         let kind = &meeting.kinds[chosen];
         let u = [(at / kind.count).min(1.0 - f64::EPSILON), u[1]];
         let [reflected, crossed] = kind.sides.draw(meeting.wo, u);
-        let branch = |wi, share, pdf, crosses, eta_scale| Branch {
-            wi,
-            share,
-            pdf: Some(pdf),
-            crosses,
-            eta_scale,
-            polarization: 0.0,
-        };
-        let square = |[n1, n2]: [f64; 2]| (n1 / n2) * (n1 / n2);
         let drawn = if meeting.parts { 0..meeting.kinds.len() } else { chosen..chosen + 1 };
         for number in drawn {
             let kind = &meeting.kinds[number];
-            let (sides, indices) = (kind.sides, kind.indices);
-            let way = if number == chosen { crossed } else { sides.draw(meeting.wo, u)[1] };
+            let [n1, n2] = kind.indices;
+            let way = if number == chosen { crossed } else { kind.sides.draw(meeting.wo, u)[1] };
             let (Some(Way { wi, facet }), true) = (way, kind.crossing > 0.0) else { continue };
             let Some(world) = meeting.to_world(wi) else { continue };
             let pdf = meeting.ask(wi, facet.map(|facet| (number, facet)));
@@ -241,7 +232,8 @@ impl RoughBoundary<'_> {
                 meeting.light(1.0 / pdf)
             };
             if pdf > 0.0 && !(share * tint).is_zero() {
-                branches.push(branch(world, share * tint, pdf, true, square(indices)));
+                let eta_scale = (n1 / n2) * (n1 / n2);
+                branches.push(Branch { crosses: true, eta_scale, ..Branch::drawn(world, share * tint, pdf) });
             }
         }
         if let Some(Way { wi, facet }) = reflected
@@ -250,7 +242,7 @@ impl RoughBoundary<'_> {
             let pdf = meeting.ask(wi, facet.map(|facet| (chosen, facet)));
             let share = meeting.light(1.0 / pdf) * reflectance;
             if pdf > 0.0 && !share.is_zero() {
-                branches.push(branch(world, share, pdf, false, 1.0));
+                branches.push(Branch::drawn(world, share, pdf));
             }
         }
     }

@@ -155,9 +155,8 @@ impl Side<'_> {
     /// there.
     fn blocked_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
-        let [a, b] = self.rows.map(|row| row.value_and_density_at(place, z));
-        let often = self.often();
-        [a.0 + self.part * (b.0 - a.0), a.1 + often * (b.1 - a.1)]
+        let [[a, a_density], [b, b_density]] = self.rows.map(|row| row.value_and_density(place, z));
+        [a + self.part * (b - a), a_density + self.often() * (b_density - a_density)]
     }
 
     /// How often the second row is drawn from.

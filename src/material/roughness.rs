@@ -2,8 +2,8 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::{Facets, RoughInterface, reflect};
-use crate::math::DVec3;
+use super::{Arrival, Facets, RoughInterface, reflect};
+use crate::math::{DVec3, Frame};
 
 /// How rough a surface is, from 0 (smooth) to 1, and what follows from it.
 #[derive(Clone, Debug, Default)]
@@ -28,25 +28,24 @@ impl Roughness {
         self.value
     }
 
+    /// How wide the slopes of its facets are.
+    fn alpha(&self) -> f64 {
+        self.value * self.value
+    }
+
     /// Whether the surface is too smooth to be told from a mirror.
     pub fn is_smooth(&self) -> bool {
-        self.value * self.value < SMOOTH
+        self.alpha() < SMOOTH
     }
 
     /// How the surface reflects; none if it is smooth.
     pub fn surface(&self) -> Option<&RoughSurface> {
-        if self.is_smooth() {
-            return None;
-        }
-        Some(self.surface.get_or_init(|| RoughSurface::new(self.value * self.value)))
+        (!self.is_smooth()).then(|| self.surface.get_or_init(|| RoughSurface::new(self.alpha())))
     }
 
     /// How a boundary between clear media reflects and refracts; none if it is smooth.
     pub fn interface(&self) -> Option<&RoughInterface> {
-        if self.is_smooth() {
-            return None;
-        }
-        Some(self.interface.get_or_init(|| RoughInterface::new(self.value * self.value)))
+        (!self.is_smooth()).then(|| self.interface.get_or_init(|| RoughInterface::new(self.alpha())))
     }
 }
 
@@ -125,11 +124,18 @@ impl RoughSurface {
         self.reflection(wo, wi, (wo + wi).try_normalize()?)
     }
 
+    /// The same where light arrives; `wi` and the viewer's direction are those of the world.
+    pub(super) fn evaluate_at<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<RoughReflection> {
+        let frame = Frame::about(arrival.normal);
+        self.evaluate(above(&frame, arrival.wo), frame.to_local(wi))
+    }
+
     fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Option<RoughReflection> {
         if wi.z <= 0.0 {
             return None;
         }
-        let (again, (blocked, lobe)) = (self.blocked(wo.z), self.blocked.value_and_density(wi.z));
+        let [blocked, lobe] = self.blocked.value_and_density(self.blocked.place(wi.z), wi.z);
+        let again = self.blocked(wo.z);
         Some(RoughReflection {
             wi,
             once: self.facets.reflection(wo, wi, h),
@@ -138,6 +144,12 @@ impl RoughSurface {
             pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe,
         })
     }
+}
+
+/// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
+pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
+    let local = frame.to_local(wo);
+    DVec3 { z: local.z.max(0.0), ..local }
 }
 
 /// The share of light from the cosine `z` that meets a second facet: the mean over the visible facets.

@@ -92,6 +92,11 @@ impl StackShares {
         Self { reflected, refracted: PolarizedShare::default() }
     }
 
+    /// Shares of unpolarized light that are reflected and that cross.
+    pub(super) fn means(&self) -> [f64; 2] {
+        [self.reflected.mean(), self.refracted.mean()]
+    }
+
     /// Reflects what would cross, with the phase of what is reflected.
     pub(super) fn reflect_all(&mut self) {
         let PolarizedShare { s, p, .. } = self.reflected;

@@ -1,4 +1,5 @@
-use super::degree::{degree, of_all_lanes};
+use super::degree::{degree, largest, of_all_lanes};
+use super::last::Last;
 use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight};
 use crate::spectrum::{LaneSet, Lanes, Quantity, Table};
 
@@ -24,13 +25,6 @@ pub struct Thin<S> {
     pub film: Option<Coating<S>>,
 }
 
-/// The two ways on.
-#[derive(Clone, Copy)]
-pub(super) enum Way {
-    Through,
-    Back,
-}
-
 impl<S> Thin<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Thin<T> {
         Thin {
@@ -44,87 +38,70 @@ impl<S> Thin<S> {
 impl Thin<Table> {
     /// What goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
-        let (panes, _, degrees) = self.shares(arrival);
-        Straight { holes: Lanes::ZERO, panes, polarization: degrees[0] as f32 }
+        let (panes, polarization) = self.share(arrival, true);
+        Straight { holes: Lanes::ZERO, panes, polarization }
     }
 
     /// What is mirrored.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (_, share, degrees) = self.shares(arrival);
+        let (share, polarization) = self.share(arrival, false);
         if !share.is_zero() {
-            branches.push(Branch::mirrored(arrival, share, degrees[1] as f32));
+            branches.push(Branch::mirrored(arrival, share, polarization));
         }
     }
 
-    /// What becomes of polarization one way, in some lanes.
+    /// What becomes of polarization in some lanes, of light that crosses the pane or is mirrored.
     pub(super) fn mueller<const N: usize>(
         &self,
         arrival: &Arrival<N>,
-        way: Way,
+        crosses: bool,
         lanes: LaneSet,
         mueller: &mut Mueller<N>,
     ) {
         let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
-        let (mut last, mut blocks) = (None, [Block::default(); 2]);
+        let mut last = Last::NONE;
         let film = self.film.as_ref().map(|film| film.met(arrival, false));
         mueller.set_lanes(axis, lanes, |lane| {
             if let Some(film) = &film {
                 let n = arrival.incident_of(lane);
-                let shares = film.at_cosine(lane, n, n, cos);
-                return [shares.refracted, shares.reflected][way as usize].block();
+                let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
+                return if crosses { refracted.block() } else { reflected.block() };
             }
             let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
             if n1 == n2 {
-                return [Block::IDENTITY.times(t), Block::default()][way as usize];
+                return if crosses { Block::IDENTITY.times(t) } else { Block::default() };
             }
-            if last.replace(pane) != Some(pane) {
-                blocks = Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t);
-            }
-            blocks[way as usize]
+            let [through, back] = last.of(pane, |[n1, n2, t]| {
+                Block::of_pane(Block::reflected(n1, n2, cos), Block::refracted(n1, n2, cos), t)
+            });
+            if crosses { through } else { back }
         });
     }
 
-    /// What of each lane goes straight on and what is mirrored, and the largest degree of polarization that this gives
-    /// to unpolarized light.
-    pub(super) fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
-        if let Some(film) = &self.film {
-            return interfering(film, arrival);
-        }
-        let (index, way) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
-        let cos = arrival.wo.dot(arrival.normal);
-        let (mut through, mut back, mut degrees) = (Lanes::ZERO, Lanes::ZERO, [0.0_f64; 2]);
-        let mut last: Option<([f64; 3], [[f64; 2]; 2])> = None;
+    /// What of each lane goes straight on, or is mirrored, and the largest degree of polarization that this gives to
+    /// unpolarized light; of a film, in which light interferes, that of all lanes together.
+    fn share<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> (Lanes<N>, f32) {
+        let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
+        let film = self.film.as_ref().map(|film| film.met(arrival, false));
+        let (cos, mut last) = (arrival.wo.dot(arrival.normal), Last::NONE);
+        let mut lanes = [[0.0; 2]; N];
         for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            if index[lane] == arrival.incident_of(lane) {
-                through.0[lane] = way[lane];
-                continue;
-            }
-            let pane = [arrival.incident_of(lane), index[lane], f64::from(way[lane])];
-            let summed = match last {
-                Some((of, summed)) if of == pane => summed,
-                _ => all_reflections(&Interface::new(pane[0], pane[1], cos), pane[2]),
+            let (n1, t) = (arrival.incident_of(lane), f64::from(left[lane]));
+            let [through, back] = match &film {
+                Some(film) => {
+                    let StackShares { reflected, refracted } = film.at_cosine(lane, n1, n1, cos);
+                    [refracted, reflected].map(|share| [share.s, share.p])
+                }
+                None if index[lane] == n1 => [[t; 2], [0.0; 2]],
+                None => last.of([n1, index[lane], t], |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t)),
             };
-            last = Some((pane, summed));
-            [through.0[lane], back.0[lane]] = summed.map(|[s, p]| (0.5 * (s + p)) as f32);
-            (0..2).for_each(|way| degrees[way] = degree(summed[way]).max(degrees[way]));
+            lanes[lane] = if crosses { through } else { back };
         }
-        (through, back, degrees)
+        let share = Lanes::from_fn(|lane| (0.5 * (lanes[lane][0] + lanes[lane][1])) as f32);
+        let lanes = lanes.into_iter();
+        (share, if film.is_some() { of_all_lanes(lanes) as f32 } else { largest(lanes.map(degree)) })
     }
-}
-
-/// [`Thin::shares`] of a film in which light interferes.
-fn interfering<const N: usize>(film: &Coating<Table>, arrival: &Arrival<N>) -> (Lanes<N>, Lanes<N>, [f64; 2]) {
-    let (cos, met) = (arrival.wo.dot(arrival.normal), film.met(arrival, false));
-    let (mut through, mut back, mut of_lanes) = (Lanes::ZERO, Lanes::ZERO, [[[0.0; 2]; N]; 2]);
-    for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-        let n = arrival.incident_of(lane);
-        let StackShares { reflected, refracted } = met.at_cosine(lane, n, n, cos);
-        [through.0[lane], back.0[lane]] = [refracted, reflected].map(|share| share.mean() as f32);
-        let both = [refracted, reflected].map(|share| [share.s, share.p]);
-        (0..2).for_each(|way| of_lanes[way][lane] = both[way]);
-    }
-    (through, back, of_lanes.map(|way| of_all_lanes(way.into_iter())))
 }
 
 /// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.

@@ -165,33 +165,40 @@ mod tests {
         assert!(near, "{found:?} is not {expected:?}");
     }
 
-    /// Whatever moves, turns, stretches or mirrors a shape carries its coordinates along.
-    #[test]
-    fn a_point_keeps_its_coordinates_under_every_transform() {
-        let shapes = [
-            (Shape::Quad(Quad::new(DVec3::new(1.0, 0.5, 0.0), DVec3::X * 2.0, DVec3::Y)), DVec3::new(0.3, 0.9, 0.0)),
-            (Shape::Disc(Disc::new(DVec3::ZERO, DVec3::Z, 2.0, Some(DVec3::X)).unwrap()), DVec3::new(0.3, -0.7, 0.0)),
-            (
-                Shape::Triangle(Triangle::new([DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.5)])),
-                DVec3::new(0.6, 0.8, 0.2),
-            ),
-            (Shape::Cube(Cube::new(DVec3::new(0.1, 0.2, 0.3), DVec3::splat(2.0))), DVec3::new(0.4, 0.1, 1.3)),
+    /// Shapes, and a point of each.
+    fn shapes() -> Vec<(Shape, DVec3)> {
+        let quad = Quad::new(DVec3::new(1.0, 0.5, 0.0), DVec3::new(2.0, 0.3, 0.0), DVec3::Y);
+        let disc = Disc::new(DVec3::ZERO, DVec3::new(0.2, 0.0, 1.0), 2.0, Some(DVec3::X)).unwrap();
+        let triangle = Triangle::new([DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.5)]);
+        vec![
+            (Shape::Quad(quad), DVec3::new(0.3, 0.9, 0.0)),
+            (Shape::Disc(disc), DVec3::new(0.3, -0.7, -0.06)),
+            (Shape::Triangle(triangle), DVec3::new(0.6, 0.8, 0.2)),
             (Shape::Sphere(Sphere::new(DVec3::new(0.0, 0.5, 0.0), 1.0)), DVec3::new(0.48, 1.1, 0.64)),
-            (
-                Shape::Plane(Plane::new(DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 3.0))),
-                DVec3::new(5.0, 4.0, -1.0),
-            ),
-        ];
-        let maps = [
+            (Shape::Plane(Plane::new(DVec3::Y, DVec3::new(0.0, 1.0, 3.0))), DVec3::new(5.0, 4.0, -1.0)),
+            (mirrored_mesh(), DVec3::new(0.9, 0.3, 0.03)),
+            (mirrored_mesh(), DVec3::new(0.3, 0.7, 0.03)),
+        ]
+    }
+
+    fn maps() -> [Transform; 5] {
+        [
+            Transform::IDENTITY,
             Transform::translate(DVec3::new(3.0, -2.0, 1.0)),
             Transform::rotate(DVec3::new(1.0, 2.0, -0.5), 77.0).then(&Transform::translate(DVec3::X)),
             Transform::scale(DVec3::new(0.5, 3.0, 1.25)).then(&Transform::rotate(DVec3::new(0.3, 1.0, 0.0), 200.0)),
-            Transform::scale(DVec3::new(-1.0, 1.0, 1.0)),
-        ];
-        for (shape, point) in shapes {
+            Transform::scale(DVec3::new(-1.0, 1.0, 1.5)),
+        ]
+    }
+
+    /// Whatever moves, turns, stretches or mirrors a shape carries its coordinates along.
+    #[test]
+    fn a_point_keeps_its_coordinates_under_every_transform() {
+        let cube = Cube::new(DVec3::new(0.1, 0.2, 0.3), DVec3::splat(2.0));
+        for (shape, point) in shapes().into_iter().chain([(Shape::Cube(cube), DVec3::new(0.4, 0.1, 1.3))]) {
             let from = point + DVec3::new(0.1, 0.2, 2.0);
             let plain = seen(shape.clone(), &Transform::IDENTITY, from, point);
-            for map in maps {
+            for map in maps() {
                 assert_near(seen(shape.clone(), &map, map.point(from), map.point(point)), plain);
             }
         }
@@ -268,30 +275,13 @@ mod tests {
     /// Steps along a surface change its coordinates as the tangents say, under every transform.
     #[test]
     fn tangents_are_the_derivatives_of_points_by_coordinates() {
-        let quad = Quad::new(DVec3::new(1.0, 0.5, 0.0), DVec3::new(2.0, 0.3, 0.0), DVec3::Y);
-        let disc = Disc::new(DVec3::ZERO, DVec3::new(0.2, 0.0, 1.0), 2.0, Some(DVec3::X)).unwrap();
-        let triangle = Triangle::new([DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.5)]);
-        let mut cases = vec![
-            (Shape::Quad(quad), DVec3::new(0.3, 0.9, 0.0)),
-            (Shape::Disc(disc), DVec3::new(0.3, -0.7, -0.06)),
-            (Shape::Triangle(triangle), DVec3::new(0.6, 0.8, 0.2)),
-            (Shape::Sphere(Sphere::new(DVec3::new(0.0, 0.5, 0.0), 1.0)), DVec3::new(0.48, 1.1, 0.64)),
-            (Shape::Plane(Plane::new(DVec3::Y, DVec3::new(0.0, 1.0, 3.0))), DVec3::new(5.0, 4.0, -1.0)),
-            (mirrored_mesh(), DVec3::new(0.9, 0.3, 0.03)),
-            (mirrored_mesh(), DVec3::new(0.3, 0.7, 0.03)),
-        ];
+        let mut cases = shapes();
         for outward in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z] {
             let cube = Cube::new(DVec3::ZERO, DVec3::splat(2.0));
             cases.push((Shape::Cube(cube), outward + outward.any_orthonormal_vector() * 0.3));
         }
-        let maps = [
-            Transform::IDENTITY,
-            Transform::rotate(DVec3::new(1.0, 2.0, -0.5), 77.0).then(&Transform::translate(DVec3::X)),
-            Transform::scale(DVec3::new(0.5, 3.0, 1.25)).then(&Transform::rotate(DVec3::new(0.3, 1.0, 0.0), 200.0)),
-            Transform::scale(DVec3::new(-1.0, 1.0, 1.5)),
-        ];
         for (shape, place) in cases {
-            for map in maps {
+            for map in maps() {
                 let coordinates = Coordinates::new(&shape, &map).unwrap();
                 for placed in [shape.clone().transformed(&map), shape.copied(&map)] {
                     check(&placed, &coordinates, map.point(place), map.normal(outward(&shape, place)));

@@ -109,8 +109,7 @@ fn reach(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
 /// Points as they are seen against a direction, counterclockwise about it. What lies in a plane across an axis keeps
 /// its coordinates to the last bit.
 fn seen_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
-    let size = normal.abs();
-    let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
+    let axis = normal.abs().max_position();
     let (mut across, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
     if normal[axis] < 0.0 {
         (across, up) = (up, across);

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::gltf_buffer::{Accessor, Buffer, BufferView, Store};
+use super::gltf_buffer::{Accessor, Buffer, BufferView, Data, Store};
 use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 use crate::math::{DMat3, DVec3, Transform};
@@ -176,58 +176,31 @@ impl Document {
     }
 
     fn read(&self, placed: &[(&MeshText, Transform)], store: &Store, smooth: bool) -> Result<MeshFile, String> {
-        let accessor = |number: usize| {
-            let found = self.accessors.get(number).ok_or_else(|| format!("there is no accessor {number}"))?;
-            Ok::<_, String>(found.data(number, &self.buffer_views, store))
-        };
         let as_written = placed.iter().all(|(_, map)| *map == Transform::IDENTITY);
+        let mut vertices = if as_written { Vertices::default() } else { Vertices::Double(Vec::new()) };
         let (mut attributes, mut has_normals, mut has_coordinates) = (Attributes::default(), false, false);
-        let (mut single, mut double, mut faces) = (Vec::new(), Vec::new(), Vec::<[u32; 3]>::new());
+        let mut faces = Vec::<[u32; 3]>::new();
         for (mesh, map) in placed {
             for primitive in mesh.primitives.iter().filter(|primitive| (4..=6).contains(&primitive.mode)) {
                 let Some(position) = primitive.attributes.position else { continue };
-                let data = accessor(position)?;
-                let points: Vec<[f32; 3]> = data.floats()?;
-                let corners = match primitive.indices {
-                    Some(indices) => accessor(indices)?.whole_numbers()?,
-                    None => (0..points.len() as u32).collect(),
-                };
-                let count = points.len();
-                if let Some(corner) = corners.iter().find(|&&corner| corner as usize >= count) {
-                    return Err(format!("a face asks for vertex {corner}, but its {count} vertices count from 0"));
-                }
-                let triangles = cut(&corners, primitive.mode).count();
-                if faces.len() + triangles > MOST || single.len() + double.len() + count > MOST {
+                let points: Vec<[f32; 3]> = self.accessor(position, store)?.floats()?;
+                let corners = self.corners(primitive, points.len(), store)?;
+                let (first, triangles) = (vertices.count(), cut(&corners, primitive.mode).count());
+                if faces.len() + triangles > MOST || first + points.len() > MOST {
                     return Err(format!("its nodes place more than {MOST} triangles or vertices"));
                 }
-                let mut own = Attributes::default();
-                if let Some(normals) = primitive.attributes.normal.filter(|_| smooth) {
-                    own.normals = accessor(normals)?.floats()?;
-                    has_normals = true;
-                }
-                if let Some(coordinates) = primitive.attributes.coordinates {
-                    // Images begin at their top in glTF.
-                    let flipped = |[u, v]: [f32; 2]| [u, 1.0 - v];
-                    own.coordinates = accessor(coordinates)?.floats()?.into_iter().map(flipped).collect();
-                    has_coordinates = true;
-                } else {
-                    attributes.bare += triangles;
-                }
-                let fits = |own: usize| own == 0 || own == count;
-                if !fits(own.normals.len()) || !fits(own.coordinates.len()) {
-                    return Err(format!("a primitive has {count} places, but not as many normals or coordinates"));
-                }
-                own.normals.resize(count, [0.0; 3]);
-                own.coordinates.resize(count, [0.0; 2]);
+                let own = self.attributes(primitive, points.len(), store, smooth)?;
+                has_normals |= smooth && primitive.attributes.normal.is_some();
+                has_coordinates |= primitive.attributes.coordinates.is_some();
+                attributes.bare += if primitive.attributes.coordinates.is_some() { 0 } else { triangles };
                 attributes.normals.extend(own.transformed(map).normals);
                 attributes.coordinates.extend(own.coordinates);
-                let first = (single.len() + double.len()) as u32;
-                if as_written {
-                    single.extend(points);
-                } else {
-                    double.extend(points.iter().map(|p| map.point(p.map(f64::from).into())));
+                let place = |corner: u32| corner + first as u32;
+                faces.extend(cut(&corners, primitive.mode).map(|face| map.wound(face.map(place))));
+                match &mut vertices {
+                    Vertices::Single(all) => all.extend(points),
+                    Vertices::Double(all) => all.extend(points.iter().map(|p| map.point(p.map(f64::from).into()))),
                 }
-                faces.extend(cut(&corners, primitive.mode).map(|face| map.wound(face.map(|corner| corner + first))));
             }
         }
         if !has_normals {
@@ -236,8 +209,49 @@ impl Document {
         if !has_coordinates {
             (attributes.coordinates, attributes.bare) = (Vec::new(), 0);
         }
-        let vertices = if as_written { Vertices::Single(single) } else { Vertices::Double(double) };
         Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
+    }
+
+    /// The corners of a primitive with so many places.
+    fn corners(&self, primitive: &Primitive, count: usize, store: &Store) -> Result<Vec<u32>, String> {
+        let corners = match primitive.indices {
+            Some(indices) => self.accessor(indices, store)?.whole_numbers()?,
+            None => (0..count as u32).collect(),
+        };
+        match corners.iter().find(|&&corner| corner as usize >= count) {
+            Some(corner) => Err(format!("a face asks for vertex {corner}, but its {count} vertices count from 0")),
+            None => Ok(corners),
+        }
+    }
+
+    /// What each of so many places of a primitive carries; zeros where it carries none.
+    fn attributes(
+        &self,
+        primitive: &Primitive,
+        count: usize,
+        store: &Store,
+        smooth: bool,
+    ) -> Result<Attributes, String> {
+        let mut own = Attributes::default();
+        if let Some(normals) = primitive.attributes.normal.filter(|_| smooth) {
+            own.normals = self.accessor(normals, store)?.floats()?;
+        }
+        if let Some(coordinates) = primitive.attributes.coordinates {
+            // Images begin at their top in glTF.
+            let flipped = |[u, v]: [f32; 2]| [u, 1.0 - v];
+            own.coordinates = self.accessor(coordinates, store)?.floats()?.into_iter().map(flipped).collect();
+        }
+        if [own.normals.len(), own.coordinates.len()].iter().any(|&own| own != 0 && own != count) {
+            return Err(format!("a primitive has {count} places, but not as many normals or coordinates"));
+        }
+        own.normals.resize(count, [0.0; 3]);
+        own.coordinates.resize(count, [0.0; 2]);
+        Ok(own)
+    }
+
+    fn accessor<'a>(&'a self, number: usize, store: &'a Store) -> Result<Data<'a>, String> {
+        let accessor = self.accessors.get(number).ok_or_else(|| format!("there is no accessor {number}"))?;
+        Ok(accessor.data(number, &self.buffer_views, store))
     }
 }
 

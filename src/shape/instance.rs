@@ -122,12 +122,8 @@ impl Instance {
         Some(own.map(|tangent| self.to_world.vector(tangent)))
     }
 
-    fn triangles(&self) -> impl Iterator<Item = Triangle> + '_ {
-        (0..self.mesh.count()).map(|part| self.triangle(part))
-    }
-
     pub(super) fn area(&self) -> f64 {
-        self.triangles().map(|triangle| triangle.area()).sum()
+        (0..self.mesh.count()).map(|part| self.triangle(part).area()).sum()
     }
 
     /// A point of a triangle drawn by its area in the mesh's space, evenly over the triangle.

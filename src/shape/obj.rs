@@ -5,9 +5,9 @@ use std::path::Path;
 
 use smallvec::SmallVec;
 
-use super::distinct::Distinct;
 use super::faces::Faces;
 use super::mesh_data::MeshFile;
+use super::numbered::Numbered;
 use super::{Attributes, Vertices};
 use crate::math::{Bounds, DVec3};
 
@@ -125,7 +125,7 @@ struct Lists {
     places: Vec<[f64; 3]>,
     coordinates: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
-    corners: Distinct<Corner>,
+    corners: Numbered<Corner>,
     faces: Faces,
     /// Triangles of faces that leave out texture coordinates.
     bare: usize,

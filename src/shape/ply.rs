@@ -9,9 +9,9 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::distinct::Distinct;
 use super::faces::Faces;
 use super::mesh_data::{MeshFile, NO_VERTEX, check_finite, no_such_vertex};
+use super::numbered::Numbered;
 use super::{Attributes, Vertices};
 
 #[derive(Default)]
@@ -134,7 +134,7 @@ struct Lists {
     faces: Faces,
     /// Where faces have texture coordinates of their own: the different corners that faces have, each with its vertex
     /// and the bits of its coordinates, if it has any.
-    corners: Option<Distinct<(u32, Option<[u32; 2]>)>>,
+    corners: Option<Numbered<(u32, Option<[u32; 2]>)>>,
 }
 
 impl Lists {
@@ -176,7 +176,7 @@ impl Lists {
 
     /// Makes a vertex of each corner that carries something else. What corners lack they have of their vertices.
     fn part_corners(&mut self) -> Result<(), String> {
-        let Some(corners) = self.corners.take().map(Distinct::all) else { return Ok(()) };
+        let Some(corners) = self.corners.take().map(Numbered::all) else { return Ok(()) };
         // While vertices have the numbers of the file.
         check_finite(&self.vertices, &self.attributes)?;
         let count = self.vertices.count();
@@ -220,7 +220,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let mut reader = Reader::new(file);
     let header = Parser::<Vertex>::new().read_header(&mut reader).map_err(|error| ply_error(error, true))?;
     let of_corners = header.elements.get("face").and_then(|faces| faces.properties.get(OF_CORNERS));
-    let mut lists = Lists { corners: of_corners.map(|_| Distinct::default()), ..Lists::default() };
+    let mut lists = Lists { corners: of_corners.map(|_| Numbered::default()), ..Lists::default() };
     // Elements without properties are lines of a text, but nothing at all in a binary file, however many there are.
     let takes_no_bytes = |e: &ElementDef| e.properties.is_empty() && header.encoding != Encoding::Ascii;
     for element in header.elements.values() {

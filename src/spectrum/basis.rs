@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::band_response::BandResponse;
 use super::bands::Bands;
 use super::cardinals::cardinals;
-use super::color::{ColorSpace, IDENTITY, Matrix, apply, product};
+use super::color::{ColorSpace, Matrix, apply, product};
 use super::curve::BAND_WAVELENGTHS_NM;
 use super::draw::MAX_HEROES;
 use super::mixture::Mixture;
@@ -273,23 +273,16 @@ impl Basis {
             _ => {}
         }
         let reader = curve.reader(quantity, &self.upsampler);
-        let read = |nm: &f64| reader(*nm);
-        let table = match (&self.lanes, quantity) {
-            (
-                LaneKind::Rgb(_),
-                Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Absorption,
-            ) => match curve.kind.rgb() {
-                Some(rgb) => Table::new(rgb.map(|x| x * curve.scale)),
-                None => Table::new(self.wavelengths_nm.iter().map(read).collect::<Vec<_>>()),
-            },
-            (LaneKind::Prefiltered(bands), _) if !matches!(quantity, Quantity::Index | Quantity::Wavelength) => {
+        let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
+        let table = match (&self.lanes, curve.kind.rgb(), &self.projection) {
+            (LaneKind::Rgb(_), Some(rgb), _) if is_share || quantity == Quantity::Absorption => {
+                Table::new(rgb.map(|x| x * curve.scale))
+            }
+            (LaneKind::Prefiltered(bands), ..) if !matches!(quantity, Quantity::Index | Quantity::Wavelength) => {
                 Table::new(bands.filter(quantity, curve, &*reader))
             }
-            (_, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share) => {
-                let projected = self.projection.as_ref().map(|projection| projection.read(&*reader));
-                self.table(projected.unwrap_or_else(|| self.wavelengths_nm.iter().map(read).collect()), &*reader)
-            }
-            _ => self.table(self.wavelengths_nm.iter().map(read).collect(), &*reader),
+            (_, _, Some(projection)) if is_share => self.table(projection.read(&*reader), &*reader),
+            _ => self.table(self.wavelengths_nm.iter().map(|&nm| reader(nm)).collect(), &*reader),
         };
         let refracts = quantity == Quantity::Index && !matches!(curve.kind, CurveKind::Rgb(_));
         match &self.lanes {
@@ -380,7 +373,6 @@ impl Basis {
             LaneKind::Rgb(_) if curve.is_measured() || curve.luminance.is_some() => {
                 of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec709.to_xyz()))
             }
-            LaneKind::Rgb(_) if self.space == ColorSpace::Rec709 => of_matrix(&IDENTITY),
             LaneKind::Rgb(_) => of_matrix(&self.space.of_rec709()),
             LaneKind::Prefiltered(_) => of_matrix(&product(&self.space.of_xyz(), &ColorSpace::Rec2020.to_xyz())),
             LaneKind::Wavelengths(functions) => {

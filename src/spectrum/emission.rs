@@ -42,45 +42,26 @@ impl Emission {
     /// film's white.
     pub fn new(curve: &Curve, space: ColorSpace) -> Self {
         let curve = &*curve.level();
-        let (mut spectrum, mut lines, mut correction) = (vec![0.0; visible::COUNT], Vec::new(), [1.0; 3]);
-        let mut fill = |value: &dyn Fn(f64) -> f64| {
-            spectrum.iter_mut().zip(visible::wavelengths()).for_each(|(power, nm)| *power = value(nm));
-        };
-        let mut normalized = true;
-        match &curve.kind {
-            kind @ (&CurveKind::Number(r) | &CurveKind::Rgb([r, _, _])) => {
-                let white = space.white_light();
-                fill(&|nm| white.at(nm));
-                correction = factors(visible::xyz(&spectrum), space.white());
-                let [_, g, b] = kind.rgb().unwrap_or([r; 3]);
-                let brightest = 2.0 * r.max(g).max(b);
-                if r == g && g == b {
-                    spectrum.iter_mut().for_each(|power| *power *= r);
-                } else {
-                    let tint = Upsampler::new(space).fit([r, g, b].map(|x| x / brightest));
-                    let wavelengths = visible::wavelengths();
-                    spectrum.iter_mut().zip(wavelengths).for_each(|(power, nm)| *power *= brightest * tint.at(nm));
-                }
-                normalized = false;
-            }
+        let (mut lines, unit) = (Vec::new(), 1.0 / visible::luminous());
+        let plain = |power: &dyn Fn(f64) -> f64| (visible::wavelengths().map(power).collect(), [1.0; 3]);
+        let (spectrum, correction): (Vec<f64>, _) = match &curve.kind {
+            CurveKind::Number(level) => colored([*level; 3], space),
+            CurveKind::Rgb(rgb) => colored(*rgb, space),
             CurveKind::Lines(pairs) => {
-                let unit = 1.0 / visible::luminous();
                 lines = pairs.iter().map(|&[nm, power]| [nm, power * unit]).collect();
-                normalized = false;
+                plain(&|_| 0.0)
             }
-            CurveKind::Samples(samples) => {
-                let unit = 1.0 / visible::luminous();
-                fill(&|nm| unit * on_grid(samples, nm));
-                normalized = false;
-            }
-            kind => fill(&*kind.values(Quantity::Emission)),
-        }
+            CurveKind::Samples(samples) => plain(&|nm| unit * on_grid(samples, nm)),
+            kind => plain(&*kind.values(Quantity::Emission)),
+        };
         let film_of_xyz = product(&space.of_xyz(), &diagonal(correction));
         let mut emission = Self { spectrum, lines, correction, film_of_xyz };
         let luminance = emission.xyz()[1];
+        let is_absolute =
+            curve.kind.rgb().is_some() || matches!(curve.kind, CurveKind::Lines(_) | CurveKind::Samples(_));
         let factor = match curve.luminance {
             Some(wanted) if luminance > 0.0 => wanted / luminance,
-            _ if normalized && luminance > 0.0 => curve.scale / luminance,
+            _ if luminance > 0.0 && !is_absolute => curve.scale / luminance,
             _ => curve.scale,
         };
         emission.spectrum.iter_mut().for_each(|power| *power *= factor);
@@ -177,6 +158,22 @@ impl Emission {
             && self.lines.iter().zip(&other.lines).all(|(x, y)| x[0] == y[0] && same(x[1], y[1]))
             && self.spectrum.iter().zip(&other.spectrum).all(|(&x, &y)| same(x, y))
     }
+}
+
+/// A multiple of the film's white on the grid, and the factors on XYZ that make the white exactly the film's.
+fn colored(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
+    let white = space.white_light();
+    let mut spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
+    let correction = factors(visible::xyz(&spectrum), space.white());
+    let [r, g, b] = rgb;
+    if r == g && g == b {
+        spectrum.iter_mut().for_each(|power| *power *= r);
+    } else {
+        let brightest = 2.0 * r.max(g).max(b);
+        let tint = Upsampler::new(space).fit(rgb.map(|x| x / brightest));
+        spectrum.iter_mut().zip(visible::wavelengths()).for_each(|(power, nm)| *power *= brightest * tint.at(nm));
+    }
+    (spectrum, correction)
 }
 
 /// A sampled emission on the grid: 0 beyond its ends. Where samples lie closer than the grid, or where light ends at

@@ -43,8 +43,7 @@ impl Image {
             let even = byte as f64 / 255.0;
             (if srgb { decode_srgb(even) } else { even }) as f32
         };
-        let length = bytes.len();
-        Self::new(width, channels, length, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
+        Self::new(width, channels, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
     }
 
     /// An image of 8 bits a number, which stand for -128/127 to 1 so that 128 is exactly 0: the directions of a normal
@@ -54,8 +53,7 @@ impl Image {
     /// As [`Image::of_bytes`].
     pub fn of_signed_bytes(width: usize, channels: usize, bytes: Vec<u8>) -> Self {
         let value = |byte: usize| ((byte as f64 - 128.0) / 127.0) as f32;
-        let length = bytes.len();
-        Self::new(width, channels, length, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
+        Self::new(width, channels, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
     }
 
     /// An image of linear numbers: finite, and not negative where they are light.
@@ -63,11 +61,14 @@ impl Image {
     /// # Panics
     /// As [`Image::of_bytes`].
     pub fn of_floats(width: usize, channels: usize, floats: Vec<f32>) -> Self {
-        let length = floats.len();
-        Self::new(width, channels, length, Texels::Floats(floats))
+        Self::new(width, channels, Texels::Floats(floats))
     }
 
-    fn new(width: usize, channels: usize, length: usize, texels: Texels) -> Self {
+    fn new(width: usize, channels: usize, texels: Texels) -> Self {
+        let length = match &texels {
+            Texels::Bytes(bytes, _) => bytes.len(),
+            Texels::Floats(floats) => floats.len(),
+        };
         assert!(
             width > 0 && length > 0 && (channels == 1 || channels == 3) && length.is_multiple_of(width * channels),
             "{length} numbers, {channels} a texel, {width} texels a row"

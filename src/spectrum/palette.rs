@@ -73,10 +73,10 @@ pub(super) fn filter<const N: usize>(
             shape(level, 1, amount * (1.0 - toward)) + Lanes::ONE * (amount * toward * LEVELS[level])
         }
     };
-    let lower = usize::from(bounded && most > LEVELS[1]);
     if !bounded || most <= LEVELS[0] {
         return at_level(0, most / LEVELS[0]);
     }
+    let lower = usize::from(most > LEVELS[1]);
     let toward = (most - LEVELS[lower]) / (LEVELS[lower + 1] - LEVELS[lower]);
     at_level(lower, 1.0 - toward) + at_level(lower + 1, toward)
 }

@@ -3,7 +3,6 @@
 use std::sync::OnceLock;
 
 use super::rows::{Row, Rows, fields, numbers};
-use crate::math::interpolate;
 
 const ROWS: Rows = Rows::new(include_str!("colors.txt"));
 
@@ -50,7 +49,8 @@ impl Grid {
         let last = self.values.len() - 1;
         let place = ((nm - self.start_nm) / self.step_nm).clamp(0.0, last as f64);
         let i = (place as usize).min(last.saturating_sub(1));
-        interpolate(&[[i as f64, self.values[i]], [(i + 1) as f64, self.values[(i + 1).min(last)]]], place)[1]
+        let [low, high] = [i, (i + 1).min(last)].map(|i| self.values[i]);
+        low + (high - low) * (place - i as f64)
     }
 }
 

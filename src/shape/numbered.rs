@@ -4,18 +4,18 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Different values, numbered from 0 in the order in which they came.
-pub(super) struct Distinct<T> {
+pub(super) struct Numbered<T> {
     values: Vec<T>,
     numbers: HashMap<T, u32>,
 }
 
-impl<T> Default for Distinct<T> {
+impl<T> Default for Numbered<T> {
     fn default() -> Self {
         Self { values: Vec::new(), numbers: HashMap::new() }
     }
 }
 
-impl<T: Copy + Eq + Hash> Distinct<T> {
+impl<T: Copy + Eq + Hash> Numbered<T> {
     /// The number of a value.
     pub(super) fn number(&mut self, value: T) -> u32 {
         *self.numbers.entry(value).or_insert_with(|| {
