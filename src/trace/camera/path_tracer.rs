@@ -7,7 +7,7 @@ use super::direct::DirectLighting;
 use super::layer_sample::{LayerSample, Met};
 use super::numbers;
 use super::resampling::Resampling;
-use super::sensor::{Observer, Sensor};
+use super::sensor::{Finding, Sensor};
 use super::shining::Shining;
 use super::surface::{First, Leaving, Surface};
 use crate::film::{Layer, Sample};
@@ -59,7 +59,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// With somebody who is told what paths find.
-    pub fn with_observer(mut self, observer: &'a dyn Observer) -> Self {
+    pub fn with_observer(mut self, observer: &'a dyn Fn(Finding)) -> Self {
         self.sensor.observer = Some(observer);
         self
     }
@@ -479,7 +479,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.sensor.receive_gathered(&gathered, draw);
         }
         if let Some(observer) = self.sensor.observer {
-            observer.reach(at.point.position);
+            observer(Finding::Place(at.point.position));
         }
     }
 

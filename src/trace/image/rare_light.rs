@@ -7,7 +7,7 @@ use super::passes::most_at_once;
 use super::stopping::doubled;
 use crate::math::Sampler;
 use crate::trace::World;
-use crate::trace::camera::{Observer, PathTracer};
+use crate::trace::camera::{Finding, PathTracer};
 use crate::trace::contribution::{Contribution, Found};
 use crate::trace::pass::Stage;
 use crate::trace::photon::PassLight;
@@ -28,22 +28,6 @@ pub struct RareLight {
 /// Of all light of the pixel in the replicate, the part that one path must have brought to be what stands out.
 const MUCH: f64 = 0.2;
 
-/// The brightest light that a sample got, and how much it is.
-struct Brightest<'w> {
-    world: &'w World,
-    found: Cell<Option<(f64, Contribution)>>,
-}
-
-impl Observer for Brightest<'_> {
-    fn receive(&self, contribution: &Contribution) {
-        let amount = self.world.amount(contribution.rgb);
-        let most = self.found.get().map_or(0.0, |found| found.0);
-        if amount > most && amount.is_finite() {
-            self.found.set(Some((amount, *contribution)));
-        }
-    }
-}
-
 /// Takes the samples of the pixel that stands out once more, and looks for the brightest light of them, after so many
 /// samples of each replicate. None where it was a photon that the camera saw, which is no sample's.
 pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
@@ -51,7 +35,15 @@ pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLig
 }
 
 fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
-    let observer = Brightest { world, found: Cell::new(None) };
+    // The brightest light that a sample got, and how much it is.
+    let of_sample: Cell<Option<(f64, Contribution)>> = Cell::new(None);
+    let observer = |found: Finding| {
+        let Finding::Light(contribution) = found else { return };
+        let amount = world.amount(contribution.rgb);
+        if amount > of_sample.get().map_or(0.0, |most| most.0) && amount.is_finite() {
+            of_sample.set(Some((amount, *contribution)));
+        }
+    };
     let pixel = outlier.pixel.map(|place| place as i32);
     let (mut all, mut brightest, mut stage) = (0.0, None::<(f64, Contribution)>, Stage::default());
     while stage.before < each {
@@ -73,7 +65,7 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
             let shown = world.amount(sample.rgb);
             all += shown;
             let brighter = |found: &(f64, Contribution)| shown > 0.0 && brightest.is_none_or(|most| found.0 > most.0);
-            brightest = observer.found.take().filter(brighter).or(brightest);
+            brightest = of_sample.take().filter(brighter).or(brightest);
         }
         stage = stage.after_alone(pass.numbers.len() as u32);
     }

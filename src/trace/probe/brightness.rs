@@ -1,15 +1,14 @@
 //! What lights a room, learned from a few camera samples.
 
-use std::cell::RefCell;
-
 use super::clusters::{Cluster, clusters, span};
+use super::findings::found_all_over;
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
-use crate::trace::camera::{Bounce, Observer, PathTracer};
+use crate::trace::camera::{Bounce, Finding};
 use crate::trace::photon::few_vertices;
 use crate::trace::width::in_lanes;
-use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
+use crate::trace::{Transport, World};
 
 /// Camera samples along each side of the image: few that look for a room, and those that look what lights it.
 const FEW: u32 = 24;
@@ -47,28 +46,11 @@ fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
 
 /// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
 pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
-    let film = world.scene.film;
-    let found = Bounces::default();
     let vertices = few_vertices::<N>(world);
-    let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
-    tracer.light_vertices = vertices.as_ref();
-    for (place, [x, y]) in (0..).zip(film.whole().middles_of_cells(side)) {
-        tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
-        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
-            break;
-        }
-    }
-    found.0.into_inner()
-}
-
-/// All bounces that were told of.
-#[derive(Default)]
-struct Bounces(RefCell<Vec<Bounce>>);
-
-impl Observer for Bounces {
-    fn bounce(&self, bounce: Bounce) {
-        self.0.borrow_mut().push(bounce);
-    }
+    found_all_over(world, side, SEED, vertices.as_ref(), |finding| match finding {
+        Finding::Bounce(bounce) => Some(bounce),
+        _ => None,
+    })
 }
 
 fn weight(bounces: &[Bounce]) -> f64 {
