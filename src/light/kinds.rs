@@ -117,6 +117,16 @@ impl<S> Light<S> {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
 
+    /// The direction toward the middle of a sun, or one toward what is bright in the image of a sky, for two random
+    /// numbers; none of other lights.
+    pub(crate) fn bright_direction(&self, u: [f64; 2]) -> Option<DVec3> {
+        match self {
+            Self::Sun(sun) => Some(sun.middle()),
+            Self::Environment(environment) => Some(environment.sample_bright(u)?.0),
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) => None,
+        }
+    }
+
     /// How photons are sent to a ball; none if the light sends none there.
     pub fn beam(&self, ball: &Ball) -> Option<Beam> {
         let beam = match self {

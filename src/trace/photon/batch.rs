@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::follow::{Landing, Start, Surfaces, follow_photon};
-use crate::light::Light;
 use crate::math::{BranchKey, Sampler};
 use crate::trace::media::Media;
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
@@ -69,12 +68,12 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
     let (mut kept, mut places) = (Vec::new(), Vec::new());
     let light = targets.targets[batch.target].light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
-    let extended = !matches!(world.scene.lights[light], Light::Point(_) | Light::Spot(_));
+    let is_extended = world.scene.lights[light].is_extended();
     for photon in batch.first..batch.first + batch.count {
         let key = [batch.target as u32, (photon >> 32) as u32];
         let sampler = Sampler::new(batch.seed, key, photon as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
-        let more = if extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
+        let more = if is_extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
         let guide_uv = targets.guide_uv(batch.target, [u[0], u[1]]);
         let before = kept.len();
         if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {

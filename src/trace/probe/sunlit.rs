@@ -6,14 +6,12 @@ use std::collections::BTreeMap;
 
 use super::brightness::bounces;
 use super::clusters::span;
-use crate::light::{Light, LightId};
+use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Ends;
 use crate::shape::Ball;
-use crate::spectrum::Table;
 use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
-use crate::trace::path_start::place_in_disc;
 use crate::trace::photon::{LightPaths, can_be_followed};
 use crate::trace::width::in_lanes;
 use crate::trace::{Sunlit, World};
@@ -61,7 +59,7 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
     let (last_occluder, counts) = (Cell::new(None), |object| !world.is_see_through(object));
     let lit_along = |(number, &(origin, found)): (u32, &(DVec3, f64))| {
         let u = Sampler::new(world.method.seed ^ SEED, [0, 0], number).four_plain(BranchKey::CAMERA, 0);
-        let direction = toward(light, [u[0], u[1]])?;
+        let direction = light.bright_direction([u[0], u[1]])?;
         let ray = Ray { origin, direction };
         let is_hidden = world.scene.is_occluded_by(&ray, f64::INFINITY, Ends::default(), &last_occluder, &counts);
         (!is_hidden).then_some(((origin, found), direction))
@@ -77,18 +75,9 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
     let beam = light.beam(&Ball { center, radius })?;
     let mut cells = BTreeMap::new();
     for ((origin, found), direction) in lit.into_iter().zip(directions) {
-        if let Some(place) = place_in_disc(light, &beam, &Ray { origin, direction }) {
+        if let Some(place) = beam.place_in_disc(origin, direction) {
             *cells.entry(cell_of(place) as u32).or_insert(0.0) += (found / all) as f32;
         }
     }
     Some(Sunlit { light: id, center, radius, cells: cells.into_iter().collect() })
-}
-
-/// The direction toward the middle of a sun, or one toward what is bright in the image of a sky.
-fn toward(light: &Light<Table>, u: [f64; 2]) -> Option<DVec3> {
-    match light {
-        Light::Sun(sun) => Some(sun.middle()),
-        Light::Environment(sky) => Some(sky.sample_bright(u)?.0),
-        Light::Area(_) | Light::Point(_) | Light::Spot(_) => None,
-    }
 }
