@@ -1,6 +1,6 @@
 //! What lights a room, learned from a few camera samples.
 
-use super::clusters::{Cluster, clusters, span};
+use super::clusters::{Cluster, bounds_of_most, clusters};
 use super::findings::found_all_over;
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::{Quad, Shape};
@@ -20,8 +20,6 @@ const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
 /// Share of the bounces' weight inside rooms from which on it is a picture of a room.
 const ENOUGH: f64 = 0.25;
-/// Share of the weight that may lie beyond each side of the room.
-const BEYOND: f64 = 0.01;
 /// Points that are gathered into places.
 const POINTS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
@@ -71,7 +69,7 @@ fn inside_of(world: &World, bounces: Vec<Bounce>) -> Option<Vec<Bounce>> {
 
 fn learned(mut inside: Vec<Bounce>) -> Option<BrightPlaces> {
     let room = room_of(&inside);
-    inside.retain(|bounce| !(bounce.from.cmplt(room.min).any() || bounce.from.cmpgt(room.max).any()));
+    inside.retain(|bounce| room.contains(bounce.from));
     let lit = inside.iter().filter(|bounce| bounce.light > 0.0);
     let points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light)).collect();
     let step = points.len().div_ceil(POINTS).max(1);
@@ -114,8 +112,7 @@ fn is_inside(world: &World, bounce: &Bounce, sampler: &Sampler) -> bool {
 /// The box in which bounces begin, but for a few.
 fn room_of(inside: &[Bounce]) -> Bounds {
     let from: Vec<(DVec3, f64)> = inside.iter().map(|bounce| (bounce.from, bounce.weight)).collect();
-    let [x, y, z] = DVec3::AXES.map(|axis| span(&from, weight(inside), axis, BEYOND));
-    let (min, max) = (DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]));
+    let Bounds { min, max } = bounds_of_most(&from, weight(inside));
     let margin = 1e-6 * (max - min).length();
     Bounds { min: min - margin, max: max + margin }
 }

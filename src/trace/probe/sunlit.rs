@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::brightness::bounces;
-use super::clusters::span;
+use super::clusters::bounds_of_most;
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Ends;
@@ -22,8 +22,6 @@ const SIDE: u32 = 48;
 const SUNS: usize = 4;
 /// Fewest places that tell where paths should start.
 const FEWEST: usize = 16;
-/// Share of the light that may lie beyond each side of a box around the places.
-const BEYOND: f64 = 0.01;
 /// Of the way to a place, how far off it the ray to the sun starts: it only guides.
 const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
@@ -69,9 +67,8 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
         return None;
     }
     let all: f64 = lit.iter().map(|place| place.1).sum();
-    let [x, y, z] = DVec3::AXES.map(|axis| span(&lit, all, axis, BEYOND));
-    let [low, high] = [0, 1].map(|i| DVec3::new(x[i], y[i], z[i]));
-    let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+    let bounds = bounds_of_most(&lit, all);
+    let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length());
     let beam = light.beam(&Ball { center, radius })?;
     let mut cells = BTreeMap::new();
     for ((origin, found), direction) in lit.into_iter().zip(directions) {
