@@ -116,6 +116,27 @@ impl Sums {
     }
 }
 
+/// Sums over some pixels, of products of what two replicates found.
+#[derive(Default)]
+pub(super) struct Products(pub(super) [[f64; REPLICATES]; REPLICATES]);
+
+impl Products {
+    /// Adds a pixel, with some channels.
+    pub(super) fn add<const C: usize>(&mut self, replicates: &[[f64; C]; REPLICATES]) {
+        for (products, a) in self.0.iter_mut().zip(replicates) {
+            for (product, b) in products.iter_mut().zip(replicates) {
+                *product += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+    }
+
+    /// Adds other pixels.
+    pub(super) fn join(&mut self, other: &Self) {
+        let sums = self.0.iter_mut().flatten();
+        sums.zip(other.0.iter().flatten()).for_each(|(sum, more)| *sum += more);
+    }
+}
+
 impl Replicates {
     /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and
     /// there are shadow catchers, or none.
