@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::follow::{Landing, Start, Surfaces, follow_photon};
 use crate::math::{BranchKey, Sampler};
-use crate::trace::media::Media;
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Walker};
@@ -78,8 +77,7 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
         let before = kept.len();
         if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
-            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
-            let media = world.light_media[light].unwrap_or_else(around);
+            let media = world.media_at_light(light, &emitted.ray);
             let early = photon < targets.targets[batch.target].photons / 2;
             let start = Start { emitted: &emitted, light, media, early };
             follow_photon(&mut walker, start, &draw, &sampler, Surfaces::Smooth, &mut |walker, landing| {

@@ -24,7 +24,6 @@ use crate::material::Material;
 use crate::math::{BranchKey, DVec3, Distribution, Ray, Sampler, seed_of};
 use crate::shape::{Computation, Instructions, SurfacePoint, Vectors};
 use crate::spectrum::{Draw, Lanes};
-use crate::trace::media::{Media, media_of_lights};
 use crate::trace::parallel::in_parallel;
 use crate::trace::path_start::PathStart;
 use crate::trace::stats::Stats;
@@ -148,7 +147,6 @@ pub struct LightPaths<'a> {
     by_flux: Distribution,
     /// Whether all light is theirs.
     finds_all: bool,
-    media: Vec<Option<Media>>,
     places: Vec<Place>,
     /// The middle of vertices, and D.
     scale: OnceLock<(DVec3, f64)>,
@@ -166,16 +164,8 @@ impl<'a> LightPaths<'a> {
         let starts_anywhere = world.path_starts.iter().all(|start| matches!(start, PathStart::Anywhere));
         let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
         let finds_all = starts_anywhere && ends_nowhere;
-        let (media, places) = (media_of_lights(&world.scene), places(world));
-        (by_flux.total() > 0.0).then_some(Self {
-            world,
-            seed,
-            by_flux,
-            finds_all,
-            media,
-            places,
-            scale: OnceLock::new(),
-        })
+        let places = places(world);
+        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, finds_all, places, scale: OnceLock::new() })
     }
 
     /// Whether a layer of lights is asked for whose paths would be so few that it would be too bright or too dark as a
@@ -264,8 +254,7 @@ impl<'a> LightPaths<'a> {
             let emitted = world.path_starts[light].emit(&world.scene, &world.scene.lights[light], u);
             let Some(mut emitted) = emitted else { continue };
             emitted.factor /= drawn.probability;
-            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
-            let media = self.media[light].unwrap_or_else(around);
+            let media = world.media_at_light(light, &emitted.ray);
             let start = Start { emitted: &emitted, light, media, early: true };
             follow_photon(&mut walker, start, &draw, &sampler, over, &mut |_, landing| {
                 vertices.extend(kept(world, landing, false));

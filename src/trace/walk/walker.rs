@@ -88,7 +88,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// What goes straight on through the surface that a path has met; none if nothing does.
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting) -> Option<Onward<N, P>> {
-        straight::straight_on(self.world, draw, path, meeting)
+        let lets_through = self.world.is_see_through(meeting.hit.object);
+        if lets_through { straight::straight_on(self.world, draw, path, meeting) } else { None }
     }
 
     /// The media at the surface that a path has met.
