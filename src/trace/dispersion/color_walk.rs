@@ -66,32 +66,23 @@ impl Walk {
         self.legs.last().map(|leg| &leg.0)
     }
 
-    /// Whether the way on with a share of the light is taken, and not the other one.
-    fn takes(&mut self, share: f64, way: Way) -> bool {
-        let fainter = share.min(1.0 - share);
-        let forks = self.fork == 0.0 && fainter >= LEAST;
-        if forks {
-            self.fork = self.weight * fainter;
-        }
-        self.turns(share, forks && way == Way::FainterFirst)
-    }
-
-    /// Whether the way on with a share of the light is taken at a surface that is met inside a dispersive body.
-    fn takes_inside(&mut self, share: f64, way: Way) -> bool {
-        let fainter = share.min(1.0 - share);
-        let forks = self.fork_inside == 0.0 && fainter >= LEAST;
-        if forks {
-            self.fork_inside = self.weight * fainter;
-        }
-        match way {
-            Way::FainterInside => self.turns(share, forks),
-            _ => self.takes(share, way),
-        }
-    }
-
-    /// Goes on with a share of the light, or without it: the brighter way, or the fainter where it turns.
-    fn turns(&mut self, share: f64, turns: bool) -> bool {
-        let fainter = share.min(1.0 - share);
+    /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
+    /// surface is met inside a dispersive body.
+    fn takes(&mut self, share: f64, is_inside: bool, way: Way) -> bool {
+        let (weight, fainter) = (self.weight, share.min(1.0 - share));
+        let forks = |fork: &mut f64| {
+            let is_first = *fork == 0.0 && fainter >= LEAST;
+            if is_first {
+                *fork = weight * fainter;
+            }
+            is_first
+        };
+        let (first, inside) = (forks(&mut self.fork), is_inside && forks(&mut self.fork_inside));
+        let turns = match way {
+            Way::Brighter => false,
+            Way::FainterFirst => first,
+            Way::FainterInside => inside,
+        };
         self.weight *= if turns { fainter } else { 1.0 - fainter };
         (share > 0.5) != turns
     }
@@ -133,14 +124,9 @@ impl<'a> Colors<'a> {
         index[0] != index[1]
     }
 
-    /// Follows one lane of light.
-    pub fn walk_from_light(&self, lane: usize, ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
-        self.walk(lane, ray, false, media, sampler, way)
-    }
-
     /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
     /// not there for its ray as long as that goes straight on.
-    fn walk(
+    pub fn walk(
         &self,
         lane: usize,
         mut ray: Ray,
@@ -193,7 +179,7 @@ impl<'a> Colors<'a> {
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&meeting.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), way) {
+        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), false, way) {
             return Next::Straight;
         }
         match world.scene.material_of(meeting.hit.object) {
@@ -205,14 +191,16 @@ impl<'a> Colors<'a> {
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
-                if walk.takes(mirrored, way) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
+                if walk.takes(mirrored, false, way) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
                 // The same facet for both colors, as if it were all there is.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.has_single_directions() && walk.takes(GLOSS, way) => Next::Toward(reflect(wo, normal)),
+            material if material.has_single_directions() && walk.takes(GLOSS, false, way) => {
+                Next::Toward(reflect(wo, normal))
+            }
             material => {
                 walk.diffuse = material.scatters_widely();
                 Next::End
@@ -243,8 +231,7 @@ impl<'a> Colors<'a> {
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
         let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
         let inside = indices[0][0] != indices[0][1];
-        let takes = |walk: &mut Walk| if inside { walk.takes_inside(chance, way) } else { walk.takes(chance, way) };
-        let mirrors = n1 != n2 && (takes(walk) || interface.transmittance == 0.0);
+        let mirrors = n1 != n2 && (walk.takes(chance, inside, way) || interface.transmittance == 0.0);
         let (direction, side) = if mirrors {
             (reflect(wo, facet), 1.0)
         } else {

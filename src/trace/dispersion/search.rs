@@ -5,7 +5,7 @@
 //! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
-use super::apart::{is_dark, pixels_apart as colors_apart, share_apart};
+use super::apart::{colors_apart, is_dark, share_apart};
 use super::color_walk::{CameraRays, Colors, Walk, Way};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
