@@ -232,10 +232,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     ) -> First {
         let straight::Met { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, onward);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(weight);
-            if is_met {
-                layers.meet_object(meeting.hit.object);
-            }
+            layers.choose(is_met.then_some(meeting.hit.object), weight);
         }
         *first = is_met.then_some(meeting.point);
         if is_met { First::Here } else { First::Beyond }
