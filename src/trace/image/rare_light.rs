@@ -1,6 +1,7 @@
 //! Which light made a pixel stand out in one of the replicates.
 
 use std::cell::Cell;
+use std::ops::Range;
 
 use super::noise::Outlier;
 use super::passes::most_at_once;
@@ -9,7 +10,7 @@ use crate::math::Sampler;
 use crate::trace::World;
 use crate::trace::camera::{Finding, PathTracer};
 use crate::trace::contribution::{Contribution, Found};
-use crate::trace::pass::Stage;
+use crate::trace::pass::Pass;
 use crate::trace::photon::PassLight;
 use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
@@ -45,15 +46,9 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
         }
     };
     let pixel = outlier.pixel.map(|place| place as i32);
-    let (mut all, mut brightest, mut stage) = (0.0, None::<(f64, Contribution)>, Stage::default());
-    while stage.before < each {
-        // The stages of the render: what light a pass has depends on how long it is. Those after one that the time cut
-        // short may be others.
-        if stage.is_over() {
-            let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, stage.before));
-            stage = Stage::of_replicate(outlier.replicate, stage.before, size.min(each - stage.before));
-        }
-        let pass = stage.pass(world, 0, most_at_once(world));
+    let (mut all, mut brightest) = (0.0, None::<(f64, Contribution)>);
+    for numbers in numbers_of_passes(world, each) {
+        let pass = Pass::of_replicate(world, 0, numbers, outlier.replicate);
         let light = PassLight::<N, P>::new(world, &pass);
         // Layers tell which samples a shadow catcher takes.
         let tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&observer);
@@ -67,11 +62,23 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
             let brighter = |found: &(f64, Contribution)| shown > 0.0 && brightest.is_none_or(|most| found.0 > most.0);
             brightest = of_sample.take().filter(brighter).or(brightest);
         }
-        stage = stage.after_alone(pass.numbers.len() as u32);
     }
     let (_, found) = brightest.filter(|(amount, _)| *amount > MUCH * all)?;
     let name = found.light.map(|light| world.scene.light_groups[light].clone());
     Some(RareLight { name, bounces: found.bounces, found: word(found.found) })
+}
+
+/// The samples of a replicate's passes, up to so many, in the stages of the render: what light a pass has depends on how
+/// long it is. Those after one that the time cut short may be others.
+fn numbers_of_passes(world: &World, each: u32) -> Vec<Range<u32>> {
+    let (mut passes, mut before, most) = (Vec::new(), 0, most_at_once(world));
+    while before < each {
+        let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, before));
+        let end = before + size.min(each - before);
+        passes.extend((before..end).step_by(most as usize).map(|start| start..end.min(start + most)));
+        before = end;
+    }
+    passes
 }
 
 fn word(found: Found) -> &'static str {
