@@ -109,12 +109,10 @@ impl World {
             light_media: Arc::default(),
         };
         if has_media {
-            let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
-            let scene = &world.scene;
-            let around =
-                |seen: bool| Media::around_of(scene, position, forward, &|object| scene.is_seen(object) == seen);
-            (world.camera_media, world.hidden_media) =
-                (around(true), if hides_objects { around(false) } else { Media::default() });
+            let (scene, camera) = (&world.scene, &world.scene.camera);
+            let [position, forward] = [camera.position(), camera.forward()];
+            let around = |seen| Media::around_of(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            (world.camera_media, world.hidden_media) = (around(true), around(false));
         }
         world.choose_photon_targets();
         world
