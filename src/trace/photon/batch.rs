@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::follow::{Landing, Start, Surfaces, follow_photon};
+use super::follow::{Landing, Photon, Surfaces, follow_photon};
 use crate::math::{BranchKey, Sampler};
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
@@ -36,7 +36,7 @@ pub struct Sent<T> {
 }
 
 /// What is kept of a photon that lands.
-type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>) + 'a;
+type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &mut Vec<T>) + 'a;
 
 /// All photons of some targets, after those of so many passes, batch by batch.
 pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
@@ -68,21 +68,19 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
     let light = targets.targets[batch.target].light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
     let is_extended = world.scene.lights[light].is_extended();
-    for photon in batch.first..batch.first + batch.count {
-        let key = [batch.target as u32, (photon >> 32) as u32];
-        let sampler = Sampler::new(batch.seed, key, photon as u32);
+    for number in batch.first..batch.first + batch.count {
+        let key = [batch.target as u32, (number >> 32) as u32];
+        let sampler = Sampler::new(batch.seed, key, number as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
         let more = if is_extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
         let guide_uv = targets.guide_uv(batch.target, [u[0], u[1]]);
         let before = kept.len();
         if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
-            let media = world.media_at_light(light, &emitted.ray);
-            let early = photon < targets.targets[batch.target].photons / 2;
-            let start = Start { emitted: &emitted, light, media, early };
-            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::Smooth, &mut |walker, landing| {
-                land(walker, landing, &sampler, &mut kept);
-            });
+            let (draw, sampler, over) = (&draw, &sampler, Surfaces::Smooth);
+            let early = number < targets.targets[batch.target].photons / 2;
+            let photon = Photon { emitted: &emitted, light, draw, sampler, over, early };
+            follow_photon(&mut walker, &photon, &mut |walker, landing| land(walker, landing, &mut kept));
         }
         if learns {
             places.push((guide_uv, kept.len() > before));

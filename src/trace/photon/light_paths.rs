@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::batch::{PHOTONS, batches_of_pass, send};
-use super::follow::{Landing, Start, Surfaces, follow_photon};
+use super::follow::{Landing, Photon, Surfaces, follow_photon};
 use super::light_vertices::{LightVertex, LightVertices, holds_vertices};
 use super::usefulness::{Place, places, usefulness};
 use crate::film::Layer;
@@ -131,7 +131,7 @@ impl<'a> LightPaths<'a> {
             let seed = seed_of(self.seed ^ PHOTON_SEED, set.into());
             let batches = batches_of_pass(&targets, 0, seed);
             let of_batch = |number: usize| {
-                send(self.world, &targets, batches[number], false, &|_, landing: &Landing<N, P>, _, vertices| {
+                send(self.world, &targets, batches[number], false, &|_, landing: &Landing<N, P>, vertices| {
                     vertices.extend(kept(self.world, landing, true));
                 })
             };
@@ -187,11 +187,8 @@ impl<'a> LightPaths<'a> {
             let emitted = world.path_starts[light].emit(&world.scene, &world.scene.lights[light], u);
             let Some(mut emitted) = emitted else { continue };
             emitted.factor /= drawn.probability;
-            let media = world.media_at_light(light, &emitted.ray);
-            let start = Start { emitted: &emitted, light, media, early: true };
-            follow_photon(&mut walker, start, &draw, &sampler, over, &mut |_, landing| {
-                vertices.extend(kept(world, landing, false));
-            });
+            let photon = Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over, early: true };
+            follow_photon(&mut walker, &photon, &mut |_, landing| vertices.extend(kept(world, landing, false)));
         }
         (vertices, walker.stats)
     }
@@ -218,11 +215,11 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 /// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over
 /// those from lights that send photons is left to photons.
 fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
-    let Landing { path, at, start } = landing;
+    let Landing { path, at, photon } = landing;
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
-    let is_left = !is_of_photon && world.has_map() && world.sends_photons(start.light) && came_over_smooth;
+    let is_left = !is_of_photon && world.has_map() && world.sends_photons(photon.light) && came_over_smooth;
     let usable = holds_vertices(world, at.object, at.point)
         && !is_left
         && !leaving.is_zero()
@@ -230,7 +227,7 @@ fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon:
     // From the camera, a path leaves one diffuse surface more to come over smooth ones to the light.
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
     let SurfacePoint { position, error, normal, .. } = *at.point;
-    let (error, flat, light) = (normal.abs().dot(error), at.flat, start.light);
+    let (error, flat, light) = (normal.abs().dot(error), at.flat, photon.light);
     let (surfaces, parted) = (path.surfaces(), path.parted);
     usable.then_some(LightVertex { position, error, flat, leaving, light, surfaces, diffuse, is_of_photon, parted })
 }
