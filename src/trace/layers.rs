@@ -33,8 +33,8 @@ pub(super) struct Layers {
     caught: Option<usize>,
     /// The bands of a spectral image, if one is asked for.
     pub(super) spectrum: Option<Spectrum>,
-    /// Whether any of them is of a lobe of the first surface.
-    lobes_apart: bool,
+    /// Whether light is told apart by the lobe of the first surface.
+    pub(super) lobes_apart: bool,
     /// A light of radiance 1, by which albedo, lobes and residual are looked at.
     pub(super) white: Option<White>,
     /// How bright red, green and blue of 1 are.
@@ -221,12 +221,6 @@ impl Layers {
             let more = &row[at..at + OF_CAUGHT];
             sums[at..at + OF_CAUGHT].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
-    }
-
-    /// Whether light is told apart by the lobe of the first surface.
-    #[inline]
-    pub(super) fn tell_lobes_apart(&self) -> bool {
-        self.lobes_apart
     }
 
     /// Adds light to a row by the lobe of the first surface.

@@ -325,7 +325,7 @@ impl World {
 
     /// Whether photons are sent to some of the surfaces that have no end.
     pub fn reaches_without_end(&self) -> bool {
-        self.photon_targets.as_ref().is_some_and(PhotonTargets::reach_without_end)
+        self.photon_targets.as_ref().is_some_and(|targets| targets.reach.is_some())
     }
 
     /// Whether paths gather photons where the camera does not see them straight.

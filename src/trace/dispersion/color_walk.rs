@@ -113,11 +113,7 @@ pub struct Colors<'a> {
     pub draw: Draw<4>,
 }
 
-impl<'a> Colors<'a> {
-    pub fn new(world: &'a World) -> Self {
-        Self { world, draw: Draw::fixed(2) }
-    }
-
+impl Colors<'_> {
     /// Whether a medium has two indices.
     pub fn disperses(&self, glass: &Dielectric<Table>) -> bool {
         let index: [f64; 4] = self.draw.read_exact(&glass.index);
@@ -213,9 +209,8 @@ impl<'a> Colors<'a> {
         let Surface { ray, meeting: Meeting { hit, point }, u, lane, way } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
-        let front = point.normal.dot(ray.direction) < 0.0;
         let material = world.scene.objects[hit.object as usize].material;
-        let (boundary, _) = walk.media.at_surface(&world.scene, material, front);
+        let (boundary, _) = walk.media.at_surface(&world.scene, material, point, ray.direction);
         if boundary.here == boundary.beyond {
             walk.media = walk.media.beyond(&boundary);
             return Next::Straight;

@@ -65,7 +65,8 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
 ) -> Sent<T> {
     let mut walker = Walker::<N, P>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
-    let light = targets.targets[batch.target].light;
+    let target = &targets.targets[batch.target];
+    let light = target.light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
     let is_extended = world.scene.lights[light].is_extended();
     for number in batch.first..batch.first + batch.count {
@@ -73,12 +74,12 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
         let sampler = Sampler::new(batch.seed, key, number as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
         let more = if is_extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
-        let guide_uv = targets.guide_uv(batch.target, [u[0], u[1]]);
+        let guide_uv = target.guide.sample([u[0], u[1]]);
         let before = kept.len();
         if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
             let (draw, sampler, over) = (&draw, &sampler, Surfaces::Smooth);
-            let early = number < targets.targets[batch.target].photons / 2;
+            let early = number < target.photons / 2;
             let photon = Photon { emitted: &emitted, light, draw, sampler, over, early };
             follow_photon(&mut walker, &photon, &mut |walker, landing| land(walker, landing, &mut kept));
         }

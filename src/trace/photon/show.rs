@@ -176,7 +176,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, viewed, arrival.wo);
         let lobe = || if *same { reflected() } else { FirstLobe::Transmitted };
-        let first = world.layers.tell_lobes_apart().then(lobe);
+        let first = world.layers.lobes_apart.then(lobe);
         let arrived = Arrived { source: landing.photon.light, draw: arrival.draw, lanes, parted };
         Some(self.splat(&arrived, &polarized, parted, first))
     }
@@ -206,7 +206,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
-        let first = world.layers.tell_lobes_apart().then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
+        let first = world.layers.lobes_apart.then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
         Some(self.splat(&arrived, &polarized, parted, first))
     }
 

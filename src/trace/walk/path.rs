@@ -221,7 +221,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         wi: DVec3,
         crosses: bool,
     ) -> Option<FirstLobe> {
-        if self.bounces > 0 || !world.layers.tell_lobes_apart() {
+        if self.bounces > 0 || !world.layers.lobes_apart {
             return self.first;
         }
         Some(match crosses {
