@@ -19,7 +19,7 @@ const SURFACE: u32 = 7;
 
 /// Which way is followed where light may go two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Choice {
     /// The brighter one.
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
@@ -68,7 +68,7 @@ impl Walk {
 
     /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
     /// surface is met inside a dispersive body.
-    fn takes(&mut self, share: f64, is_inside: bool, way: Way) -> bool {
+    fn takes(&mut self, share: f64, is_inside: bool, choice: Choice) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
         let forks = |fork: &mut f64| {
             let is_first = *fork == 0.0 && fainter >= LEAST;
@@ -78,10 +78,10 @@ impl Walk {
             is_first
         };
         let (first, inside) = (forks(&mut self.fork), is_inside && forks(&mut self.fork_inside));
-        let turns = match way {
-            Way::Brighter => false,
-            Way::FainterFirst => first,
-            Way::FainterInside => inside,
+        let turns = match choice {
+            Choice::Brighter => false,
+            Choice::FainterFirst => first,
+            Choice::FainterInside => inside,
         };
         self.weight *= if turns { fainter } else { 1.0 - fainter };
         (share > 0.5) != turns
@@ -95,7 +95,7 @@ struct Surface<'a> {
     meeting: &'a Meeting,
     u: [f64; 4],
     lane: usize,
-    way: Way,
+    choice: Choice,
 }
 
 /// How a walk goes on at a surface.
@@ -129,7 +129,7 @@ impl Colors<'_> {
         mut is_from_camera: bool,
         media: Media,
         sampler: &Sampler,
-        way: Way,
+        choice: Choice,
     ) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = Walk {
@@ -153,7 +153,7 @@ impl Colors<'_> {
             let Some(met) = hit else { return walk };
             let meeting = Meeting::new(self.world, &ray, met);
             key = key.child(0);
-            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, way };
+            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, choice };
             match self.beyond(&mut walk, &at) {
                 Next::Straight => ray = meeting.point.leave(ray.direction),
                 Next::Toward(direction) => (ray, is_from_camera) = (meeting.point.leave(direction), false),
@@ -171,11 +171,11 @@ impl Colors<'_> {
 
     /// The way on from a surface.
     fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
-        let Surface { ray, meeting, u, way, .. } = *at;
+        let Surface { ray, meeting, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&meeting.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), false, way) {
+        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), false, choice) {
             return Next::Straight;
         }
         match world.scene.material_of(meeting.hit.object) {
@@ -187,14 +187,14 @@ impl Colors<'_> {
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
-                if walk.takes(mirrored, false, way) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
+                if walk.takes(mirrored, false, choice) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
                 // The same facet for both colors, as if it were all there is.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.has_single_directions() && walk.takes(GLOSS, false, way) => {
+            material if material.has_single_directions() && walk.takes(GLOSS, false, choice) => {
                 Next::Toward(reflect(wo, normal))
             }
             material => {
@@ -206,7 +206,7 @@ impl Colors<'_> {
 
     /// The way on from the surface of a clear body.
     fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
-        let Surface { ray, meeting: Meeting { hit, point }, u, lane, way } = *at;
+        let Surface { ray, meeting: Meeting { hit, point }, u, lane, choice } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         let material = world.scene.objects[hit.object as usize].material;
@@ -226,7 +226,7 @@ impl Colors<'_> {
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
         let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
         let inside = indices[0][0] != indices[0][1];
-        let mirrors = n1 != n2 && (walk.takes(chance, inside, way) || interface.transmittance == 0.0);
+        let mirrors = n1 != n2 && (walk.takes(chance, inside, choice) || interface.transmittance == 0.0);
         let (direction, side) = if mirrors {
             (reflect(wo, facet), 1.0)
         } else {
@@ -241,7 +241,7 @@ impl Colors<'_> {
 pub struct CameraRays<'a> {
     pub colors: &'a Colors<'a>,
     pub sampler: Sampler,
-    pub way: Way,
+    pub choice: Choice,
 }
 
 impl CameraRays<'_> {
@@ -249,7 +249,7 @@ impl CameraRays<'_> {
     pub fn walk(&self, at: DVec2, lane: usize) -> Walk {
         let world = self.colors.world;
         let ray = world.scene.camera.ray(at);
-        self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.way)
+        self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.choice)
     }
 }
 
