@@ -68,8 +68,8 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
     Some(RareLight { name, bounces: found.bounces, found: word(found.found) })
 }
 
-/// The samples of a replicate's passes, up to so many, in the stages of the render: what light a pass has depends on how
-/// long it is. Those after one that the time cut short may be others.
+/// The samples of a replicate's passes, up to so many, in the stages of the render: what light a pass has depends on
+/// how long it is. Those after one that the time cut short may be others.
 fn numbers_of_passes(world: &World, each: u32) -> Vec<Range<u32>> {
     let (mut passes, mut before, most) = (Vec::new(), 0, most_at_once(world));
     while before < each {
