@@ -30,6 +30,7 @@ pub enum Choice {
 }
 
 /// Where a ray of one color went.
+#[derive(Default)]
 pub struct Walk {
     /// Its straight pieces: where each starts and how long it is, infinite where it leaves the scene.
     pub legs: Vec<(Ray, f64)>,
@@ -132,17 +133,7 @@ impl Colors<'_> {
         choice: Choice,
     ) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
-        let mut walk = Walk {
-            legs,
-            met,
-            end: None,
-            diffuse: false,
-            dispersive: false,
-            weight: 1.0,
-            fork: 0.0,
-            fork_inside: 0.0,
-            media,
-        };
+        let mut walk = Walk { legs, met, weight: 1.0, media, ..Walk::default() };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
             let hit = match is_from_camera {

@@ -174,8 +174,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let polarized = path.polarization.seen(at, viewed, &on_its_way, world, &self.back());
         let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
-        let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, viewed, arrival.wo);
-        let lobe = || if *same { reflected() } else { FirstLobe::Transmitted };
+        let white = world.layers.white.as_ref();
+        let lobe = || FirstLobe::scattered(white, material, at.lobes, viewed, arrival.wo, !same);
         let first = world.layers.lobes_apart.then(lobe);
         let arrived = Arrived { source: landing.photon.light, draw: arrival.draw, lanes, parted };
         Some(self.splat(&arrived, &polarized, parted, first))

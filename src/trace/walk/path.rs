@@ -224,10 +224,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         if self.bounces > 0 || !world.layers.lobes_apart {
             return self.first;
         }
-        Some(match crosses {
-            true => FirstLobe::Transmitted,
-            false => FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi),
-        })
+        Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, arrival, wi, crosses))
     }
 
     /// Its ray, as it arrives at a surface.
