@@ -70,8 +70,7 @@ pub fn follow_photon<const N: usize, P: Polarization<N>>(
     photon: &Photon<N>,
     land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
-    let ray = photon.emitted.ray;
-    let path = Path::from_light(walker.world, photon.draw, ray, walker.world.media_at_light(photon.light, &ray));
+    let path = Path::from_light(walker.world, photon.draw, photon.emitted.ray, photon.light);
     *walker.pending.add(|| path) = path;
     while let Some(mut path) = walker.pending.take() {
         advance(walker, &mut path, photon, land);
