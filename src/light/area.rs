@@ -121,8 +121,7 @@ impl<S> Area<S> {
 
     /// Whether the backs of parts may be met first: never from outside of a closed body.
     fn shows_backs(&self, from: DVec3) -> bool {
-        let outside = |bounds: Bounds| from.cmplt(bounds.min).any() || from.cmpgt(bounds.max).any();
-        self.sides == Sides::Both && !self.closed.is_some_and(outside)
+        self.sides == Sides::Both && self.closed.is_none_or(|bounds| bounds.contains(from))
     }
 
     /// Whether one of several parts or cells is drawn first, which uses up digits of a random number.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, SkyPolarization, Spot, Sun};
-use crate::math::{DVec3, Ray, ball_surface, unit};
+use crate::math::{DVec3, Ray};
 use crate::shape::{Ball, Crossing, Sides, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
@@ -117,6 +117,16 @@ impl<S> Light<S> {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
 
+    /// The direction toward the middle of a sun, or one toward what is bright in the image of a sky, for two random
+    /// numbers; none of other lights.
+    pub(crate) fn bright_direction(&self, u: [f64; 2]) -> Option<DVec3> {
+        match self {
+            Self::Sun(sun) => Some(sun.middle()),
+            Self::Environment(environment) => Some(environment.sample_bright(u)?.0),
+            Self::Area(_) | Self::Point(_) | Self::Spot(_) => None,
+        }
+    }
+
     /// How photons are sent to a ball; none if the light sends none there.
     pub fn beam(&self, ball: &Ball) -> Option<Beam> {
         let beam = match self {
@@ -156,17 +166,8 @@ impl<S> Light<S> {
     pub fn emit(&self, u: [f64; 4]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.emit(u),
-            Self::Point(point) => {
-                let ray = Ray { origin: point.position.into(), direction: ball_surface([u[0], u[1]]) };
-                Some(LeSample { ray, factor: 4.0 * PI, surface: None })
-            }
-            Self::Spot(spot) => {
-                let cone = spot.cone();
-                let direction = unit(cone.sample_uniform([u[0], u[1]]));
-                let factor = spot.part(direction) / cone.uniform_pdf();
-                let ray = Ray { origin: spot.position.into(), direction };
-                (factor > 0.0).then_some(LeSample { ray, factor, surface: None })
-            }
+            Self::Point(point) => Some(point.emit([u[0], u[1]])),
+            Self::Spot(spot) => spot.emit([u[0], u[1]]),
             Self::Environment(_) | Self::Sun(_) => None,
         }
     }

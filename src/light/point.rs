@@ -1,6 +1,7 @@
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-use super::Beam;
+use super::{Beam, LeSample};
+use crate::math::{Ray, ball_surface};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
@@ -26,5 +27,10 @@ impl<S> Point<S> {
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let cone = ball.cone_from(self.position.into());
         Beam { ball: *ball, cone, flux: TAU * cone.one_minus_cos, is_apart: true }
+    }
+
+    pub(super) fn emit(&self, u: [f64; 2]) -> LeSample {
+        let ray = Ray { origin: self.position.into(), direction: ball_surface(u) };
+        LeSample { ray, factor: 4.0 * PI, surface: None }
     }
 }

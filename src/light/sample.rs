@@ -68,13 +68,18 @@ impl Beam {
         Some(Ray { origin, direction: -toward })
     }
 
+    /// Where the way from a point along a unit vector toward the sky runs through the disc across the ball, as a place
+    /// of the unit square; none beside it.
+    pub(crate) fn place_in_disc(&self, from: DVec3, toward: DVec3) -> Option<[f64; 2]> {
+        let local = Frame::about(toward).to_local(from - self.ball.center) / self.ball.radius;
+        square_around_disk([local.x, local.y])
+    }
+
     /// How densely `ray_from_sky` draws a ray of a direction from places of a density of their own, per unit of area
     /// across its way; 0 beside the ball.
     pub(super) fn pdf_from_sky(&self, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
-        let Ball { center, radius } = self.ball;
-        let local = Frame::about(-ray.direction).to_local(ray.origin - center) / radius;
-        let place = square_around_disk([local.x, local.y]);
-        place.map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
+        let radius = self.ball.radius;
+        self.place_in_disc(ray.origin, -ray.direction).map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
     }
 }
 

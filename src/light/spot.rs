@@ -1,7 +1,7 @@
 use std::f64::consts::TAU;
 
-use super::Beam;
-use crate::math::{Cone, DVec3, unit};
+use super::{Beam, LeSample};
+use crate::math::{Cone, DVec3, Ray, unit};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
@@ -65,6 +65,14 @@ impl<S> Spot<S> {
         let misses = !toward.is_all() && between > half(&toward) + half(&own);
         let cone = if own.one_minus_cos < toward.one_minus_cos { own } else { toward };
         Beam { ball: *ball, cone, flux: if misses { 0.0 } else { TAU * cone.one_minus_cos }, is_apart: true }
+    }
+
+    pub(super) fn emit(&self, u: [f64; 2]) -> Option<LeSample> {
+        let cone = self.cone();
+        let direction = unit(cone.sample_uniform(u));
+        let factor = self.part(direction) / cone.uniform_pdf();
+        let ray = Ray { origin: self.position.into(), direction };
+        (factor > 0.0).then_some(LeSample { ray, factor, surface: None })
     }
 }
 

@@ -42,6 +42,11 @@ impl Bounds {
         self.min.cmpgt(self.max).any()
     }
 
+    /// Whether a point lies inside or on it.
+    pub(crate) fn contains(&self, point: DVec3) -> bool {
+        !(point.cmplt(self.min).any() || point.cmpgt(self.max).any())
+    }
+
     /// Half the surface.
     pub fn half_area(&self) -> f64 {
         let DVec3 { x, y, z } = (self.max - self.min).max(DVec3::ZERO);

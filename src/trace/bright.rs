@@ -96,8 +96,7 @@ impl Bright {
 
     /// How bounces are drawn at a point of a surface of the given unit normal; none where they are not aimed.
     pub(super) fn at(&self, from: DVec3, normal: DVec3) -> Option<Aiming<'_>> {
-        let Bounds { min, max } = self.within;
-        if from.cmplt(min).any() || from.cmpgt(max).any() {
+        if !self.within.contains(from) {
             return None;
         }
         // About what each brings: radiance x solid angle x cosine, bounded nearby.

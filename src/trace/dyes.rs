@@ -47,15 +47,14 @@ impl Dyes {
             let mut distinct = Distinct::default();
             sources().map(|source| distinct.of(source, |source| basis.excitation(dye, source))).collect()
         };
-        let shares = dyes.iter().map(|dye| {
+        let share = |dye: &Dye| {
             let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);
             let mean = absorbed.bins().iter().sum::<f64>() / absorbed.bins().len() as f64;
             (dye.quantum_yield * mean).max(LEAST)
-        });
-        let shares = shares.collect();
+        };
         let reflectance = basis.tabulate(Quantity::Reflectance, &1.0.into());
         let white = Material::Diffuse(Diffuse { reflectance, fluorescence: None });
-        let excitations = dyes.iter().map(of_dye).collect();
+        let (excitations, shares) = (dyes.iter().map(of_dye).collect(), dyes.iter().map(share).collect());
         let responses = dyes.iter().map(|dye| basis.response(&dye.emission)).collect();
         Some((Self { first, excitations, shares, lights: lights.len(), white }, responses))
     }

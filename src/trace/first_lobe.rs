@@ -17,15 +17,20 @@ pub(super) enum FirstLobe {
 }
 
 impl FirstLobe {
-    /// Of a material that reflects light from the unit vector `wi` in every direction. Where it has both lobes, they
-    /// are held against each other in a white light: exactly where each lane is a channel of the film.
-    pub(super) fn reflected<const N: usize>(
+    /// Of a material that scatters light from the unit vector `wi` in every direction, through the surface or not.
+    /// Where it reflects by both lobes, they are held against each other in a white light: exactly where each lane is a
+    /// channel of the film.
+    pub(super) fn scattered<const N: usize>(
         white: Option<&White>,
         material: &Material<Table>,
         lobes: Lobes,
         arrival: &Arrival<N>,
         wi: DVec3,
+        crosses: bool,
     ) -> Self {
+        if crosses {
+            return Self::Transmitted;
+        }
         let diffuse = match (lobes.intersects(Lobes::DIFFUSE_REFLECTION), lobes.intersects(Lobes::GLOSSY_REFLECTION)) {
             (false, _) => [0.0; 3],
             (true, false) => [1.0; 3],

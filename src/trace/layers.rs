@@ -33,8 +33,8 @@ pub(super) struct Layers {
     caught: Option<usize>,
     /// The bands of a spectral image, if one is asked for.
     pub(super) spectrum: Option<Spectrum>,
-    /// Whether any of them is of a lobe of the first surface.
-    lobes_apart: bool,
+    /// Whether light is told apart by the lobe of the first surface.
+    pub(super) lobes_apart: bool,
     /// A light of radiance 1, by which albedo, lobes and residual are looked at.
     pub(super) white: Option<White>,
     /// How bright red, green and blue of 1 are.
@@ -62,20 +62,18 @@ fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Light that a pixel's shadow catchers send to the camera.
-pub(super) struct Caught {
+/// Light that a pixel's shadow catchers send to the camera, as a color, or as luminance; or sums of it.
+#[derive(Clone, Copy)]
+pub(super) struct Caught<T> {
     /// With all objects.
-    with: [f64; 3],
+    pub(super) with: T,
     /// With those alone that are in the plate or light it.
-    without: [f64; 3],
+    pub(super) without: T,
     /// The share of the pixel that they cover.
-    share: f64,
+    pub(super) share: f64,
 }
 
-impl Caught {
-    /// Two colors and a share.
-    const NUMBERS: usize = 7;
-
+impl Caught<[f64; 3]> {
     /// The part of each channel that other objects take, times the share of the pixel; negative where they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
         [0, 1, 2].map(|channel| self.share * taken(self.with[channel], self.without[channel]))
@@ -87,18 +85,7 @@ fn taken(with: f64, without: f64) -> f64 {
     if without > 0.0 { 1.0 - with / without } else { 0.0 }
 }
 
-/// The luminance that shadow catchers send to the camera, or sums of it.
-#[derive(Clone, Copy)]
-pub(super) struct CaughtLuminance {
-    /// With all objects.
-    pub(super) with: f64,
-    /// With those alone that are in the plate or light it.
-    pub(super) without: f64,
-    /// The share of the pixel that they cover.
-    pub(super) share: f64,
-}
-
-impl CaughtLuminance {
+impl Caught<f64> {
     /// A sum, without what it was before.
     pub(super) fn since(self, before: Self) -> Self {
         Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
@@ -111,6 +98,8 @@ impl CaughtLuminance {
     }
 }
 
+/// Numbers of shadow catchers: two colors and a share.
+const OF_CAUGHT: usize = 7;
 /// Numbers of polarization: the luminance of each Stokes component.
 pub(super) const STOKES: usize = 4;
 /// Numbers of a half of the samples: a color, and how many samples they are.
@@ -145,7 +134,7 @@ impl Layers {
         }
         if scene.has_shadow_catchers() {
             layers.caught = Some(layers.numbers);
-            layers.numbers += Caught::NUMBERS;
+            layers.numbers += OF_CAUGHT;
         }
         if let Some(bands) = scene.format.spectral {
             layers.spectrum = Spectrum::new(scene, basis, bands, layers.numbers);
@@ -213,7 +202,7 @@ impl Layers {
     }
 
     /// What shadow catchers show, by the sums of so many samples and what photons show.
-    pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: f64) -> Option<Caught> {
+    pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: f64) -> Option<Caught<[f64; 3]>> {
         let at = self.caught?;
         let mean = |number: usize| sums[at + number] / kept + shown.get(at + number).copied().unwrap_or_default();
         let [with, without] = [0, 3].map(|first| [0, 1, 2].map(|channel| mean(first + channel)));
@@ -221,23 +210,17 @@ impl Layers {
     }
 
     /// The luminance of what shadow catchers send.
-    pub(super) fn luminance_caught(&self, caught: &Caught) -> CaughtLuminance {
+    pub(super) fn luminance_caught(&self, caught: &Caught<[f64; 3]>) -> Caught<f64> {
         let [with, without] = [&caught.with, &caught.without].map(|rgb| self.luminance_of(rgb));
-        CaughtLuminance { with, without, share: caught.share }
+        Caught { with, without, share: caught.share }
     }
 
     /// Adds the numbers of shadow catchers to sums.
     pub(super) fn add_caught(&self, sums: &mut [f64], row: &[f64]) {
         if let Some(at) = self.caught {
-            let more = &row[at..at + Caught::NUMBERS];
-            sums[at..at + Caught::NUMBERS].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+            let more = &row[at..at + OF_CAUGHT];
+            sums[at..at + OF_CAUGHT].iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
         }
-    }
-
-    /// Whether light is told apart by the lobe of the first surface.
-    #[inline]
-    pub(super) fn tell_lobes_apart(&self) -> bool {
-        self.lobes_apart
     }
 
     /// Adds light to a row by the lobe of the first surface.

@@ -4,7 +4,7 @@ use crate::light::{Light, LightId};
 use crate::material::{Dielectric, Index};
 use crate::math::{DVec3, Frame, Ray, unit};
 use crate::scene::{MaterialId, Scene};
-use crate::shape::{Plane, Shape};
+use crate::shape::{Plane, Shape, SurfacePoint};
 use crate::spectrum::{Draw, Table};
 
 /// Different media that may overlap in one place: a lens of varying index is made of many shells.
@@ -128,10 +128,16 @@ impl Media {
         if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
-    /// What a ray meets that crosses a surface of any material, which may bound no medium; and whether the bodies
-    /// around the ray fit to it.
-    pub(super) fn at_surface(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> (Boundary, bool) {
-        let here = self.inside(scene);
+    /// What a ray of a direction meets that crosses a surface of any material, which may bound no medium; and whether
+    /// the bodies around the ray fit to it.
+    pub(super) fn at_surface(
+        &self,
+        scene: &Scene<Table>,
+        material: MaterialId,
+        point: &SurfacePoint,
+        direction: DVec3,
+    ) -> (Boundary, bool) {
+        let (here, enters) = (self.inside(scene), point.normal.dot(direction) < 0.0);
         let same = Boundary { here, beyond: here, crossing: None };
         if scene.materials[material as usize].material.medium().is_none() {
             return (same, true);

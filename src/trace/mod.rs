@@ -54,7 +54,6 @@ mod replicates;
 mod spectrum_sample;
 mod stats;
 mod walk;
-mod watch;
 mod white;
 mod width;
 mod world;

@@ -30,6 +30,11 @@ impl Pass {
         Self { number, numbers, seed: world.method.seed, replicate: None }
     }
 
+    /// One of a replicate.
+    pub(super) fn of_replicate(world: &World, number: u32, numbers: Range<u32>, replicate: u32) -> Self {
+        Self { number, numbers, seed: seed_of(world.method.seed, replicate.into()), replicate: Some(replicate) }
+    }
+
     /// One whose photons alone are looked at, by a pilot.
     pub(super) fn of_photons_alone(world: &World, number: u32) -> Self {
         Self::of_one_render(world, number, 0..0)
@@ -82,17 +87,11 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    /// Of one replicate alone: so many samples after others.
-    pub(super) fn of_replicate(replicate: u32, before: u32, size: u32) -> Self {
-        Self { before, size, replicate, taken: 0 }
-    }
-
     /// The next pass, of at most so many samples.
     pub(super) fn pass(self, world: &World, number: u32, most: u32) -> Pass {
         let start = self.before + self.taken;
         let end = self.before + self.size.min(self.taken + most);
-        let seed = seed_of(world.method.seed, self.replicate.into());
-        Pass { number, numbers: start..end, seed, replicate: Some(self.replicate) }
+        Pass::of_replicate(world, number, start..end, self.replicate)
     }
 
     /// After so many more samples of the replicate whose turn it is.
@@ -105,20 +104,6 @@ impl Stage {
             return Self { before: self.before + self.size, ..Self::default() };
         }
         self
-    }
-
-    /// After so many more samples of one replicate alone.
-    pub(super) fn after_alone(self, samples: u32) -> Self {
-        let Self { before, size, taken, .. } = self;
-        if taken + samples < size {
-            return Self { taken: taken + samples, ..self };
-        }
-        Self { before: before + size, ..Self::default() }
-    }
-
-    /// Whether the next one is yet to be begun.
-    pub(super) fn is_over(self) -> bool {
-        self.size == 0
     }
 
     /// Samples of a pixel that a replicate has, but for the pass under way.

@@ -5,7 +5,6 @@
 //! behind. Light beside the disc is left to paths from the camera: of every ray to the sun it is known whether it runs
 //! through the disc.
 
-use std::cell::Cell;
 use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
@@ -77,8 +76,8 @@ impl PathStart {
         match self {
             Self::Nowhere => false,
             Self::Anywhere => true,
-            Self::Beam(beam) => {
-                light.sends_photons_from(ray.direction) && place_in_disc(light, &beam.beam, ray).is_some()
+            Self::Beam(SkyBeam { beam, .. }) => {
+                light.sends_photons_from(ray.direction) && beam.place_in_disc(ray.origin, ray.direction).is_some()
             }
         }
     }
@@ -113,14 +112,4 @@ impl SkyBeam {
         let ray = started_outside(scene, &self.world, &sample.ray);
         factor.is_finite().then_some(LeSample { ray, factor, ..sample })
     }
-}
-
-/// Where a ray to a sun or a sky runs through the disc of a beam, as a place of the unit square; none beside it.
-pub(super) fn place_in_disc(light: &Light<Table>, beam: &Beam, ray: &Ray) -> Option<[f64; 2]> {
-    let (place, ray) = (Cell::new(None), Ray { direction: -ray.direction, ..*ray });
-    light.pdf_le(beam, &LeSample { ray, factor: 1.0, surface: None }, |uv| {
-        place.set(Some(uv));
-        1.0
-    });
-    place.get()
 }

@@ -2,7 +2,7 @@
 
 use crate::light::{Light, LightId};
 use crate::material::Material;
-use crate::math::{DVec2, DVec3, Ray};
+use crate::math::{Bounds, DVec2, DVec3, Ray};
 use crate::scene::{Primitive, Scene};
 use crate::shape::Ball;
 use crate::spectrum::Table;
@@ -113,8 +113,7 @@ fn walk(
 /// The way from a place to the middle of a light; to the sky, beyond all surfaces.
 fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     match light {
-        Light::Sun(sun) => sun.middle() * FAR,
-        Light::Environment(sky) => sky.sample_bright([0.5; 2]).map_or(DVec3::ZERO, |bright| bright.0 * FAR),
+        Light::Sun(_) | Light::Environment(_) => light.bright_direction([0.5; 2]).map_or(DVec3::ZERO, |sky| sky * FAR),
         Light::Area(area) => area.visible_part().map_or(DVec3::ZERO, |part| part.0.center - place),
         Light::Point(point) => DVec3::from(point.position) - place,
         Light::Spot(spot) => DVec3::from(spot.position) - place,
@@ -156,10 +155,8 @@ pub(super) fn parts(places: &[Place], whole: &Ball, most: usize) -> Vec<Part> {
 
 /// A ball around some places, so many times as large as it must be.
 fn around(places: &[Place], wider: f64) -> Ball {
-    let at = || places.iter().map(|place| place.at);
-    let (low, high) = (at().reduce(DVec3::min), at().reduce(DVec3::max));
-    let (low, high) = (low.unwrap_or_default(), high.unwrap_or_default());
-    Ball { center: 0.5 * (low + high), radius: 0.5 * wider * (high - low).length() }
+    let bounds = Bounds::around(places.iter().map(|place| place.at));
+    Ball { center: bounds.center(), radius: 0.5 * wider * (bounds.max - bounds.min).length() }
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ pub(super) struct PhotonTarget {
     is_part: bool,
     beam: Beam,
     /// Which of the beam's ways are worth it.
-    guide: Arc<Guide>,
+    pub(super) guide: Arc<Guide>,
     /// The flux that it sends, about.
     flux: f64,
 }
@@ -37,7 +37,7 @@ pub(super) struct PhotonTargets {
     /// Which objects they are sent to ..
     objects: Vec<bool>,
     /// .. and where to those that have no end.
-    reach: Option<Ball>,
+    pub(super) reach: Option<Ball>,
     /// A ball around all that is finite.
     world: Ball,
     /// Photons asked for.
@@ -91,11 +91,6 @@ impl PhotonTargets {
     pub(super) fn include(&self, scene: &Scene<Table>, object: u32, place: DVec3) -> bool {
         let is_near = || self.reach.is_some_and(|reach| reach.contains(place));
         self.objects[object as usize] && (scene.objects[object as usize].shape.is_bounded() || is_near())
-    }
-
-    /// Whether photons are sent to some of the objects that have no end.
-    pub(super) fn reach_without_end(&self) -> bool {
-        self.reach.is_some()
     }
 
     /// The flux that all targets send, about, as CIE Y.
@@ -156,13 +151,8 @@ impl PhotonTargets {
         self.share_out();
     }
 
-    /// Which way a photon is sent, a place of the unit square, for two random numbers.
-    pub(super) fn guide_uv(&self, number: usize, u: [f64; 2]) -> [f64; 2] {
-        self.targets[number].guide.sample(u)
-    }
-
-    /// The start of a photon of a target for its `guide_uv` and two random numbers; none where the light does not
-    /// shine.
+    /// The start of a photon of a target for a place that its guide has drawn and two random numbers; none where the
+    /// light does not shine.
     ///
     /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may
     /// overlap.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::layers::CaughtLuminance;
+use super::layers::Caught;
 use crate::film::{Filter, PassSum, SampleWeights};
 
 /// How many there are.
@@ -37,7 +37,7 @@ struct Covered {
 }
 
 impl Covered {
-    fn add(&mut self, samples: [&PassSum; 2], caught: CaughtLuminance) {
+    fn add(&mut self, samples: [&PassSum; 2], caught: Caught<f64>) {
         (0..2).for_each(|lobe| self.met[lobe] += samples[lobe].met());
         let caught = [caught.with, caught.without, caught.share];
         (0..3).for_each(|i| self.caught[i] += caught[i] as f32);
@@ -47,19 +47,15 @@ impl Covered {
     fn alpha(&self, weights: &SampleWeights, shown_for: f64) -> f64 {
         let met = weights.sum(self.met.map(f64::from)) / weights.taken();
         let [with, without, share] = self.caught.map(|sum| f64::from(sum) / weights.added());
-        let caught = CaughtLuminance { with: with + f64::from(self.shown) / shown_for, without, share };
+        let caught = Caught { with: with + f64::from(self.shown) / shown_for, without, share };
         (met.clamp(0.0, 1.0) + caught.coverage()).min(1.0)
     }
 }
 
-/// Sums of samples.
+/// Of each pixel, the samples of each replicate: those that are added, and those that are subtracted, which are empty
+/// where the filter is nowhere negative.
 #[derive(Clone, Default, Serialize, Deserialize)]
-struct Sums {
-    /// Of each pixel, the samples of each replicate.
-    added: Vec<[Sum; REPLICATES]>,
-    /// The same of samples that are subtracted; empty where the filter is nowhere negative.
-    subtracted: Vec<[Sum; REPLICATES]>,
-}
+struct Sums([Vec<[Sum; REPLICATES]>; 2]);
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct Sum {
@@ -78,16 +74,20 @@ impl Sum {
 impl Sums {
     fn new(pixels: usize, is_signed: bool) -> Self {
         let sums = |wanted: bool| if wanted { vec![[Sum::default(); REPLICATES]; pixels] } else { Vec::new() };
-        Self { added: sums(true), subtracted: sums(is_signed) }
+        Self([true, is_signed].map(sums))
+    }
+
+    fn pixels(&self) -> usize {
+        self.0[0].len()
     }
 
     fn is_shaped_as(&self, other: &Self) -> bool {
-        (self.added.len(), self.subtracted.len()) == (other.added.len(), other.subtracted.len())
+        self.0.each_ref().map(Vec::len) == other.0.each_ref().map(Vec::len)
     }
 
     /// Adds the samples of a pixel in one pass of a replicate; of those that are not kept nothing.
-    fn add(&mut self, pixel: usize, replicate: u32, [added, subtracted]: [&PassSum; 2]) {
-        for (sums, pass) in [(&mut self.added, added), (&mut self.subtracted, subtracted)] {
+    fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
+        for (sums, pass) in self.0.iter_mut().zip(samples) {
             if let Some(sums) = sums.get_mut(pixel) {
                 sums[replicate as usize].add(pass);
             }
@@ -96,7 +96,7 @@ impl Sums {
 
     /// The samples of a pixel that a replicate has: those that are added, and those that are subtracted.
     fn of(&self, pixel: usize, replicate: usize) -> [Sum; 2] {
-        [&self.added, &self.subtracted].map(|sums| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]))
+        self.0.each_ref().map(|sums| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]))
     }
 
     /// How many they are.
@@ -113,6 +113,27 @@ impl Sums {
     fn mean(&self, pixel: usize, replicate: usize, filter: Filter) -> [f64; 3] {
         let (weights, [added, subtracted]) = (self.weights(pixel, replicate, filter), self.of(pixel, replicate));
         std::array::from_fn(|i| weights.sum([added.rgb[i].into(), subtracted.rgb[i].into()]) / weights.taken())
+    }
+}
+
+/// Sums over some pixels, of products of what two replicates found.
+#[derive(Default)]
+pub(super) struct Products(pub(super) [[f64; REPLICATES]; REPLICATES]);
+
+impl Products {
+    /// Adds a pixel, with some channels.
+    pub(super) fn add<const C: usize>(&mut self, replicates: &[[f64; C]; REPLICATES]) {
+        for (products, a) in self.0.iter_mut().zip(replicates) {
+            for (product, b) in products.iter_mut().zip(replicates) {
+                *product += a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            }
+        }
+    }
+
+    /// Adds other pixels.
+    pub(super) fn join(&mut self, other: &Self) {
+        let sums = self.0.iter_mut().flatten();
+        sums.zip(other.0.iter().flatten()).for_each(|(sum, more)| *sum += more);
     }
 }
 
@@ -138,7 +159,7 @@ impl Replicates {
     pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
         self.light.is_shaped_as(&other.light)
             && self.blur.is_shaped_as(&other.blur)
-            && [0, other.light.added.len()].contains(&self.shown.len())
+            && [0, other.light.pixels()].contains(&self.shown.len())
             && self.covered.len() == other.covered.len()
     }
 
@@ -155,14 +176,14 @@ impl Replicates {
     /// Adds what photons of a replicate show in a pixel.
     pub(super) fn show(&mut self, pixel: usize, replicate: u32, rgb: [f64; 3]) {
         if self.shown.is_empty() {
-            self.shown = vec![[[0.0; 3]; REPLICATES]; self.light.added.len()];
+            self.shown = vec![[[0.0; 3]; REPLICATES]; self.light.pixels()];
         }
         let sum = &mut self.shown[pixel][replicate as usize];
         (0..3).for_each(|i| sum[i] += rgb[i] as f32);
     }
 
     /// Adds how much of a pixel one pass of a replicate covers, where shadow catchers sent so much luminance.
-    pub(super) fn add_alpha(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], caught: CaughtLuminance) {
+    pub(super) fn add_alpha(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], caught: Caught<f64>) {
         self.covered[pixel][replicate as usize].add(samples, caught);
     }
 
@@ -196,7 +217,7 @@ impl Replicates {
 
     /// By how much each replicate says that a pixel is blurred; none where no photons are gathered.
     pub(super) fn blur(&self, pixel: usize, filter: Filter) -> Option<[[f64; 3]; REPLICATES]> {
-        let gathers = !self.blur.added.is_empty();
+        let gathers = self.blur.pixels() > 0;
         gathers.then(|| std::array::from_fn(|replicate| self.blur.mean(pixel, replicate, filter)))
     }
 

@@ -1,4 +1,4 @@
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::bright::{Bright, BrightPlaces};
 use super::density::{Rate, SampleDensity};
@@ -57,7 +57,7 @@ pub struct World {
     /// The same of each pass of its map.
     pub(super) map_targets: Option<PhotonTargets>,
     /// The bodies around each light; none where they may differ from point to point.
-    pub(super) light_media: Vec<Option<Media>>,
+    light_media: Arc<OnceLock<Vec<Option<Media>>>>,
 }
 
 impl World {
@@ -106,15 +106,13 @@ impl World {
             path_starts,
             photon_targets: None,
             map_targets: None,
-            light_media: Vec::new(),
+            light_media: Arc::default(),
         };
         if has_media {
-            let (position, forward) = (world.scene.camera.position(), world.scene.camera.forward());
-            let scene = &world.scene;
-            let around =
-                |seen: bool| Media::around_of(scene, position, forward, &|object| scene.is_seen(object) == seen);
-            (world.camera_media, world.hidden_media) =
-                (around(true), if hides_objects { around(false) } else { Media::default() });
+            let (scene, camera) = (&world.scene, &world.scene.camera);
+            let [position, forward] = [camera.position(), camera.forward()];
+            let around = |seen| Media::around_of(scene, position, forward, &|object| scene.is_seen(object) == seen);
+            (world.camera_media, world.hidden_media) = (around(true), around(false));
         }
         world.choose_photon_targets();
         world
@@ -198,18 +196,15 @@ impl World {
 
     /// Aims the photons of the light pass.
     fn choose_photon_targets(&mut self) {
-        let pass = self.method.light_pass.as_ref();
-        let sends = |&&light: &&LightId| self.scene.lights[light].sends_photons();
-        let senders = pass.map_or(Vec::new(), |pass| pass.lights.iter().filter(sends).copied().collect());
+        (self.photon_targets, self.map_targets) = (None, None);
+        let Some(pass) = &self.method.light_pass else { return };
+        let sends = |&light: &LightId| self.scene.lights[light].sends_photons();
+        let senders: Vec<LightId> = pass.lights.iter().copied().filter(sends).collect();
+        let places = places(&self.scene, &senders);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
-        let places = places(&self.scene, &senders.iter().map(|sender| sender.0).collect::<Vec<_>>());
         let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, photons);
-        let targets = pass.and_then(|pass| targets_of(pass.photons));
-        let map_targets = pass.and_then(|pass| pass.map).and_then(|map| targets_of(map.photons));
-        (self.photon_targets, self.map_targets) = (targets, map_targets);
-        if self.photon_targets.is_some() && self.light_media.is_empty() {
-            self.light_media = media_of_lights(&self.scene);
-        }
+        let map = pass.map.and_then(|map| targets_of(map.photons));
+        (self.photon_targets, self.map_targets) = (targets_of(pass.photons), map);
     }
 
     /// The same world with what each light's lanes are worth replaced, for tests that look at single lanes.
@@ -279,6 +274,12 @@ impl World {
         self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
     }
 
+    /// The media around a ray that leaves a light.
+    pub(super) fn media_at_light(&self, light: LightId, ray: &Ray) -> Media {
+        let known = self.light_media.get_or_init(|| media_of_lights(&self.scene))[light];
+        known.unwrap_or_else(|| Media::around(&self.scene, ray.origin, ray.direction))
+    }
+
     /// The media around a ray, but for those that the camera does not see.
     pub(super) fn seen_media(&self, ray: &Ray) -> Media {
         Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))
@@ -324,7 +325,7 @@ impl World {
 
     /// Whether photons are sent to some of the surfaces that have no end.
     pub fn reaches_without_end(&self) -> bool {
-        self.photon_targets.as_ref().is_some_and(PhotonTargets::reach_without_end)
+        self.photon_targets.as_ref().is_some_and(|targets| targets.reach.is_some())
     }
 
     /// Whether paths gather photons where the camera does not see them straight.

@@ -82,14 +82,10 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Remembers how likely it was that the camera ray met a surface with holes, or a hole of it.
-    pub fn choose(&mut self, chance: f64) {
+    /// Remembers the object that the camera ray met, or none if it went through a hole of one, and how likely that was.
+    pub fn choose(&mut self, met: Option<u32>, chance: f64) {
+        self.object = met;
         self.chance *= chance;
-    }
-
-    /// Remembers the object that the camera ray met.
-    pub fn meet_object(&mut self, object: u32) {
-        self.object = Some(object);
     }
 
     /// Forgets all that the sample has left but the light of a shadow catcher, with all objects and with those of the

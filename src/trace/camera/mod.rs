@@ -12,4 +12,4 @@ mod surface;
 
 pub use layer_sample::Left;
 pub use path_tracer::PathTracer;
-pub use sensor::{Bounce, Observer};
+pub use sensor::{Bounce, Finding};

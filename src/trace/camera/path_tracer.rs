@@ -7,7 +7,7 @@ use super::direct::DirectLighting;
 use super::layer_sample::{LayerSample, Met};
 use super::numbers;
 use super::resampling::Resampling;
-use super::sensor::{Observer, Sensor};
+use super::sensor::{Finding, Sensor};
 use super::shining::Shining;
 use super::surface::{First, Leaving, Surface};
 use crate::film::{Layer, Sample};
@@ -59,7 +59,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// With somebody who is told what paths find.
-    pub fn with_observer(mut self, observer: &'a dyn Observer) -> Self {
+    pub fn with_observer(mut self, observer: &'a dyn Fn(Finding)) -> Self {
         self.sensor.observer = Some(observer);
         self
     }
@@ -232,10 +232,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     ) -> First {
         let straight::Met { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, onward);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(weight);
-            if is_met {
-                layers.meet_object(meeting.hit.object);
-            }
+            layers.choose(is_met.then_some(meeting.hit.object), weight);
         }
         *first = is_met.then_some(meeting.point);
         if is_met { First::Here } else { First::Beyond }
@@ -479,7 +476,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             self.sensor.receive_gathered(&gathered, draw);
         }
         if let Some(observer) = self.sensor.observer {
-            observer.reach(at.point.position);
+            observer(Finding::Place(at.point.position));
         }
     }
 

@@ -24,14 +24,14 @@ pub struct Bounce {
     pub weight: f64,
 }
 
-/// Somebody who wants to know what the camera's paths find, beside the image.
-pub trait Observer {
+/// What the camera's paths find, as somebody is told who wants to know it beside the image.
+pub enum Finding<'a> {
     /// Light reached the sensor.
-    fn receive(&self, _contribution: &Contribution) {}
+    Light(&'a Contribution),
     /// A path has come, by way of other surfaces, to a place that scatters widely.
-    fn reach(&self, _place: DVec3) {}
+    Place(DVec3),
     /// All light at the end of a bounce was received.
-    fn bounce(&self, _bounce: Bounce) {}
+    Bounce(Bounce),
 }
 
 /// The sink of all light that one camera sample after another finds.
@@ -44,7 +44,7 @@ pub struct Sensor<'a, const N: usize> {
     moved: f64,
     /// By how much kernels blur what it has received.
     pub blur: [f64; 3],
-    pub observer: Option<&'a dyn Observer>,
+    pub observer: Option<&'a dyn Fn(Finding)>,
     /// What it leaves in layers, if any are asked for.
     pub layers: Option<LayerSample<'a, N>>,
 }
@@ -102,7 +102,7 @@ impl<const N: usize> Sensor<'_, N> {
         add(&mut self.rgb, all.rgb);
         self.moved += all.moved;
         if let Some(observer) = self.observer {
-            observer.receive(all);
+            observer(Finding::Light(all));
         }
     }
 
@@ -120,7 +120,8 @@ impl<const N: usize> Sensor<'_, N> {
         if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.observer, path.scatter) {
             let light = world.amount(std::array::from_fn(|i| self.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
-            observer.bounce(Bounce { from, normal, direction, distance, light, weight: path.weight(draw) });
+            let weight = path.weight(draw);
+            observer(Finding::Bounce(Bounce { from, normal, direction, distance, light, weight }));
         }
     }
 

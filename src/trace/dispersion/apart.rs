@@ -14,7 +14,7 @@ const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 const PLACES: u32 = 6;
 
 /// How many pixels apart both colors show what lies behind; none so close to an edge that it cannot be told.
-pub fn pixels_apart(rays: &CameraRays, at: DVec2, first: &Walk) -> Option<f64> {
+pub fn colors_apart(rays: &CameraRays, at: DVec2, first: &Walk) -> Option<f64> {
     let second = rays.walk(at, 1);
     let far = apart_by(rays, STEPS[0], at, [first, &second]);
     (far >= SEEN_PIXELS || apart_by(rays, STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)

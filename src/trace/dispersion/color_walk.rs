@@ -19,7 +19,7 @@ const SURFACE: u32 = 7;
 
 /// Which way is followed where light may go two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Choice {
     /// The brighter one.
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
@@ -30,6 +30,7 @@ pub enum Way {
 }
 
 /// Where a ray of one color went.
+#[derive(Default)]
 pub struct Walk {
     /// Its straight pieces: where each starts and how long it is, infinite where it leaves the scene.
     pub legs: Vec<(Ray, f64)>,
@@ -66,32 +67,23 @@ impl Walk {
         self.legs.last().map(|leg| &leg.0)
     }
 
-    /// Whether the way on with a share of the light is taken, and not the other one.
-    fn takes(&mut self, share: f64, way: Way) -> bool {
-        let fainter = share.min(1.0 - share);
-        let forks = self.fork == 0.0 && fainter >= LEAST;
-        if forks {
-            self.fork = self.weight * fainter;
-        }
-        self.turns(share, forks && way == Way::FainterFirst)
-    }
-
-    /// Whether the way on with a share of the light is taken at a surface that is met inside a dispersive body.
-    fn takes_inside(&mut self, share: f64, way: Way) -> bool {
-        let fainter = share.min(1.0 - share);
-        let forks = self.fork_inside == 0.0 && fainter >= LEAST;
-        if forks {
-            self.fork_inside = self.weight * fainter;
-        }
-        match way {
-            Way::FainterInside => self.turns(share, forks),
-            _ => self.takes(share, way),
-        }
-    }
-
-    /// Goes on with a share of the light, or without it: the brighter way, or the fainter where it turns.
-    fn turns(&mut self, share: f64, turns: bool) -> bool {
-        let fainter = share.min(1.0 - share);
+    /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
+    /// surface is met inside a dispersive body.
+    fn takes(&mut self, share: f64, is_inside: bool, choice: Choice) -> bool {
+        let (weight, fainter) = (self.weight, share.min(1.0 - share));
+        let forks = |fork: &mut f64| {
+            let is_first = *fork == 0.0 && fainter >= LEAST;
+            if is_first {
+                *fork = weight * fainter;
+            }
+            is_first
+        };
+        let (first, inside) = (forks(&mut self.fork), is_inside && forks(&mut self.fork_inside));
+        let turns = match choice {
+            Choice::Brighter => false,
+            Choice::FainterFirst => first,
+            Choice::FainterInside => inside,
+        };
         self.weight *= if turns { fainter } else { 1.0 - fainter };
         (share > 0.5) != turns
     }
@@ -104,7 +96,7 @@ struct Surface<'a> {
     meeting: &'a Meeting,
     u: [f64; 4],
     lane: usize,
-    way: Way,
+    choice: Choice,
 }
 
 /// How a walk goes on at a surface.
@@ -122,45 +114,26 @@ pub struct Colors<'a> {
     pub draw: Draw<4>,
 }
 
-impl<'a> Colors<'a> {
-    pub fn new(world: &'a World) -> Self {
-        Self { world, draw: Draw::fixed(2) }
-    }
-
+impl Colors<'_> {
     /// Whether a medium has two indices.
     pub fn disperses(&self, glass: &Dielectric<Table>) -> bool {
         let index: [f64; 4] = self.draw.read_exact(&glass.index);
         index[0] != index[1]
     }
 
-    /// Follows one lane of light.
-    pub fn walk_from_light(&self, lane: usize, ray: Ray, media: Media, sampler: &Sampler, way: Way) -> Walk {
-        self.walk(lane, ray, false, media, sampler, way)
-    }
-
     /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
     /// not there for its ray as long as that goes straight on.
-    fn walk(
+    pub fn walk(
         &self,
         lane: usize,
         mut ray: Ray,
         mut is_from_camera: bool,
         media: Media,
         sampler: &Sampler,
-        way: Way,
+        choice: Choice,
     ) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
-        let mut walk = Walk {
-            legs,
-            met,
-            end: None,
-            diffuse: false,
-            dispersive: false,
-            weight: 1.0,
-            fork: 0.0,
-            fork_inside: 0.0,
-            media,
-        };
+        let mut walk = Walk { legs, met, weight: 1.0, media, ..Walk::default() };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
             let hit = match is_from_camera {
@@ -171,7 +144,7 @@ impl<'a> Colors<'a> {
             let Some(met) = hit else { return walk };
             let meeting = Meeting::new(self.world, &ray, met);
             key = key.child(0);
-            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, way };
+            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, choice };
             match self.beyond(&mut walk, &at) {
                 Next::Straight => ray = meeting.point.leave(ray.direction),
                 Next::Toward(direction) => (ray, is_from_camera) = (meeting.point.leave(direction), false),
@@ -189,11 +162,11 @@ impl<'a> Colors<'a> {
 
     /// The way on from a surface.
     fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
-        let Surface { ray, meeting, u, way, .. } = *at;
+        let Surface { ray, meeting, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&meeting.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), way) {
+        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), false, choice) {
             return Next::Straight;
         }
         match world.scene.material_of(meeting.hit.object) {
@@ -205,14 +178,16 @@ impl<'a> Colors<'a> {
                 let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
-                if walk.takes(mirrored, way) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
+                if walk.takes(mirrored, false, choice) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
                 // The same facet for both colors, as if it were all there is.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.has_single_directions() && walk.takes(GLOSS, way) => Next::Toward(reflect(wo, normal)),
+            material if material.has_single_directions() && walk.takes(GLOSS, false, choice) => {
+                Next::Toward(reflect(wo, normal))
+            }
             material => {
                 walk.diffuse = material.scatters_widely();
                 Next::End
@@ -222,12 +197,11 @@ impl<'a> Colors<'a> {
 
     /// The way on from the surface of a clear body.
     fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
-        let Surface { ray, meeting: Meeting { hit, point }, u, lane, way } = *at;
+        let Surface { ray, meeting: Meeting { hit, point }, u, lane, choice } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
-        let front = point.normal.dot(ray.direction) < 0.0;
         let material = world.scene.objects[hit.object as usize].material;
-        let (boundary, _) = walk.media.at_surface(&world.scene, material, front);
+        let (boundary, _) = walk.media.at_surface(&world.scene, material, point, ray.direction);
         if boundary.here == boundary.beyond {
             walk.media = walk.media.beyond(&boundary);
             return Next::Straight;
@@ -243,8 +217,7 @@ impl<'a> Colors<'a> {
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
         let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
         let inside = indices[0][0] != indices[0][1];
-        let takes = |walk: &mut Walk| if inside { walk.takes_inside(chance, way) } else { walk.takes(chance, way) };
-        let mirrors = n1 != n2 && (takes(walk) || interface.transmittance == 0.0);
+        let mirrors = n1 != n2 && (walk.takes(chance, inside, choice) || interface.transmittance == 0.0);
         let (direction, side) = if mirrors {
             (reflect(wo, facet), 1.0)
         } else {
@@ -259,7 +232,7 @@ impl<'a> Colors<'a> {
 pub struct CameraRays<'a> {
     pub colors: &'a Colors<'a>,
     pub sampler: Sampler,
-    pub way: Way,
+    pub choice: Choice,
 }
 
 impl CameraRays<'_> {
@@ -267,7 +240,7 @@ impl CameraRays<'_> {
     pub fn walk(&self, at: DVec2, lane: usize) -> Walk {
         let world = self.colors.world;
         let ray = world.scene.camera.ray(at);
-        self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.way)
+        self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.choice)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::color_walk::{Colors, Walk, Way};
+use super::color_walk::{Choice, Colors, Walk};
 use super::search::Reached;
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::light::{Light, LightId};
@@ -106,7 +106,7 @@ impl Pair<'_> {
         } else {
             Media::around(&self.colors.world.scene, start.origin, start.direction)
         };
-        let walk = |lane: usize, ray: Ray| self.colors.walk_from_light(lane, ray, media, sampler, Way::Brighter);
+        let walk = |lane: usize, ray: Ray| self.colors.walk(lane, ray, false, media, sampler, Choice::Brighter);
         let (first, second) = (walk(0, start), walk(1, start));
         if !first.dispersive || !first.diffuse || !second.diffuse || first.met != second.met || first.weight == 0.0 {
             return None;

@@ -210,8 +210,7 @@ impl<'a> Walker<'a> {
 
     fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
-        let front = at.point.normal.dot(walk.ray.direction) < 0.0;
-        let (boundary, _) = walk.media.at_surface(&world.scene, at.material, front);
+        let (boundary, _) = walk.media.at_surface(&world.scene, at.material, at.point, walk.ray.direction);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
         let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
@@ -276,8 +275,7 @@ impl<'a> Walker<'a> {
                 };
                 let step = Step { material: object.material, part, way: Way::Crossed };
                 let tint = self.draw.read_at(transmittance, uv);
-                let enters = point.normal.dot(walk.ray.direction) < 0.0;
-                let (boundary, _) = walk.media.at_surface(&world.scene, object.material, enters);
+                let (boundary, _) = walk.media.at_surface(&world.scene, object.material, point, walk.ray.direction);
                 let media = walk.media.beyond(&boundary);
                 walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
             }

@@ -5,8 +5,8 @@
 //! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
-use super::apart::{is_dark, pixels_apart as colors_apart, share_apart};
-use super::color_walk::{CameraRays, Colors, Walk, Way};
+use super::apart::{colors_apart, is_dark, share_apart};
+use super::color_walk::{CameraRays, Choice, Colors, Walk};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
@@ -50,7 +50,7 @@ pub struct Found {
 struct Cell {
     corner: DVec2,
     size: DVec2,
-    way: Way,
+    choice: Choice,
     /// How many such cells it stands for.
     count: f64,
 }
@@ -76,7 +76,7 @@ pub fn search(colors: &Colors, targets: &Targets) -> Found {
     let enough = PIXELS.min(SHARE * all);
     let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(SIDE);
     let corner = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) * size;
-    let cell = |i: u32| Cell { corner: corner(i), size, way: Way::Brighter, count: 1.0 };
+    let cell = |i: u32| Cell { corner: corner(i), size, choice: Choice::Brighter, count: 1.0 };
     let mut cells: Vec<Cell> = (0..SIDE * SIDE).map(cell).collect();
     let (mut settled, mut reached, mut left) = (Vec::new(), Vec::new(), MOST);
     loop {
@@ -97,7 +97,7 @@ pub fn search(colors: &Colors, targets: &Targets) -> Found {
             next.extend(look.cell.parts().into_iter().map(|part| (look.touched.unwrap_or(0), part)));
         }
         // Faint mirror images are kinds of their own.
-        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.way == Way::FainterInside);
+        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.choice == Choice::FainterInside);
         next.extend(forks.into_iter().map(|cell| (kind(&cell), cell)));
         if next.is_empty() {
             break;
@@ -106,7 +106,8 @@ pub fn search(colors: &Colors, targets: &Targets) -> Found {
         cells = fairly(next, most);
         left -= cells.len();
     }
-    let seen = settled.iter().filter(|look| look.cell.way == Way::Brighter).map(|look| look.dispersive).sum::<f64>();
+    let seen: f64 =
+        settled.iter().filter(|look| look.cell.choice == Choice::Brighter).map(|look| look.dispersive).sum();
     let dark = seen > 0.0 && settled.iter().all(|look| look.dark || look.dispersive == 0.0);
     Found { seen: (seen / all).min(1.0), pixels: pixels_apart(settled.iter(), enough), dark, reached }
 }
@@ -116,20 +117,20 @@ fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reache
     let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
     let walks = at.map(|place| rays.walk(cell.corner + cell.size * place, 0));
     let first = &walks[0];
-    if cell.is_whole(colors) && cell.way == Way::Brighter {
+    if cell.is_whole(colors) && cell.choice == Choice::Brighter {
         if first.fork > 0.0 {
-            forks.push(Cell { way: Way::FainterFirst, ..cell });
+            forks.push(Cell { choice: Choice::FainterFirst, ..cell });
         }
         // Before a sky, or the dark, what is mirrored inside may be all there is to see.
         if first.fork_inside > 0.0 && first.is_out() {
-            forks.push(Cell { way: Way::FainterInside, ..cell });
+            forks.push(Cell { choice: Choice::FainterInside, ..cell });
         }
         reached.extend(place(&walks, cell.size));
     }
-    let forked = match cell.way {
-        Way::Brighter => true,
-        Way::FainterFirst => first.fork > 0.0,
-        Way::FainterInside => first.fork_inside > 0.0,
+    let forked = match cell.choice {
+        Choice::Brighter => true,
+        Choice::FainterFirst => first.fork > 0.0,
+        Choice::FainterInside => first.fork_inside > 0.0,
     };
     let off = first.weight == 0.0 || !forked;
     let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
@@ -172,7 +173,7 @@ impl Cell {
     fn rays<'a>(&self, colors: &'a Colors) -> CameraRays<'a> {
         let DVec2 { x, y } = self.middle();
         let sampler = Sampler::of_pixel(colors.world.method.seed, [x as i32, y as i32], 0);
-        CameraRays { colors, sampler, way: self.way }
+        CameraRays { colors, sampler, choice: self.choice }
     }
 
     fn is_whole(&self, colors: &Colors) -> bool {

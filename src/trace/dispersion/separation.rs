@@ -4,6 +4,7 @@ use super::color_walk::Colors;
 use super::lit::lit_pixels;
 use super::search::search;
 use super::targets::{SEEN_PIXELS, Targets};
+use crate::spectrum::Draw;
 use crate::trace::World;
 
 /// What rays of two colors found.
@@ -32,7 +33,7 @@ pub const COLORS_NM: [f64; 2] = [400.0, 700.0];
 
 /// Sends some thousand rays through a world of two lanes, those of [`COLORS_NM`]; as many for any number of pixels.
 pub fn dispersion(world: &World) -> Dispersion {
-    let colors = Colors::new(world);
+    let colors = Colors { world, draw: Draw::fixed(2) };
     let targets = Targets::new(&colors);
     let found = search(&colors, &targets);
     let lit_pixels = lit_pixels(&colors, &targets, &found.reached);

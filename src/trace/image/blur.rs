@@ -18,7 +18,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::trace::replicates::REPLICATES;
+use crate::trace::replicates::{Products, REPLICATES};
 
 /// By how much photons that are gathered blur an image; 0 where none are. Relative to the image, as
 /// [`Noise`](super::noise::Noise) is.
@@ -33,36 +33,16 @@ pub struct Blur {
 /// How many times the square that is told the blur of folds is.
 const FOLDS: f64 = 1.93;
 
-/// Sums over some pixels, of products of two replicates' estimates.
-#[derive(Default)]
-pub struct BlurSums([[f64; REPLICATES]; REPLICATES]);
-
-impl BlurSums {
-    /// Adds a pixel.
-    pub fn add(&mut self, replicates: &[[f64; 3]; REPLICATES]) {
-        for (products, a) in self.0.iter_mut().zip(replicates) {
-            for (product, b) in products.iter_mut().zip(replicates) {
-                *product += a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-            }
-        }
-    }
-
-    pub fn join(&mut self, other: &Self) {
-        let sums = self.0.iter_mut().flatten();
-        sums.zip(other.0.iter().flatten()).for_each(|(sum, more)| *sum += more);
-    }
-
-    /// The sum of all squares, as it is expected and at most in 95 of 100 cases.
-    pub fn squares(&self, student: f64) -> [f64; 2] {
-        let count = REPLICATES as f64;
-        // Of each replicate, its products with the others.
-        let with_others: [f64; REPLICATES] = std::array::from_fn(|i| self.0[i].iter().sum::<f64>() - self.0[i][i]);
-        let all = with_others.iter().sum::<f64>();
-        let expected = (all / (count * (count - 1.0))).max(0.0);
-        let without = with_others.map(|own| (all - 2.0 * own) / ((count - 1.0) * (count - 2.0)));
-        let mean = without.iter().sum::<f64>() / count;
-        let spread = without.iter().map(|square| (square - mean) * (square - mean)).sum::<f64>();
-        let variance = spread * (count - 1.0) / count;
-        [expected, FOLDS * (expected + student * variance.sqrt())]
-    }
+/// The sum of all squares, as it is expected and at most in 95 of 100 cases, by products of the replicates' estimates.
+pub fn squares_of_blur(Products(products): &Products, student: f64) -> [f64; 2] {
+    let count = REPLICATES as f64;
+    // Of each replicate, its products with the others.
+    let with_others: [f64; REPLICATES] = std::array::from_fn(|i| products[i].iter().sum::<f64>() - products[i][i]);
+    let all = with_others.iter().sum::<f64>();
+    let expected = (all / (count * (count - 1.0))).max(0.0);
+    let without = with_others.map(|own| (all - 2.0 * own) / ((count - 1.0) * (count - 2.0)));
+    let mean = without.iter().sum::<f64>() / count;
+    let spread = without.iter().map(|square| (square - mean) * (square - mean)).sum::<f64>();
+    let variance = spread * (count - 1.0) / count;
+    [expected, FOLDS * (expected + student * variance.sqrt())]
 }

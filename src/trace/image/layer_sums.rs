@@ -6,17 +6,16 @@ use super::coverage::Coverage;
 use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, polarization, stored};
 use crate::trace::camera::Left;
 use crate::trace::contribution::add;
-use crate::trace::layers::{CaughtLuminance, Layers, OF_A_HALF, STOKES};
+use crate::trace::layers::{Caught, Layers, OF_A_HALF, STOKES};
 use crate::trace::replicates::REPLICATES;
 use crate::trace::spectrum_sample::Spectrum;
 
 /// Sums of the pixels of a tile.
 #[derive(Default, Serialize, Deserialize)]
 pub struct LayerSums {
-    /// A row of numbers for each pixel.
-    rows: Vec<f64>,
-    /// The same of samples that are subtracted, where there may be any: of light alone, and of what is made of samples.
-    subtracted: Vec<f64>,
+    /// A row of numbers for each pixel; and the same of samples that are subtracted, where there may be any: of light
+    /// alone, and of what is made of samples.
+    rows: [Vec<f64>; 2],
     /// The depth of what each pixel's places are of.
     depths: Vec<f64>,
     /// The objects of each pixel, if there are mattes.
@@ -29,8 +28,7 @@ impl LayerSums {
         match layers.is_empty() {
             true => Self::default(),
             false => Self {
-                rows: vec![0.0; pixels * layers.numbers],
-                subtracted: if is_signed { vec![0.0; pixels * layers.numbers] } else { Vec::new() },
+                rows: [pixels, if is_signed { pixels } else { 0 }].map(|rows| vec![0.0; rows * layers.numbers]),
                 depths: vec![f64::INFINITY; pixels],
                 covered: if layers.ids.is_empty() { Coverage::default() } else { Coverage::new(pixels) },
             },
@@ -39,15 +37,14 @@ impl LayerSums {
 
     /// Whether it has as many numbers of each kind as another one.
     pub fn is_shaped_as(&self, other: &Self) -> bool {
-        let lengths = |sums: &Self| [sums.rows.len(), sums.subtracted.len(), sums.depths.len(), sums.covered.pixels()];
+        let lengths = |sums: &Self| (sums.rows.each_ref().map(Vec::len), sums.depths.len(), sums.covered.pixels());
         lengths(self) == lengths(other)
     }
 
     /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
     /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
     pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &Left) {
-        let rows = if sample.is_subtracted { &mut self.subtracted } else { &mut self.rows };
-        let row = &mut rows[pixel * layers.numbers..][..layers.numbers];
+        let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.numbers..][..layers.numbers];
         if let Some(object) = left.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
             self.covered.add(pixel, object);
         }
@@ -87,17 +84,17 @@ impl LayerSums {
     /// The row of a pixel, and that of its samples that are subtracted, which may be empty.
     pub fn rows(&self, layers: &Layers, pixel: usize) -> [&[f64]; 2] {
         let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
-        [&self.rows[range.clone()], self.subtracted.get(range).unwrap_or_default()]
+        self.rows.each_ref().map(|rows| rows.get(range.clone()).unwrap_or_default())
     }
 
     /// The same, to add to them.
     pub fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
         let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
-        [&mut self.rows[range.clone()], self.subtracted.get_mut(range).unwrap_or_default()]
+        self.rows.each_mut().map(|rows| rows.get_mut(range.clone()).unwrap_or_default())
     }
 
     /// The sums of luminance that shadow catchers send to a pixel, if there are any.
-    pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CaughtLuminance> {
+    pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<Caught<f64>> {
         let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.luminance_caught(&caught));
         layers.catches().then(|| self.rows(layers, pixel)[0]).and_then(of)
     }

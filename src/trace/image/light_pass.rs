@@ -18,12 +18,19 @@ use crate::trace::photon::{Batch, Splat, batches_of_pass, send_shown};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
-use crate::trace::watch::Watch;
 
 /// Batches whose splats are kept in memory at once.
 const AT_ONCE: usize = 64;
 /// Sets these random numbers apart from those of the camera.
 const SEED: u64 = 0x7068_6f74;
+
+/// Who looks on while an image is made.
+pub struct Watch<'a> {
+    /// Is told how many camera samples, or photons, were done since it was last told, from any thread.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+    /// Says when to stop for a while; is asked again and again, from any thread.
+    pub is_due: &'a (dyn Fn() -> bool + Sync),
+}
 
 /// How far a light pass is. It goes on where it stopped.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]

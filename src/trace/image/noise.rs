@@ -14,9 +14,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::blur::{Blur, BlurSums};
+use super::blur::{Blur, squares_of_blur};
 use crate::film::{Filter, TilePlace};
-use crate::trace::replicates::{REPLICATES, Replicates};
+use crate::trace::replicates::{Products, REPLICATES, Replicates};
 
 /// How far the replicates of an image are apart, and what that tells of their mean.
 ///
@@ -101,8 +101,8 @@ const ALONE: f64 = 0.6457;
 /// Sums over some pixels.
 #[derive(Default)]
 struct Spread {
-    /// Of products of two replicates' deviations from their mean, and of squares of the mean.
-    products: [[f64; REPLICATES]; REPLICATES],
+    /// Of the replicates' deviations from their mean, and of squares of the mean.
+    products: Products,
     squares: f64,
     numbers: f64,
     /// The pixel with the largest deviations in which one replicate stands out: where it is, and how large they are.
@@ -112,7 +112,7 @@ struct Spread {
 impl Spread {
     /// The sum of all squared deviations.
     fn total(&self) -> f64 {
-        (0..REPLICATES).map(|i| self.products[i][i]).sum()
+        (0..REPLICATES).map(|i| self.products.0[i][i]).sum()
     }
 
     /// Adds a pixel of the format, with some channels.
@@ -120,13 +120,10 @@ impl Spread {
         let mean: [f64; C] = std::array::from_fn(|i| replicates.iter().map(|values| values[i]).sum::<f64>());
         let mean = mean.map(|sum| sum / REPLICATES as f64);
         let apart = replicates.map(|values| -> [f64; C] { std::array::from_fn(|i| values[i] - mean[i]) });
-        let product = |a: [f64; C], b: [f64; C]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        self.products.add(&apart);
         let (mut sum, mut most, mut replicate) = (0.0, 0.0, 0);
-        for (number, &deviation) in apart.iter().enumerate() {
-            for (products, &other) in self.products[number].iter_mut().zip(&apart) {
-                *products += product(deviation, other);
-            }
-            let square = product(deviation, deviation);
+        for (number, deviation) in apart.iter().enumerate() {
+            let square = deviation.iter().map(|x| x * x).sum::<f64>();
             sum += square;
             if square > most {
                 (most, replicate) = (square, number as u32);
@@ -140,8 +137,7 @@ impl Spread {
     }
 
     fn join(&mut self, other: Self) {
-        let sums = self.products.iter_mut().flatten();
-        sums.zip(other.products.iter().flatten()).for_each(|(sum, more)| *sum += more);
+        self.products.join(&other.products);
         (self.squares, self.numbers) = (self.squares + other.squares, self.numbers + other.numbers);
         let is_larger = |new: &(Outlier, f64)| self.outlier.as_ref().is_none_or(|old| new.1 > old.1);
         if let Some(outlier) = other.outlier.filter(is_larger) {
@@ -154,11 +150,12 @@ impl Spread {
     fn errors(&self) -> [f64; 2] {
         let (count, numbers) = (REPLICATES as f64, self.numbers.max(1.0));
         // Each replicate is a part of the mean that its deviation is from.
-        let errors: [f64; REPLICATES] = std::array::from_fn(|i| self.products[i][i] / numbers * count / (count - 1.0));
+        let errors: [f64; REPLICATES] =
+            std::array::from_fn(|i| self.products.0[i][i] / numbers * count / (count - 1.0));
         let mean = errors.iter().sum::<f64>() / count;
         let spread = errors.iter().map(|error| (error - mean) * (error - mean)).sum::<f64>() / (count - 1.0);
         let mut shared = 0.0;
-        for (i, products) in self.products.iter().enumerate() {
+        for (i, products) in self.products.0.iter().enumerate() {
             for product in &products[..i] {
                 // Deviations of two replicates have the covariance -C / R, those of one (1 - 1/R) C.
                 let product = product / numbers + mean / count;
@@ -207,11 +204,11 @@ pub fn measure<'t>(
     each: u32,
 ) -> Measured {
     let (mut all, mut worst): (Spread, Option<([i64; 2], f64)>) = (Spread::default(), None);
-    let (mut alpha, mut blur) = (Spread::default(), BlurSums::default());
+    let (mut alpha, mut blur) = (Spread::default(), Products::default());
     for (replicates, place) in tiles {
         let corner = [0, 1].map(|i| i64::from(first[i]) + i64::from(place.corner[i]));
         let (mut of_tile, mut alpha_of_tile, mut blur_of_tile) =
-            (Spread::default(), Spread::default(), BlurSums::default());
+            (Spread::default(), Spread::default(), Products::default());
         for pixel in 0..place.pixels() {
             let (x, y) = (pixel as i64 % i64::from(place.width), pixel as i64 / i64::from(place.width));
             let at = [corner[0] + x, corner[1] + y];
@@ -230,7 +227,7 @@ pub fn measure<'t>(
         blur.join(&blur_of_tile);
     }
     let numbers = all.numbers.max(1.0);
-    let [expected, at_most] = blur.squares(STUDENT).map(|squares| all.relative(squares / numbers));
+    let [expected, at_most] = squares_of_blur(&blur, STUDENT).map(|squares| all.relative(squares / numbers));
     let blur = Blur { expected, at_most };
     let Noise { expected, at_most, .. } = alpha.noise(REPLICATES as u32 * each, None);
     let alpha = (alpha.numbers > 0.0).then_some(AlphaNoise { expected, at_most });

@@ -1,15 +1,16 @@
 //! Which light made a pixel stand out in one of the replicates.
 
 use std::cell::Cell;
+use std::ops::Range;
 
 use super::noise::Outlier;
 use super::passes::most_at_once;
 use super::stopping::doubled;
 use crate::math::Sampler;
 use crate::trace::World;
-use crate::trace::camera::{Observer, PathTracer};
+use crate::trace::camera::{Finding, PathTracer};
 use crate::trace::contribution::{Contribution, Found};
-use crate::trace::pass::Stage;
+use crate::trace::pass::Pass;
 use crate::trace::photon::PassLight;
 use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
@@ -28,22 +29,6 @@ pub struct RareLight {
 /// Of all light of the pixel in the replicate, the part that one path must have brought to be what stands out.
 const MUCH: f64 = 0.2;
 
-/// The brightest light that a sample got, and how much it is.
-struct Brightest<'w> {
-    world: &'w World,
-    found: Cell<Option<(f64, Contribution)>>,
-}
-
-impl Observer for Brightest<'_> {
-    fn receive(&self, contribution: &Contribution) {
-        let amount = self.world.amount(contribution.rgb);
-        let most = self.found.get().map_or(0.0, |found| found.0);
-        if amount > most && amount.is_finite() {
-            self.found.set(Some((amount, *contribution)));
-        }
-    }
-}
-
 /// Takes the samples of the pixel that stands out once more, and looks for the brightest light of them, after so many
 /// samples of each replicate. None where it was a photon that the camera saw, which is no sample's.
 pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
@@ -51,17 +36,19 @@ pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLig
 }
 
 fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
-    let observer = Brightest { world, found: Cell::new(None) };
-    let pixel = outlier.pixel.map(|place| place as i32);
-    let (mut all, mut brightest, mut stage) = (0.0, None::<(f64, Contribution)>, Stage::default());
-    while stage.before < each {
-        // The stages of the render: what light a pass has depends on how long it is. Those after one that the time cut
-        // short may be others.
-        if stage.is_over() {
-            let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, stage.before));
-            stage = Stage::of_replicate(outlier.replicate, stage.before, size.min(each - stage.before));
+    // The brightest light that a sample got, and how much it is.
+    let of_sample: Cell<Option<(f64, Contribution)>> = Cell::new(None);
+    let observer = |found: Finding| {
+        let Finding::Light(contribution) = found else { return };
+        let amount = world.amount(contribution.rgb);
+        if amount > of_sample.get().map_or(0.0, |most| most.0) && amount.is_finite() {
+            of_sample.set(Some((amount, *contribution)));
         }
-        let pass = stage.pass(world, 0, most_at_once(world));
+    };
+    let pixel = outlier.pixel.map(|place| place as i32);
+    let (mut all, mut brightest) = (0.0, None::<(f64, Contribution)>);
+    for numbers in numbers_of_passes(world, each) {
+        let pass = Pass::of_replicate(world, 0, numbers, outlier.replicate);
         let light = PassLight::<N, P>::new(world, &pass);
         // Layers tell which samples a shadow catcher takes.
         let tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_observer(&observer);
@@ -73,13 +60,25 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
             let shown = world.amount(sample.rgb);
             all += shown;
             let brighter = |found: &(f64, Contribution)| shown > 0.0 && brightest.is_none_or(|most| found.0 > most.0);
-            brightest = observer.found.take().filter(brighter).or(brightest);
+            brightest = of_sample.take().filter(brighter).or(brightest);
         }
-        stage = stage.after_alone(pass.numbers.len() as u32);
     }
     let (_, found) = brightest.filter(|(amount, _)| *amount > MUCH * all)?;
     let name = found.light.map(|light| world.scene.light_groups[light].clone());
     Some(RareLight { name, bounces: found.bounces, found: word(found.found) })
+}
+
+/// The samples of a replicate's passes, up to so many, in the stages of the render: what light a pass has depends on
+/// how long it is. Those after one that the time cut short may be others.
+fn numbers_of_passes(world: &World, each: u32) -> Vec<Range<u32>> {
+    let (mut passes, mut before, most) = (Vec::new(), 0, most_at_once(world));
+    while before < each {
+        let size = world.method.stop.as_ref().map_or(each, |stop| doubled(stop, before));
+        let end = before + size.min(each - before);
+        passes.extend((before..end).step_by(most as usize).map(|start| start..end.min(start + most)));
+        before = end;
+    }
+    passes
 }
 
 fn word(found: Found) -> &'static str {

@@ -9,14 +9,14 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::blur::Blur;
+use super::light_pass::{self, Watch};
 use super::noise::{Measured, Noise, measure};
 use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
-use super::saved::Restored;
+use super::saved::{self, Restored};
 use super::stopping::{Clock, FIRST_LOOK, Stopped, is_wanted_known, next_stage, samples_wanted};
 use super::tile::Tile;
 use super::values::Values;
-use super::{light_pass, saved};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Film, Shard, TilePlace, Window};
 use crate::trace::parallel::{for_each_in_parallel, in_parallel};
@@ -25,7 +25,6 @@ use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::replicates::REPLICATES;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
-use crate::trace::watch::Watch;
 use crate::trace::width::in_lanes_of_layers;
 use crate::trace::{World, media};
 

@@ -139,7 +139,8 @@ impl Tile {
         pass: &Pass,
     ) {
         let place = self.ahead as usize;
-        let [mut added, mut subtracted] = [PassSum::default(), PassSum::default()];
+        // Of samples that are added, and of those that are subtracted.
+        let mut sums = [PassSum::default(), PassSum::default()];
         let mut blurs = [PassSum::default(), PassSum::default()];
         let blurs_are_told = light.tells_blur();
         let rate = world.rate(pixel);
@@ -149,11 +150,11 @@ impl Tile {
             tracer.light_vertices = light.vertices(among_all - pass.numbers.start);
             let sampler = Sampler::of_pixel(pass.seed, pixel, number);
             let sample = tracer.sample(&sampler, pixel);
+            let lobe = usize::from(sample.is_subtracted);
             if blurs_are_told {
-                blurs[usize::from(sample.is_subtracted)].add(&Sample { rgb: tracer.blur(), ..sample });
+                blurs[lobe].add(&Sample { rgb: tracer.blur(), ..sample });
             }
-            let lobe = if sample.is_subtracted { &mut subtracted } else { &mut added };
-            if !lobe.add(&sample) {
+            if !sums[lobe].add(&sample) {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
@@ -166,13 +167,14 @@ impl Tile {
             layers.hand_over(self.layers.rows_mut(&world.layers, place));
         }
         if let Some(replicate) = pass.replicate {
-            self.replicates.add(place, replicate, [&added, &subtracted]);
+            self.replicates.add(place, replicate, sums.each_ref());
             self.replicates.add_blur(place, replicate, blurs.each_ref());
             let caught = self.layers.caught(&world.layers, place);
             if let (Some(after), Some(before)) = (caught, caught_before) {
-                self.replicates.add_alpha(place, replicate, [&added, &subtracted], after.since(before));
+                self.replicates.add_alpha(place, replicate, sums.each_ref(), after.since(before));
             }
         }
+        let [added, subtracted] = sums;
         self.sums[place].add(added);
         if let Some(sum) = self.subtracted.get_mut(place) {
             sum.add(subtracted);

@@ -2,10 +2,8 @@
 
 use std::ops::Range;
 
-use super::follow::{Landing, Start, Surfaces, follow_photon};
-use crate::light::Light;
+use super::follow::{Landing, Photon, Surfaces, follow_photon};
 use crate::math::{BranchKey, Sampler};
-use crate::trace::media::Media;
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Walker};
@@ -38,7 +36,7 @@ pub struct Sent<T> {
 }
 
 /// What is kept of a photon that lands.
-type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &Sampler, &mut Vec<T>) + 'a;
+type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &mut Vec<T>) + 'a;
 
 /// All photons of some targets, after those of so many passes, batch by batch.
 pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
@@ -67,25 +65,23 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
 ) -> Sent<T> {
     let mut walker = Walker::<N, P>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
-    let light = targets.targets[batch.target].light;
+    let target = &targets.targets[batch.target];
+    let light = target.light;
     // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
-    let extended = !matches!(world.scene.lights[light], Light::Point(_) | Light::Spot(_));
-    for photon in batch.first..batch.first + batch.count {
-        let key = [batch.target as u32, (photon >> 32) as u32];
-        let sampler = Sampler::new(batch.seed, key, photon as u32);
+    let is_extended = world.scene.lights[light].is_extended();
+    for number in batch.first..batch.first + batch.count {
+        let key = [batch.target as u32, (number >> 32) as u32];
+        let sampler = Sampler::new(batch.seed, key, number as u32);
         let u = sampler.four(BranchKey::CAMERA, RAY);
-        let more = if extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
-        let guide_uv = targets.guide_uv(batch.target, [u[0], u[1]]);
+        let more = if is_extended { sampler.four_more(BranchKey::CAMERA, RAY)[0] } else { 0.0 };
+        let guide_uv = target.guide.sample([u[0], u[1]]);
         let before = kept.len();
         if let Some(emitted) = targets.sample_le(&world.scene, batch.target, guide_uv, [u[3], more]) {
             let draw = world.method.basis.draw(u[2]);
-            let around = || Media::around(&world.scene, emitted.ray.origin, emitted.ray.direction);
-            let media = world.light_media[light].unwrap_or_else(around);
-            let early = photon < targets.targets[batch.target].photons / 2;
-            let start = Start { emitted: &emitted, light, media, early };
-            follow_photon(&mut walker, start, &draw, &sampler, Surfaces::Smooth, &mut |walker, landing| {
-                land(walker, landing, &sampler, &mut kept);
-            });
+            let (draw, sampler, over) = (&draw, &sampler, Surfaces::Smooth);
+            let early = number < target.photons / 2;
+            let photon = Photon { emitted: &emitted, light, draw, sampler, over, early };
+            follow_photon(&mut walker, &photon, &mut |walker, landing| land(walker, landing, &mut kept));
         }
         if learns {
             places.push((guide_uv, kept.len() > before));

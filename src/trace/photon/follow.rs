@@ -8,7 +8,6 @@ use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
-use crate::trace::media::Media;
 use crate::trace::walk::{Departure, Interaction, Onward, Path, PathKind, Polarization, Polarized, Walker, shading};
 
 /// The branch of what passes holes, beyond those that a material may have.
@@ -17,13 +16,16 @@ const BEYOND: usize = 64;
 const SCATTER: u32 = 4;
 const STRAIGHT: u32 = 9;
 
-/// How a photon starts.
-pub struct Start<'a> {
+/// A photon, or a path from a light: how it starts, and where it goes.
+pub struct Photon<'a, const N: usize> {
     /// How it leaves the light, with its flux per emission.
     pub emitted: &'a LeSample,
     pub light: LightId,
-    pub media: Media,
-    /// Whether the photon is of the first half of those sent with it.
+    /// What its lanes stand for.
+    pub draw: &'a Draw<N>,
+    pub sampler: &'a Sampler,
+    pub over: Surfaces,
+    /// Whether it is of the first half of those sent with it.
     pub early: bool,
 }
 
@@ -31,19 +33,19 @@ pub struct Start<'a> {
 pub struct Landing<'a, const N: usize, P = Polarized> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    pub start: &'a Start<'a>,
+    pub photon: &'a Photon<'a, N>,
 }
 
 impl<const N: usize, P> Landing<'_, N, P> {
     /// What the light shines on the photon's way, per emission.
     pub fn shone(&self, world: &World) -> Lanes<N> {
-        let Start { emitted, light, .. } = *self.start;
+        let Photon { emitted, light, .. } = *self.photon;
         world.scene.lights[light].toward(self.at.arrival.draw, -emitted.ray.direction, emitted.uv())
     }
 
     /// What the photon brings: its flux, lane by lane.
     pub fn flux(&self, world: &World) -> Lanes<N> {
-        self.path.throughput.scaled(self.start.emitted.factor / self.path.eta_scale).of(self.shone(world))
+        self.path.throughput.scaled(self.photon.emitted.factor / self.path.eta_scale).of(self.shone(world))
     }
 }
 
@@ -65,16 +67,13 @@ pub enum Surfaces {
 /// between media.
 pub fn follow_photon<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
-    start: Start,
-    draw: &Draw<N>,
-    sampler: &Sampler,
-    over: Surfaces,
+    photon: &Photon<N>,
     land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
-    let path = Path::from_light(walker.world, draw, start.emitted.ray, start.media);
+    let path = Path::from_light(walker.world, photon.draw, photon.emitted.ray, photon.light);
     *walker.pending.add(|| path) = path;
     while let Some(mut path) = walker.pending.take() {
-        advance(walker, &mut path, &start, draw, sampler, over, land);
+        advance(walker, &mut path, photon, land);
         walker.pending.release(path);
     }
 }
@@ -84,19 +83,17 @@ pub fn follow_photon<const N: usize, P: Polarization<N>>(
 fn advance<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &mut Path<N, P>,
-    start: &Start,
-    draw: &Draw<N>,
-    sampler: &Sampler,
-    over: Surfaces,
+    photon: &Photon<N>,
     land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
 ) {
+    let &Photon { draw, sampler, over, .. } = photon;
     let world = walker.world;
     if path.vertices >= walker.transport.last_vertex() {
         return;
     }
     let Some(meeting) = walker.meet(path, draw) else { return };
     if let Some(onward) = walker.straight(path, draw, &meeting)
-        && passes(walker, path, draw, sampler, &meeting.point, &onward)
+        && passes(walker, path, photon, &meeting.point, &onward)
     {
         return;
     }
@@ -104,7 +101,7 @@ fn advance<const N: usize, P: Polarization<N>>(
         let is_target = world.is_photon_target(meeting.hit.object, meeting.point.position);
         match over {
             Surfaces::Smooth if !is_target => return,
-            Surfaces::AllButPhotons if is_target && world.sends_photons(start.light) => return,
+            Surfaces::AllButPhotons if is_target && world.sends_photons(photon.light) => return,
             Surfaces::All | Surfaces::AllButPhotons if !is_target => path.kind = PathKind::Wide,
             _ => {}
         }
@@ -127,7 +124,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     let allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown {
-        land(walker, &Landing { path, at: &at, start });
+        land(walker, &Landing { path, at: &at, photon });
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
@@ -142,8 +139,7 @@ fn advance<const N: usize, P: Polarization<N>>(
 fn passes<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &mut Path<N, P>,
-    draw: &Draw<N>,
-    sampler: &Sampler,
+    Photon { draw, sampler, .. }: &Photon<N>,
     point: &SurfacePoint,
     onward: &Onward<N, P>,
 ) -> bool {

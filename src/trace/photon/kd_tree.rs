@@ -16,7 +16,7 @@ pub struct KdTree<T> {
     found: Vec<T>,
     /// Level by level: the children of split i are 2 i + 1 and 2 i + 2.
     splits: Vec<Split>,
-    bounds: Option<Bounds>,
+    bounds: Bounds,
 }
 
 /// A plane that has one half of a range before it and the other beyond.
@@ -37,13 +37,14 @@ impl<T> KdTree<T> {
         let mut given: Vec<Option<T>> = points.into_iter().map(|point| Some(point.1)).collect();
         let found = order.iter().filter_map(|&(_, number)| given[number as usize].take()).collect();
         let points: Vec<DVec3> = order.into_iter().map(|point| point.0).collect();
-        let bounds = points.iter().map(|&point| Bounds { min: point, max: point }).reduce(Bounds::union);
+        let bounds = Bounds::around(points.iter().copied());
         Self { points, found, splits, bounds }
     }
 
     /// Visits all points nearer to a place than a radius, in an order that never changes.
     pub fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
-        let Some(Bounds { min, max }) = self.bounds else { return };
+        let Bounds { min, max } = self.bounds;
+        // From what holds nothing everything is infinitely far.
         if (place.clamp(min, max) - place).length_squared() < radius * radius {
             self.visit(0, 0..self.points.len(), place, radius, visit);
         }
@@ -80,8 +81,8 @@ fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
         points.sort_unstable_by_key(|point| point.1);
         return;
     }
-    let [low, high] = [DVec3::min, DVec3::max].map(|of| points.iter().map(|point| point.0).reduce(of));
-    let size = high.unwrap_or_default() - low.unwrap_or_default();
+    let bounds = Bounds::around(points.iter().map(|point| point.0));
+    let size = bounds.max - bounds.min;
     let axis = (1..3).fold(0, |widest, axis| if size[axis] > size[widest] { axis } else { widest });
     let middle = points.len() / 2;
     let order = |a: &(DVec3, u32), b: &(DVec3, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));

@@ -5,6 +5,7 @@ mod follow;
 mod gather;
 mod kd_tree;
 mod kernel;
+mod light_paths;
 mod light_vertices;
 mod pass_light;
 mod photon_map;
@@ -13,9 +14,8 @@ mod usefulness;
 
 pub use batch::{Batch, batches, batches_of_pass, send};
 pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
-pub use light_vertices::{
-    LightPaths, LightVertex, LightVertices, SHARED, can_be_followed, few_vertices, holds_vertices,
-};
+pub use light_paths::{LightPaths, SHARED, can_be_followed, few_vertices};
+pub use light_vertices::{LightVertex, LightVertices, holds_vertices};
 pub use pass_light::PassLight;
 pub use photon_map::{PhotonMap, photons, send_kept};
 pub use show::{Splat, send_shown, show};

@@ -1,6 +1,7 @@
 //! What all camera samples of a pass share: gathered photons and vertices of light paths.
 
-use super::light_vertices::{LightPaths, LightVertices, SHARED};
+use super::light_paths::{LightPaths, SHARED};
+use super::light_vertices::LightVertices;
 use super::photon_map::{PhotonMap, photons};
 use crate::trace::World;
 use crate::trace::pass::Pass;

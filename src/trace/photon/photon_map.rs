@@ -5,7 +5,7 @@
 //! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
 use super::batch::{Batch, Sent, batches_of_pass, send};
-use super::follow::Landing;
+use super::follow::{Landing, Photon};
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
 use crate::light::LightId;
@@ -106,7 +106,7 @@ pub fn send_kept<const N: usize, P: Polarization<N>>(
     targets: &PhotonTargets,
     batch: Batch,
 ) -> Sent<(DVec3, Kept<N, P::Landed>)> {
-    send(world, targets, batch, false, &|_, landing: &Landing<N, P>, _, kept| keep(world, landing, kept))
+    send(world, targets, batch, false, &|_, landing: &Landing<N, P>, kept| keep(world, landing, kept))
 }
 
 /// Keeps a photon where it lands.
@@ -115,7 +115,7 @@ fn keep<const N: usize, P: Polarization<N>>(
     landing: &Landing<N, P>,
     kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
 ) {
-    let Landing { path, at, start } = landing;
+    let Landing { path, at, photon: Photon { light, .. } } = *landing;
     let Interaction { arrival, flat, point, .. } = at;
     let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
     let photon = Landed {
@@ -126,7 +126,7 @@ fn keep<const N: usize, P: Polarization<N>>(
         polarization: path.polarization.landed(at),
         carries: (),
     };
-    let (light, response) = (start.light, &world.responses[start.light]);
+    let (light, response) = (*light, &world.responses[*light]);
     let by_heroes = Matching::<N>::alone(arrival.draw, flux, path.parted, |lane, wavelength, weight| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
         let polarization = P::read_landed(&photon.polarization, of_lane);

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::batch::{Batch, Sent, send};
-use super::follow::{Landing, Start};
+use super::follow::{Landing, Photon};
 use crate::light::LightId;
 use crate::material::Arrival;
-use crate::math::{DVec2, DVec3, Ray, Sampler};
+use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::{Ends, FilmSettings, Seen, Sight};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
@@ -70,7 +70,6 @@ pub fn send_shown<const N: usize, P: Polarization<N>>(
 struct View<'v, 'a, const N: usize, P: Polarization<N>> {
     walker: &'v Walker<'a, N, P>,
     landing: &'v Landing<'v, N, P>,
-    sampler: &'v Sampler,
     seen: Seen,
     /// Where on the film, near enough to the window.
     places: Vec<DVec2>,
@@ -86,10 +85,9 @@ struct View<'v, 'a, const N: usize, P: Polarization<N>> {
 pub fn show<const N: usize, P: Polarization<N>>(
     walker: &Walker<N, P>,
     landing: &Landing<N, P>,
-    sampler: &Sampler,
     splats: &mut Vec<Splat>,
 ) {
-    let Some(view) = View::new(walker, landing, sampler) else { return };
+    let Some(view) = View::new(walker, landing) else { return };
     view.spread(view.scattered(), splats);
     if let Some(dyes) = &walker.world.dyes {
         for (number, dye) in dyes.of(&walker.world.scene, landing.at.object).enumerate() {
@@ -100,8 +98,8 @@ pub fn show<const N: usize, P: Polarization<N>>(
 
 impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
     /// None where the camera does not see the place.
-    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>, sampler: &'v Sampler) -> Option<Self> {
-        let Landing { path, at, .. } = landing;
+    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>) -> Option<Self> {
+        let Landing { path, at, photon } = landing;
         let Interaction { arrival, flat, point, lobes, .. } = at;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
@@ -109,7 +107,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         if matches!(sight, Sight::Hidden | Sight::Holdout) {
             return None;
         }
-        let u = if camera.has_lens() { sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
+        let u = if camera.has_lens() { photon.sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
         let seen = camera.see(point.position, [u[0], u[1]])?;
         let (window, reach) = (film.window(), film.filter.reach());
         let mut places = camera.places(seen.film, reach + f64::from(film.overscan.widest()));
@@ -123,7 +121,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let [side, normal] = shading::normals_of(*lobes, point, seen.direction);
         let turned = Arrival { wo: seen.direction, normal, ..*arrival };
         let viewed = if same { turned } else { turned.turned_around() };
-        Some(Self { walker, landing, sampler, seen, places, same, viewed, side, sight })
+        Some(Self { walker, landing, seen, places, same, viewed, side, sight })
     }
 
     /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
@@ -157,7 +155,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let Interaction { arrival, flat, .. } = self.landing.at;
         let cosines = self.seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
         let filter = self.walker.world.scene.camera.filter();
-        self.landing.start.emitted.factor
+        self.landing.photon.emitted.factor
             * cosines
             * self.seen.importance
             * filter.map_or(1.0, |filter| filter.transmittance())
@@ -176,17 +174,17 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let polarized = path.polarization.seen(at, viewed, &on_its_way, world, &self.back());
         let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
-        let reflected = || FirstLobe::reflected(world.layers.white.as_ref(), material, at.lobes, viewed, arrival.wo);
-        let lobe = || if *same { reflected() } else { FirstLobe::Transmitted };
-        let first = world.layers.tell_lobes_apart().then(lobe);
-        let arrived = Arrived { source: landing.start.light, draw: arrival.draw, lanes, parted };
+        let white = world.layers.white.as_ref();
+        let lobe = || FirstLobe::scattered(white, material, at.lobes, viewed, arrival.wo, !same);
+        let first = world.layers.lobes_apart.then(lobe);
+        let arrived = Arrived { source: landing.photon.light, draw: arrival.draw, lanes, parted };
         Some(self.splat(&arrived, &polarized, parted, first))
     }
 
     /// What a dye, one of its material by a number, shines toward the camera.
     fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
         let Self { landing, viewed, side, .. } = self;
-        let Landing { path, at, .. } = landing;
+        let Landing { path, at, photon } = landing;
         let world = self.walker.world;
         if !self.same {
             return None;
@@ -194,10 +192,9 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let (bsdf_cos, _) = shading::evaluate(&dyes.white, viewed, *side, at.arrival.wo)?;
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * landing.shone(world));
         let parted = path.parted;
-        let brightness =
-            dyes.excited(dye, &Arrived { source: landing.start.light, draw: at.arrival.draw, lanes, parted });
+        let brightness = dyes.excited(dye, &Arrived { source: photon.light, draw: at.arrival.draw, lanes, parted });
         // Its light is of other wavelengths than that of the photon, whose lanes may have parted.
-        let draw = &world.method.basis.draw(self.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
+        let draw = &world.method.basis.draw(photon.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
         let mut shares = Vec::new();
         at.material.shares_of_dyes(&Arrival { draw, ..*viewed }, Lanes::ONE, &mut shares);
         let at = &at.of_dye(&dyes.white, draw);
@@ -209,7 +206,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
-        let first = world.layers.tell_lobes_apart().then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
+        let first = world.layers.lobes_apart.then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
         Some(self.splat(&arrived, &polarized, parted, first))
     }
 
@@ -228,7 +225,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let bands = spectrum.map(|spectrum| of_bands(spectrum).into_iter().map(|x| x as f32).collect());
         let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
         let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
-        let Start { light, early, .. } = *self.landing.start;
+        let Photon { light, early, .. } = *self.landing.photon;
         let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
         let (bounces, caught) = (self.landing.path.surfaces(), self.sight == Sight::ShadowCatcher);

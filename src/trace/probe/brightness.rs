@@ -1,15 +1,14 @@
 //! What lights a room, learned from a few camera samples.
 
-use std::cell::RefCell;
-
-use super::clusters::{Cluster, clusters, span};
+use super::clusters::{Cluster, bounds_of_most, clusters};
+use super::findings::found_all_over;
 use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
-use crate::trace::camera::{Bounce, Observer, PathTracer};
+use crate::trace::camera::{Bounce, Finding};
 use crate::trace::photon::few_vertices;
 use crate::trace::width::in_lanes;
-use crate::trace::{RAYS_OF_A_LOOK, Transport, World};
+use crate::trace::{Transport, World};
 
 /// Camera samples along each side of the image: few that look for a room, and those that look what lights it.
 const FEW: u32 = 24;
@@ -21,8 +20,6 @@ const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
 /// Share of the bounces' weight inside rooms from which on it is a picture of a room.
 const ENOUGH: f64 = 0.25;
-/// Share of the weight that may lie beyond each side of the room.
-const BEYOND: f64 = 0.01;
 /// Points that are gathered into places.
 const POINTS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
@@ -47,28 +44,11 @@ fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
 
 /// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
 pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
-    let film = world.scene.film;
-    let found = Bounces::default();
     let vertices = few_vertices::<N>(world);
-    let mut tracer = PathTracer::<N>::new(world).with_observer(&found);
-    tracer.light_vertices = vertices.as_ref();
-    for (place, [x, y]) in (0..).zip(film.whole().middles_of_cells(side)) {
-        tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
-        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
-            break;
-        }
-    }
-    found.0.into_inner()
-}
-
-/// All bounces that were told of.
-#[derive(Default)]
-struct Bounces(RefCell<Vec<Bounce>>);
-
-impl Observer for Bounces {
-    fn bounce(&self, bounce: Bounce) {
-        self.0.borrow_mut().push(bounce);
-    }
+    found_all_over(world, side, SEED, vertices.as_ref(), |finding| match finding {
+        Finding::Bounce(bounce) => Some(bounce),
+        _ => None,
+    })
 }
 
 fn weight(bounces: &[Bounce]) -> f64 {
@@ -89,7 +69,7 @@ fn inside_of(world: &World, bounces: Vec<Bounce>) -> Option<Vec<Bounce>> {
 
 fn learned(mut inside: Vec<Bounce>) -> Option<BrightPlaces> {
     let room = room_of(&inside);
-    inside.retain(|bounce| !(bounce.from.cmplt(room.min).any() || bounce.from.cmpgt(room.max).any()));
+    inside.retain(|bounce| room.contains(bounce.from));
     let lit = inside.iter().filter(|bounce| bounce.light > 0.0);
     let points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light)).collect();
     let step = points.len().div_ceil(POINTS).max(1);
@@ -132,8 +112,7 @@ fn is_inside(world: &World, bounce: &Bounce, sampler: &Sampler) -> bool {
 /// The box in which bounces begin, but for a few.
 fn room_of(inside: &[Bounce]) -> Bounds {
     let from: Vec<(DVec3, f64)> = inside.iter().map(|bounce| (bounce.from, bounce.weight)).collect();
-    let [x, y, z] = DVec3::AXES.map(|axis| span(&from, weight(inside), axis, BEYOND));
-    let (min, max) = (DVec3::new(x[0], y[0], z[0]), DVec3::new(x[1], y[1], z[1]));
+    let Bounds { min, max } = bounds_of_most(&from, weight(inside));
     let margin = 1e-6 * (max - min).length();
     Bounds { min: min - margin, max: max + margin }
 }

@@ -1,6 +1,6 @@
 //! Points of light are gathered into few rectangles that fill their planes.
 
-use crate::math::{DVec3, Frame};
+use crate::math::{Bounds, DVec3, Frame};
 
 /// A rectangle about weighted points.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub struct Cluster {
 
 /// Share of the weight that is left out at each end of a rectangle's edge.
 const OUTSIDE: f64 = 0.02;
+/// Share of the weight that may lie beyond each side of a box.
+const BEYOND: f64 = 0.01;
 /// Directions of a rectangle's edge that are tried, over a right angle.
 const TURNS: u32 = 12;
 /// Planes between which points may be split, along each axis.
@@ -159,8 +161,14 @@ fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     normal
 }
 
+/// A box around weighted points, but for a few beyond each side of it.
+pub fn bounds_of_most(points: &[(DVec3, f64)], weight: f64) -> Bounds {
+    let [x, y, z] = DVec3::AXES.map(|axis| span(points, weight, axis, BEYOND));
+    Bounds { min: DVec3::new(x[0], y[0], z[0]), max: DVec3::new(x[1], y[1], z[1]) }
+}
+
 /// From where to where weighted points reach along an axis, without a share of all their weight at each end.
-pub fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3, outside: f64) -> [f64; 2] {
+fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3, outside: f64) -> [f64; 2] {
     let mut along: Vec<(f64, f64)> = points.iter().map(|(point, share)| (point.dot(axis), *share)).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
     [reach(along.iter(), outside * weight), reach(along.iter().rev(), outside * weight)]

@@ -35,24 +35,18 @@ const SIDES: [u32; 2] = [SIDE, SIDE / 4];
 
 /// What cells of the image show in both copies.
 struct Cells {
-    size: [u32; 2],
-    across: u32,
-    down: u32,
+    window: Window,
+    side: u32,
     cells: Vec<[Amount; 2]>,
 }
 
 impl Cells {
     fn new(window: Window, side: u32) -> Self {
-        let [across, down] = [window.width.min(side), window.height.min(side)];
-        let cells = vec![[Amount::default(); 2]; (across * down) as usize];
-        Self { size: [window.width, window.height], across, down, cells }
+        Self { window, side, cells: vec![[Amount::default(); 2]; (side * side) as usize] }
     }
 
-    fn add(&mut self, [x, y]: [u32; 2], copy: usize, found: Amount) {
-        let cell = |at: u32, cells: u32, size: u32| u64::from(at) * u64::from(cells) / u64::from(size);
-        let [width, height] = self.size;
-        let place = cell(y, self.down, height) * u64::from(self.across) + cell(x, self.across, width);
-        self.cells[place as usize][copy] += found;
+    fn add(&mut self, pixel: [u32; 2], copy: usize, found: Amount) {
+        self.cells[self.window.cell_of(self.side, pixel)][copy] += found;
     }
 
     fn error(&self) -> f64 {
@@ -63,7 +57,9 @@ impl Cells {
             spread += error * error;
             squares += (a.light + a.change) * (b.light + b.change);
         }
-        let chance = f64::sqrt((spread - errors * errors / self.cells.len() as f64).max(0.0));
+        // Of an image with fewer pixels, cells are empty.
+        let count = f64::from(self.window.width.min(self.side) * self.window.height.min(self.side));
+        let chance = f64::sqrt((spread - errors * errors / count).max(0.0));
         if squares > 0.0 { f64::sqrt((f64::max(errors, 0.0) + chance) / squares) } else { 0.0 }
     }
 }

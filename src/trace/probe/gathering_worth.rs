@@ -6,8 +6,8 @@ use super::pilot::SampleWorth;
 use super::reach::reaches_photons;
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
-use crate::trace::camera::{Observer, PathTracer};
-use crate::trace::contribution::{Contribution, Found, add};
+use crate::trace::camera::{Finding, PathTracer};
+use crate::trace::contribution::{Contribution, Found};
 use crate::trace::pass::Pass;
 use crate::trace::photon::photons;
 use crate::trace::walk::Polarized;
@@ -44,20 +44,6 @@ pub fn gathered_worth(world: &World, places: &[DVec3]) -> Option<GatheredWorth> 
     in_lanes!(&world.method.basis, N => gather::<N>(world, places))
 }
 
-/// All light that was gathered.
-#[derive(Default)]
-struct Gathered(Cell<[f64; 3]>);
-
-impl Observer for Gathered {
-    fn receive(&self, contribution: &Contribution) {
-        if contribution.found == Found::Gathered {
-            let mut sum = self.0.get();
-            add(&mut sum, contribution.rgb);
-            self.0.set(sum);
-        }
-    }
-}
-
 /// Sums of some values and of their squares.
 #[derive(Clone, Copy, Default)]
 struct Sums([[f64; 2]; 3]);
@@ -88,24 +74,30 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
             return None;
         }
         (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
-        let by_gathering = Gathered::default();
-        let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&by_gathering);
+        let all_gathered = Cell::new([0.0; 3]);
+        let observer = |finding: Finding| {
+            if let Finding::Light(Contribution { found: Found::Gathered, rgb, .. }) = finding {
+                let sum: [f64; 3] = all_gathered.get();
+                all_gathered.set(std::array::from_fn(|i| sum[i] + rgb[i]));
+            }
+        };
+        let mut tracer = PathTracer::<N>::new(world).with_photons(Some(&photons)).with_observer(&observer);
         let mut looked_at = 0;
         for (place, &[x, y]) in places.iter().enumerate() {
-            let before = by_gathering.0.get();
+            let before = all_gathered.get();
             for number in 0..SAMPLES {
-                let so_far = by_gathering.0.get();
+                let so_far = all_gathered.get();
                 let sampler = Sampler::of_pixel((world.method.seed ^ SEED).wrapping_add(u64::from(number)), [x, y], 0);
                 let found = tracer.sample(&sampler, [x, y]).rgb;
-                let gathered = by_gathering.0.get();
-                let others = std::array::from_fn(|i| found[i] - (gathered[i] - so_far[i]));
-                let here = apply(&to_xyz, std::array::from_fn(|i| gathered[i] - so_far[i]));
+                let gathered = all_gathered.get();
+                let of_sample: [f64; 3] = std::array::from_fn(|i| gathered[i] - so_far[i]);
+                let here = apply(&to_xyz, of_sample);
                 second_moment += here.iter().filter(|x| x.is_finite()).map(|x| x * x).sum::<f64>();
                 if map == 0 {
-                    by_samples[place].add(apply(&to_xyz, others));
+                    by_samples[place].add(apply(&to_xyz, std::array::from_fn(|i| found[i] - of_sample[i])));
                 }
             }
-            let gathered = by_gathering.0.get();
+            let gathered = all_gathered.get();
             let mean = std::array::from_fn(|i| (gathered[i] - before[i]) / f64::from(SAMPLES));
             by_photons[place].add(apply(&to_xyz, mean));
             looked_at += 1;

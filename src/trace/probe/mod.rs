@@ -6,6 +6,7 @@ mod clusters;
 mod compared;
 mod cost;
 mod density_pilot;
+mod findings;
 mod gathering_worth;
 mod pilot;
 mod pilot_noise;

@@ -5,15 +5,13 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::brightness::bounces;
-use super::clusters::span;
-use crate::light::{Light, LightId};
+use super::clusters::bounds_of_most;
+use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Ends;
 use crate::shape::Ball;
-use crate::spectrum::Table;
 use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
-use crate::trace::path_start::place_in_disc;
 use crate::trace::photon::{LightPaths, can_be_followed};
 use crate::trace::width::in_lanes;
 use crate::trace::{Sunlit, World};
@@ -24,8 +22,6 @@ const SIDE: u32 = 48;
 const SUNS: usize = 4;
 /// Fewest places that tell where paths should start.
 const FEWEST: usize = 16;
-/// Share of the light that may lie beyond each side of a box around the places.
-const BEYOND: f64 = 0.01;
 /// Of the way to a place, how far off it the ray to the sun starts: it only guides.
 const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
@@ -61,7 +57,7 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
     let (last_occluder, counts) = (Cell::new(None), |object| !world.is_see_through(object));
     let lit_along = |(number, &(origin, found)): (u32, &(DVec3, f64))| {
         let u = Sampler::new(world.method.seed ^ SEED, [0, 0], number).four_plain(BranchKey::CAMERA, 0);
-        let direction = toward(light, [u[0], u[1]])?;
+        let direction = light.bright_direction([u[0], u[1]])?;
         let ray = Ray { origin, direction };
         let is_hidden = world.scene.is_occluded_by(&ray, f64::INFINITY, Ends::default(), &last_occluder, &counts);
         (!is_hidden).then_some(((origin, found), direction))
@@ -71,24 +67,14 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
         return None;
     }
     let all: f64 = lit.iter().map(|place| place.1).sum();
-    let [x, y, z] = DVec3::AXES.map(|axis| span(&lit, all, axis, BEYOND));
-    let [low, high] = [0, 1].map(|i| DVec3::new(x[i], y[i], z[i]));
-    let (center, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+    let bounds = bounds_of_most(&lit, all);
+    let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length());
     let beam = light.beam(&Ball { center, radius })?;
     let mut cells = BTreeMap::new();
     for ((origin, found), direction) in lit.into_iter().zip(directions) {
-        if let Some(place) = place_in_disc(light, &beam, &Ray { origin, direction }) {
+        if let Some(place) = beam.place_in_disc(origin, direction) {
             *cells.entry(cell_of(place) as u32).or_insert(0.0) += (found / all) as f32;
         }
     }
     Some(Sunlit { light: id, center, radius, cells: cells.into_iter().collect() })
-}
-
-/// The direction toward the middle of a sun, or one toward what is bright in the image of a sky.
-fn toward(light: &Light<Table>, u: [f64; 2]) -> Option<DVec3> {
-    match light {
-        Light::Sun(sun) => Some(sun.middle()),
-        Light::Environment(sky) => Some(sky.sample_bright(u)?.0),
-        Light::Area(_) | Light::Point(_) | Light::Spot(_) => None,
-    }
 }

@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use crate::light::{Light, LightId};
 use crate::math::{DVec3, Sampler};
 use crate::trace::World;
-use crate::trace::camera::{Observer, PathTracer};
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::camera::{Finding, PathTracer};
+use crate::trace::contribution::Found;
 use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image.
@@ -36,33 +36,28 @@ pub fn learn_visible_caps(world: &mut World) {
     }
 }
 
-/// The lights that paths hit by chance, with the unit normals there.
+/// The lights that paths hit by chance, in directions that were drawn where lights were sampled as well, with the unit
+/// normals there.
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
-    let met = Met::default();
-    let mut tracer = PathTracer::<N>::new(world).with_observer(&met);
+    let met = RefCell::new(Vec::new());
+    let observer = |finding: Finding| {
+        if let Finding::Light(contribution) = finding
+            && let (Some(light), Found::Hit { normal: Some(normal), scattered: true }) =
+                (contribution.light, contribution.found)
+        {
+            met.borrow_mut().push((light, normal));
+        }
+    };
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
     // A stride that is coprime to the number of places visits them all, far ones first.
     let places = SIDE * SIDE;
     for place in (0..places).map(|i| (i * 1597) % places) {
         let [x, y] = film.whole().middle_of_cell(SIDE, place);
         tracer.sample(&Sampler::of_pixel(world.method.seed ^ SEED, [x, y], place), [x, y]);
-        if met.0.borrow().len() >= ENOUGH {
+        if met.borrow().len() >= ENOUGH {
             break;
         }
     }
-    met.0.into_inner()
-}
-
-/// The lights hit in directions that were drawn where lights were sampled as well.
-#[derive(Default)]
-struct Met(RefCell<Vec<(LightId, DVec3)>>);
-
-impl Observer for Met {
-    fn receive(&self, contribution: &Contribution) {
-        if let (Some(light), Found::Hit { normal: Some(normal), scattered: true }) =
-            (contribution.light, contribution.found)
-        {
-            self.0.borrow_mut().push((light, normal));
-        }
-    }
+    met.into_inner()
 }

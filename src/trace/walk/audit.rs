@@ -14,10 +14,10 @@
 use super::interaction::Interaction;
 use super::path::Path;
 use super::polarization::Onward;
-use crate::material::{Branch, Index, Straight};
+use crate::material::{Branch, Straight};
 use crate::spectrum::{Draw, Lanes, Throughput};
 use crate::trace::World;
-use crate::trace::media::{Media, index_around};
+use crate::trace::media::{Media, index};
 use crate::trace::white::White;
 
 /// The balance of one camera sample after another.
@@ -126,9 +126,6 @@ impl<'a, const N: usize> Audit<'a, N> {
 
     /// The index of each lane among the bodies around a place.
     fn indices(&self, media: &Media, draw: &Draw<N>) -> [f64; N] {
-        match index_around(&self.world.scene, media.inside(&self.world.scene)) {
-            Index::Same(index) => [index; N],
-            Index::Own(table) => draw.read_exact(table),
-        }
+        index(&self.world.scene, draw, media.inside(&self.world.scene))
     }
 }

@@ -1,6 +1,7 @@
 use super::interaction::{Arriving, Interaction};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
+use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray};
 use crate::scene::Primitive;
 use crate::shape::SurfacePoint;
@@ -151,10 +152,11 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Self::starting(world, PathKind::Camera, throughput, ray, media, polarization)
     }
 
-    /// The path of a ray that leaves a light, inside of some bodies.
-    pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, media: Media) -> Self {
+    /// The path of a ray that leaves a light.
+    pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, light: LightId) -> Self {
         let throughput = Throughput::starting(draw.start());
-        Self::starting(world, PathKind::Other, throughput, ray, media, P::of_light(world, &ray))
+        let (media, polarization) = (world.media_at_light(light, &ray), P::of_light(world, &ray));
+        Self::starting(world, PathKind::Other, throughput, ray, media, polarization)
     }
 
     #[inline(always)]
@@ -221,13 +223,10 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         wi: DVec3,
         crosses: bool,
     ) -> Option<FirstLobe> {
-        if self.bounces > 0 || !world.layers.tell_lobes_apart() {
+        if self.bounces > 0 || !world.layers.lobes_apart {
             return self.first;
         }
-        Some(match crosses {
-            true => FirstLobe::Transmitted,
-            false => FirstLobe::reflected(world.layers.white.as_ref(), material, *lobes, arrival, wi),
-        })
+        Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, arrival, wi, crosses))
     }
 
     /// Its ray, as it arrives at a surface.

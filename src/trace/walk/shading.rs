@@ -14,23 +14,23 @@ use crate::spectrum::{Lanes, Table};
 
 /// The triangle's normal and the shading normal, both on the side of the unit vector `wo` to the viewer.
 pub fn normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
-    let front = point.normal.dot(-wo) < 0.0;
-    let [flat, smooth] = [point.normal, point.shading].map(|normal| if front { normal } else { -normal });
+    let [flat, smooth] = plain_normals(point, wo);
     if flat == smooth { [flat; 2] } else { [flat, bent(wo, flat, smooth)] }
 }
 
 /// The same for a material of some lobes: what is matte looks the same to every viewer, by its shading normal as it is.
 pub fn normals_of(lobes: Lobes, point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
-    if lobes != Lobes::DIFFUSE_REFLECTION {
-        return normals(point, wo);
-    }
-    let smooth = plain_normal(point, wo);
-    [if point.normal.dot(wo) > 0.0 { point.normal } else { -point.normal }, smooth]
+    if lobes == Lobes::DIFFUSE_REFLECTION { plain_normals(point, wo) } else { normals(point, wo) }
+}
+
+fn plain_normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
+    let is_front = point.normal.dot(wo) > 0.0;
+    [point.normal, point.shading].map(|normal| if is_front { normal } else { -normal })
 }
 
 /// The shading normal on the side of the unit vector `wo`, as it is.
 pub fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
-    if point.normal.dot(wo) > 0.0 { point.shading } else { -point.shading }
+    plain_normals(point, wo)[1]
 }
 
 /// Whether light goes from `wi` to the viewer at `wo` by the shading normal as it is, so that it can be followed either

@@ -16,21 +16,10 @@ use crate::trace::{Transport, World, media};
 /// Use of the random numbers of a ray from the camera that meets a surface with holes.
 const COVER: u32 = 4;
 
-/// What of a path's light goes straight on where it meets a surface; none if nothing does.
-#[inline]
-pub fn straight_on<const N: usize, P: Polarization<N>>(
-    world: &World,
-    draw: &Draw<N>,
-    path: &Path<N, P>,
-    meeting: &Meeting,
-) -> Option<Onward<N, P>> {
-    if world.is_see_through(meeting.hit.object) { through_surface(world, draw, path, meeting) } else { None }
-}
-
-/// The same of a surface that lets light straight on.
+/// What of a path's light goes straight on where it meets a surface that lets light straight on; none if nothing does.
 #[cold]
 #[inline(never)]
-fn through_surface<const N: usize, P: Polarization<N>>(
+pub fn straight_on<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     path: &Path<N, P>,

@@ -88,7 +88,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// What goes straight on through the surface that a path has met; none if nothing does.
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting) -> Option<Onward<N, P>> {
-        straight::straight_on(self.world, draw, path, meeting)
+        let lets_through = self.world.is_see_through(meeting.hit.object);
+        if lets_through { straight::straight_on(self.world, draw, path, meeting) } else { None }
     }
 
     /// The media at the surface that a path has met.
@@ -99,8 +100,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     pub fn boundary(&mut self, path: &Path<N, P>, meeting: &Meeting) -> Result<Boundary, Hidden> {
         let Meeting { hit, point } = meeting;
         let number = self.world.scene.objects[hit.object as usize].material;
-        let enters = point.normal.dot(path.ray.direction) < 0.0;
-        let (boundary, fits) = path.media.at_surface(&self.world.scene, number, enters);
+        let (boundary, fits) = path.media.at_surface(&self.world.scene, number, point, path.ray.direction);
         self.stats.unmatched += u64::from(!fits);
         let is_hidden = boundary.here == boundary.beyond && self.world.scene.material_of(hit.object).medium().is_some();
         if is_hidden { Err(Hidden(boundary)) } else { Ok(boundary) }
@@ -346,7 +346,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.unlit = path.unlit;
         next.excitation = path.excitation;
         next.first = match path.bounces {
-            0 if !wide && !crosses && world.layers.tell_lobes_apart() => Some(FirstLobe::Specular),
+            0 if !wide && !crosses && world.layers.lobes_apart => Some(FirstLobe::Specular),
             _ => path.first_lobe(world, at, branch.wi, crosses),
         };
     }

@@ -1,0 +1,30 @@
+//! What paths from the camera find, all over the image.
+
+use std::cell::RefCell;
+
+use crate::math::Sampler;
+use crate::trace::camera::{Finding, PathTracer};
+use crate::trace::photon::LightVertices;
+use crate::trace::{RAYS_OF_A_LOOK, World};
+
+/// What `wanted` keeps of that which so many camera samples along each side of the image find, as far as there are rays
+/// for them. `seed` sets their random numbers apart.
+pub fn found_all_over<const N: usize, T>(
+    world: &World,
+    side: u32,
+    seed: u64,
+    vertices: Option<&LightVertices<N>>,
+    wanted: impl Fn(Finding) -> Option<T>,
+) -> Vec<T> {
+    let found = RefCell::new(Vec::new());
+    let observer = |finding: Finding| found.borrow_mut().extend(wanted(finding));
+    let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
+    tracer.light_vertices = vertices;
+    for (place, pixel) in (0..).zip(world.scene.film.whole().middles_of_cells(side)) {
+        tracer.sample(&Sampler::of_pixel(world.method.seed ^ seed, pixel, place), pixel);
+        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
+            break;
+        }
+    }
+    found.into_inner()
+}
