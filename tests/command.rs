@@ -210,8 +210,8 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--layers", "albdo,N,varianc", both);
     let both = "there are no layers `normal` (normals are in N), `depth` (leave it out: Z is in every file)";
     is_refused("--layers", "albedo,normal,depth", both);
-    let frames = "frames are a whole number from 0 to 4294967295, or a range such as 1-24 or 1-24x2";
-    (["-3", "1.5", "1-24x0"]).iter().for_each(|wrong| is_refused("--frame", wrong, frames));
+    let frames = "frames are whole numbers from 0 to 4294967295, such as 7, 1-24, 1-24x2 or 3,17,40-50";
+    (["-3", "1.5", "1-24x0", "3,,17"]).iter().for_each(|wrong| is_refused("--frame", wrong, frames));
     is_refused("--frame", "24-1", "24-1 ends before it begins: write 1-24");
     is_refused("--time", "soon", "a time is a number with a unit, such as 60s, 5m or 1h");
     is_refused("--time", "-3s", "a time is a number with a unit, such as 60s, 5m or 1h");

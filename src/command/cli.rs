@@ -100,7 +100,8 @@ struct Arguments {
     set: Vec<String>,
 
     /// The number of a frame: the value of the variable frame, and of every %04d or %d in the names of the files to
-    /// write; %% is a percent there. 1-24 are frames one after another, and 1-24x2 is every second of them
+    /// write; %% is a percent there. 1-24 are frames one after another, 1-24x2 is every second of them, and 3,17,40-50
+    /// are those
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     frame: Option<Frames>,
 
@@ -219,7 +220,7 @@ pub struct Jobs(Box<Arguments>);
 impl Jobs {
     /// How many there are.
     pub fn count(&self) -> u64 {
-        self.0.frame.map_or(1, Frames::count)
+        self.0.frame.as_ref().map_or(1, Frames::count)
     }
 
     /// Processor threads that are asked for.
@@ -234,8 +235,8 @@ impl Jobs {
 
     /// Each by itself.
     pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
-        let frames = self.0.frame;
-        let numbers = frames.into_iter().flat_map(Frames::numbers).map(Some);
+        let frames = &self.0.frame;
+        let numbers = frames.iter().flat_map(Frames::numbers).map(Some);
         let without = frames.is_none().then_some(None);
         numbers.chain(without).map(|frame| job((*self.0).clone(), frame))
     }

@@ -5,30 +5,59 @@ use std::str::FromStr;
 
 use abbe::{Error, Result};
 
-/// Frames that are rendered one after another.
+/// Frames that are rendered one after another, as they were listed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frames(Vec<Run>);
+
+/// From one frame to another in equal steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frames {
+struct Run {
     first: u32,
     last: u32,
     step: u32,
 }
 
 impl Frames {
-    /// Their numbers.
-    pub fn numbers(self) -> impl Iterator<Item = u32> {
-        (self.first..=self.last).step_by(self.step as usize)
+    /// Their numbers, each once.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+        let of_run = |(place, run): (usize, &Run)| {
+            let before = &self.0[..place];
+            run.numbers().filter(move |&number| !before.iter().any(|run| run.contains(number)))
+        };
+        self.0.iter().enumerate().flat_map(of_run)
     }
 
     /// How many they are.
-    pub fn count(self) -> u64 {
-        u64::from((self.last - self.first) / self.step) + 1
+    pub fn count(&self) -> u64 {
+        match &self.0[..] {
+            [run] => u64::from((run.last - run.first) / run.step) + 1,
+            _ => self.numbers().count() as u64,
+        }
+    }
+}
+
+impl Run {
+    fn numbers(self) -> impl Iterator<Item = u32> {
+        (self.first..=self.last).step_by(self.step as usize)
+    }
+
+    fn contains(self, number: u32) -> bool {
+        (self.first..=self.last).contains(&number) && (number - self.first).is_multiple_of(self.step)
     }
 }
 
 impl FromStr for Frames {
     type Err = String;
 
-    /// Of `7`, `1-24` or `1-24x2`.
+    /// Of `7`, `1-24`, `1-24x2`, or several of these with commas between.
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        text.split(',').map(|run| run.trim().parse()).collect::<std::result::Result<_, _>>().map(Self)
+    }
+}
+
+impl FromStr for Run {
+    type Err = String;
+
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         let number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
         let (range, step) = text.split_once('x').map_or((text, Some(1)), |(range, step)| (range, number(step)));
@@ -38,7 +67,7 @@ impl FromStr for Frames {
                 Err(format!("{text} ends before it begins: write {last}-{first}"))
             }
             (Some(first), Some(last), Some(step)) if step > 0 => Ok(Self { first, last, step }),
-            _ => Err(format!("frames are a whole number from 0 to {}, or a range such as 1-24 or 1-24x2", u32::MAX)),
+            _ => Err(format!("frames are whole numbers from 0 to {}, such as 7, 1-24, 1-24x2 or 3,17,40-50", u32::MAX)),
         }
     }
 }
@@ -138,21 +167,40 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_one_or_a_range_with_a_step() {
+    fn frames_are_one_or_a_range_with_a_step_or_several_of_these() {
         let numbers = |text: &str| text.parse::<Frames>().map(|frames| frames.numbers().collect::<Vec<_>>());
         for (text, count) in [("7", 1), ("1-10x4", 3), ("1-9x4", 3), ("1-8x4", 2), ("0-4294967295", 1 << 32)] {
-            assert_eq!(text.parse::<Frames>().map(Frames::count), Ok(count));
+            assert_eq!(text.parse::<Frames>().map(|frames| frames.count()), Ok(count));
         }
         assert_eq!(numbers("7"), Ok(vec![7]));
         assert_eq!(numbers("0-3"), Ok(vec![0, 1, 2, 3]));
         assert_eq!(numbers("4-4"), Ok(vec![4]));
         assert_eq!(numbers("1-10x4"), Ok(vec![1, 5, 9]));
         assert_eq!(numbers("4294967295"), Ok(vec![u32::MAX]));
+        assert_eq!(numbers("17,3,80"), Ok(vec![17, 3, 80]));
+        assert_eq!(numbers("8, 1-10x4, 4-6, 8"), Ok(vec![8, 1, 5, 9, 4, 6]), "each once");
+        assert_eq!("8,1-10x4,4-6,8".parse::<Frames>().map(|frames| frames.count()), Ok(6));
         assert_eq!(numbers("24-1"), Err("24-1 ends before it begins: write 1-24".into()));
-        for wrong in ["", "-3", "1.5", "1-", "-", "1-24x0", "1-24x", "+1", "1-+2", "a", "1-2-3", "4294967296", "1 - 2"]
-        {
+        for wrong in [
+            "",
+            "-3",
+            "1.5",
+            "1-",
+            "-",
+            "1-24x0",
+            "1-24x",
+            "+1",
+            "1-+2",
+            "a",
+            "1-2-3",
+            "4294967296",
+            "1 - 2",
+            "1,",
+            ",",
+            "1,,2",
+        ] {
             let error = numbers(wrong).expect_err(wrong);
-            assert!(error.contains("a range such as 1-24"), "{error}");
+            assert!(error.contains("such as 7, 1-24"), "{error}");
         }
     }
 

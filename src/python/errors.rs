@@ -67,7 +67,10 @@ pub(super) fn no_pickle<T>(what: &str, help: &str) -> PyResult<T> {
 /// If it ends otherwise, or its folder cannot be made.
 pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
     if !path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)) {
-        let message = format!("the file to write ends in .{ending}, not {}", path.display());
+        let message = match path.as_os_str().is_empty() {
+            true => "the file to write has no name".to_owned(),
+            false => format!("the file to write ends in .{ending}, not {}", path.display()),
+        };
         return refuse(message, &format!("for instance: \"image.{ending}\""));
     }
     let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { return Ok(()) };

@@ -434,6 +434,16 @@ def test_folders_are_made_and_other_endings_refused(tmp_path):
         with pytest.raises(abbe.OptionsError, match=rf"the file to write ends in .{ending}, not .*{name}"):
             write(tmp_path / "no" / name)
     assert not (tmp_path / "no").exists()
+    with pytest.raises(abbe.OptionsError, match="the file to write has no name"):
+        image.write_exr("")
+
+
+def test_what_an_image_gives_by_name_is_in_it(tmp_path):
+    image = abbe.render(SCENE, layers=["albedo"])
+    image.write_exr(tmp_path / "a.exr")
+    for shown in (image, abbe.read_exr(tmp_path / "a.exr")):
+        assert all(name in shown for name in ("beauty", "R", "A", "Z", "albedo", "albedo.R"))
+        assert not any(name in shown for name in ("N", "albedo.Q", 3, None))
 
 
 def test_mattes_of_a_file_have_four_channels(tmp_path):

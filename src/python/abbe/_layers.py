@@ -65,7 +65,14 @@ class Layers:
         return list(self.layers)
 
     def __contains__(self, name: object) -> bool:
-        return name in self.layers
+        """Whether there is such a layer, or a channel of this name in the file: what `image[name]` finds."""
+        if not isinstance(name, str):
+            return False
+        try:
+            self._core.plane(name)
+        except KeyError:
+            return False
+        return True
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.layers)

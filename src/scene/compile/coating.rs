@@ -26,14 +26,14 @@ fn of_layers(layers: Vec<CoatingLayer<Asked>>) -> Coating<Asked> {
 fn layer(value: Value) -> Option<CoatingLayer<Asked>> {
     Fields::read(value, |fields| {
         let thickness = spectrum(fields, "thickness_nm");
-        let [metal, n] = ["metal", "n"].map(|key| fields.get(key));
+        let [metal, n, index, k] = ["metal", "n", "index", "k"].map(|key| fields.get(key));
         let (index, k) = match (metal, n) {
             (None, None) => (spectrum(fields, "index"), spectrum_or(fields, "k", 0.0)),
-            (Some(metal), None) if fields.get("index").or(fields.get("k")).is_none() => {
+            (Some(metal), None) if index.is_none() && k.is_none() => {
                 let metal = Asked::There(metal.text().map(|_| metal)?);
                 (metal, metal)
             }
-            (None, Some(n)) if fields.get("index").is_none() => (Asked::There(n), spectrum(fields, "k")),
+            (None, Some(n)) if index.is_none() => (Asked::There(n), spectrum(fields, "k")),
             (Some(given), _) | (None, Some(given)) => {
                 return given
                     .refuse("a layer has an `index` and its `k`, or it is of metal: a `metal`, or its `n` and `k`");
