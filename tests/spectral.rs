@@ -204,6 +204,34 @@ fn ideal_lines_stay_in_their_bands() {
     }
 }
 
+/// Surfaces are known where the eye sees hardly anything as they are where it does.
+#[test]
+fn spectra_know_surfaces_over_all_bands() {
+    let all = "{ from = 360, to = 830, step = 5 }";
+    let (even, edge) = ([[360.0, 0.0], [830.0, 1.0]], [[740.0, 0.2], [760.0, 0.8]]);
+    for (bands, reflectance, most) in [("true", even, 0.02), (all, even, 0.03), ("true", edge, 0.03), (all, edge, 0.05)]
+    {
+        let [[first, low], [last, high]] = reflectance;
+        let image = rendered(&format!(
+            "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\n\
+             film = {{ width = 1, height = 1, spectral = {bands} }}\n\
+             light = [{{ environment.radiance.samples = [[300, 1], [900, 1]] }}]\n\
+             object = [{{ shape.plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"tinted\" }}]\n\
+             material.tinted.mirror.reflectance.samples = [[359, {low}], [{first}, {low}], [{last}, {high}], [831, {high}]]",
+        ));
+        let spectral = image.film().spectral.as_ref().expect("spectra were asked for");
+        let expected = |nm: f64| low + (high - low) * ((nm - first) / (last - first)).clamp(0.0, 1.0);
+        for (band, nm) in spectral.bands.centers_nm().enumerate() {
+            // A band that reaches over the edge or beyond 830 nm has the mean of its known part.
+            let parts = (0..100).map(|i| nm + spectral.bands.step_nm() * ((f64::from(i) + 0.5) / 100.0 - 0.5));
+            let known: Vec<f64> = parts.filter(|&nm| nm <= 830.0).map(expected).collect();
+            let mean = known.iter().sum::<f64>() / known.len() as f64;
+            let off = f64::from(spectral.pixel(0)[band]) - mean;
+            assert!(off.abs() <= most, "{bands}, {reflectance:?}: off by {off} at {nm} nm");
+        }
+    }
+}
+
 /// Glass that parts lanes in an even world shows that world, in every band: what a prism's spectra add up to.
 #[test]
 fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {

@@ -3,7 +3,7 @@
 use super::dyes;
 use super::seen::Seen;
 use super::survey::{Survey, Tint, lanes, missed, strongest};
-use crate::spectrum::{Basis, Draw, Emission, MAX_LANES, Quantity, Upsampler};
+use crate::spectrum::{Basis, Draw, Emission, MAX_LANES, Quantity, Upsampler, WavelengthBands};
 
 /// One model with the largest error of a color that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,12 +129,17 @@ pub(super) fn own_lines(survey: &Survey, heroes: usize) -> Vec<f64> {
 
 /// Fixed lanes that leave room for heroes: a scene's emission lines, and as many wavelengths as fit beside them.
 pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basis {
+    bands_showing(survey, bands, heroes, None)
+}
+
+/// The same over all bands of a spectral image, if there are any: beyond the first and last wavelength, surfaces are
+/// taken to be as they are there.
+pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown: Option<&WavelengthBands>) -> Basis {
     let lines = own_lines(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());
-    let basis = match survey.needs_ultraviolet() {
-        true => Basis::bands_from_ultraviolet(survey.color_space, bands, &lines),
-        false => Basis::bands(survey.color_space, bands, &lines),
-    };
+    let [from, to] = Basis::best_range_nm(bands, survey.needs_ultraviolet());
+    let [first, last] = shown.map_or([from, to], WavelengthBands::range_nm);
+    let basis = Basis::bands_over(survey.color_space, bands, [from.min(first), to.max(last)], &lines);
     let (lights, dyes) = survey.shining();
     basis.seen_under(&lights, &dyes)
 }

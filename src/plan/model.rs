@@ -2,7 +2,7 @@
 
 use std::cell::LazyCell;
 
-use super::candidates::{Candidate, LANES_SAFETY, bands_beside, candidates, error, own_lines};
+use super::candidates::{Candidate, LANES_SAFETY, bands_beside, bands_showing, candidates, error, own_lines};
 use super::dyes::spoken as spoken_dyes;
 use super::films::spoken as spoken_film;
 use super::seen::Seen;
@@ -43,7 +43,8 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let hero = asks_hero || (scene.render.model == ModelText::Auto && visible);
     let filled = dispersion.is_some_and(|d| d.seen > FILLED);
     let [bands, heroes] = HERO[usize::from(filled)];
-    let spectral = scene.format.spectral.is_some();
+    let shown = scene.format.spectral.as_ref();
+    let spectral = shown.is_some();
     let candidates = candidates(&survey, &seen, if hero { heroes } else { 0 });
     let tolerance = tolerance(scene);
     let fewest = if hero { bands_beside(&survey, bands, heroes).fixed_lanes() } else { 0 };
@@ -52,22 +53,22 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let is_exact = survey.is_plain() && candidates[0].error == 0.0;
     let with_heroes = |bands| {
         let lights = survey.emissions();
-        let basis = bands_beside(&survey, bands, heroes).with_heroes(heroes, &lights);
-        match &scene.format.spectral {
-            Some(shown) => basis.showing(shown, &lights),
-            None => basis,
-        }
+        let basis = bands_showing(&survey, bands, heroes, shown).with_heroes(heroes, &lights);
+        shown.iter().fold(basis, |basis, shown| basis.showing(shown, &lights))
     };
     let (basis, why) = match scene.render.model {
-        _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
+        _ if hero && spectral && asks_hero => (with_heroes(MAX_LANES), "the scene asks for it".to_owned()),
         _ if hero && spectral => (with_heroes(MAX_LANES), "dispersion is seen, and spectra are asked for".to_owned()),
+        _ if hero && asks_hero => (with_heroes(bands), "the scene asks for it".to_owned()),
         _ if hero => {
             let least = candidates[chosen].basis.fixed_lanes().saturating_sub(own_lines(&survey, heroes).len());
             (with_heroes(bands.max(least)), "dispersion is seen".to_owned())
         }
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
         ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
-        _ if spectral => (bands_beside(&survey, MAX_LANES, 0), "the most there are, for the spectra".to_owned()),
+        _ if spectral => {
+            (bands_showing(&survey, MAX_LANES, 0, shown), "the most there are, for the spectra".to_owned())
+        }
         _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
     };
     let next =

@@ -78,13 +78,7 @@ impl Basis {
     /// # Panics
     /// If lanes and lines are none or more than [`MAX_LANES`].
     pub fn bands(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
-        let (from, to) = match bands {
-            ..=8 => (410.0, 710.0),
-            9..=14 => (400.0, 700.0),
-            15..=23 => (380.0, 730.0),
-            _ => (390.0, 730.0),
-        };
-        Self::evenly(space, bands, [from, to], lines_nm)
+        Self::bands_over(space, bands, Self::best_range_nm(bands, false), lines_nm)
     }
 
     /// As many wavelengths in equal steps from 300 to 730 nm, for dyes that ultraviolet light excites, and a lane of
@@ -93,11 +87,27 @@ impl Basis {
     /// # Panics
     /// If lanes and lines are none or more than [`MAX_LANES`].
     pub fn bands_from_ultraviolet(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
-        Self::evenly(space, bands, [visible::START_NM, 730.0], lines_nm)
+        Self::bands_over(space, bands, Self::best_range_nm(bands, true), lines_nm)
     }
 
-    /// As many wavelengths in equal steps.
-    fn evenly(space: ColorSpace, bands: usize, [from, to]: [f64; 2], lines_nm: &[f64]) -> Self {
+    /// From where to where, in nm, so many wavelengths show colors best.
+    /// For dyes, ultraviolet light as well.
+    pub(crate) fn best_range_nm(bands: usize, from_ultraviolet: bool) -> [f64; 2] {
+        match bands {
+            _ if from_ultraviolet => [visible::START_NM, 730.0],
+            ..=8 => [410.0, 710.0],
+            9..=14 => [400.0, 700.0],
+            15..=23 => [380.0, 730.0],
+            _ => [390.0, 730.0],
+        }
+    }
+
+    /// As many wavelengths in equal steps from one to another in nm, each in the middle of its step, and a lane of its
+    /// own for every ideal line.
+    ///
+    /// # Panics
+    /// If lanes and lines are none or more than [`MAX_LANES`].
+    pub fn bands_over(space: ColorSpace, bands: usize, [from, to]: [f64; 2], lines_nm: &[f64]) -> Self {
         let step = (to - from) / bands as f64;
         let nodes: Vec<f64> = (0..bands).map(|i| from + (i as f64 + 0.5) * step).collect();
         Self::wavelengths(space, nodes, lines_nm)

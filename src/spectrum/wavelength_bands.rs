@@ -43,6 +43,12 @@ impl WavelengthBands {
         self.step_nm
     }
 
+    /// From where to where they reach, in nm, as far as light is known.
+    pub fn range_nm(&self) -> [f64; 2] {
+        let start = self.first_nm - 0.5 * self.step_nm;
+        [start.max(START_NM), (start + self.count as f64 * self.step_nm).min(LAST_NM)]
+    }
+
     /// How much of a band, in nm, lies where light is known, on the [grid](super::visible).
     pub(super) fn known_nm(&self, band: usize) -> f64 {
         let middle = self.first_nm + band as f64 * self.step_nm;
