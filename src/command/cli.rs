@@ -101,7 +101,7 @@ struct Arguments {
 
     /// The number of a frame: the value of the variable frame, and of every %04d or %d in the names of the files to
     /// write; %% is a percent there. 1-24 are frames one after another, 1-24x2 is every second of them, and 3,17,40-50
-    /// are those
+    /// is a list
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     frame: Option<Frames>,
 

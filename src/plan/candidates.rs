@@ -132,8 +132,8 @@ pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basi
     bands_showing(survey, bands, heroes, None)
 }
 
-/// The same over all bands of a spectral image, if there are any: beyond the first and last wavelength, surfaces are
-/// taken to be as they are there.
+/// Fixed lanes beside heroes and emission lines, spread over all bands of a spectral image if there are any: beyond the
+/// first and last wavelength, surfaces are taken to be as they are there.
 pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown: Option<&WavelengthBands>) -> Basis {
     let lines = own_lines(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());

@@ -167,8 +167,8 @@ impl Basis {
         Self { heroes: Some(heroes), ..self }
     }
 
-    /// The same lanes, for an image whose spectra are wanted too: a third of the heroes is drawn evenly over its bands,
-    /// where the lights shine.
+    /// For an image whose spectra are wanted too, of which these are the bands: a third of the heroes is drawn evenly
+    /// over them, where the lights shine. Fixed lanes stay as they are.
     pub fn showing(self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
         let shown = |heroes: Heroes| Heroes { mixture: Arc::new(heroes.mixture.showing(bands, lights)), ..heroes };
         Self { heroes: self.heroes.map(shown), ..self }
