@@ -64,7 +64,7 @@ impl<S> Material<S> {
     pub fn clear_index(&self) -> Option<&S> {
         match self {
             Self::Dielectric(dielectric) => Some(&dielectric.index),
-            Self::Thin(thin) => Some(&thin.index),
+            Self::Thin(thin) => thin.clear_index(),
             Self::Plastic(plastic) => Some(&plastic.index),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Emissive(_) => None,
             Self::Mix(_) | Self::Mask(_) | Self::Polarizer(_) | Self::Retarder(_) => None,
@@ -228,9 +228,8 @@ impl Material<Table> {
                 let is_clear = coating.as_ref().is_none_or(Coating::is_clear);
                 is_clear && roughness.is_smooth() && reflectance.is_one() && transmittance.is_one()
             }
-            Self::Thin(Thin { transmittance, film, .. }) => {
-                transmittance.is_one() && film.as_ref().is_none_or(Coating::is_clear)
-            }
+            Self::Thin(Thin::Pane { transmittance, .. }) => transmittance.is_one(),
+            Self::Thin(Thin::Film(film)) => film.is_clear(),
             Self::Retarder(_) => true,
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Polarizer(_) => false,
             Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => false,

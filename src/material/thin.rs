@@ -1,41 +1,73 @@
 use super::degree::{degree, largest, of_all_lanes};
 use super::last::Last;
-use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight};
-use crate::spectrum::{LaneSet, Lanes, Quantity, Table};
+use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight, conductor_reflectance};
+use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 
-/// A pane of clear material without thickness: a window of which nothing but its two surfaces is seen. Light goes
-/// straight on, that of lights to the surfaces behind as well, or is mirrored; all reflections between the two surfaces
-/// are summed.
+/// A sheet that bends no light: light goes straight on, that of lights to the surfaces behind as well, or is mirrored.
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
 /// thin = { index = 1.33, thickness_nm = 400 }     # a film in which light interferes; k = 0 if absent
 /// thin = { index = 1.33, thickness_nm = { image = "bubble.png", scale = 600 } }
+/// thin = { metal = "Au", thickness_nm = 100 }     # gold leaf
 /// ```
-///
-/// With a thickness it is a soap film or a flake of mica: light that is reflected by its two surfaces interferes, and
-/// what it absorbs is by its extinction `k`.
 #[derive(Clone, Debug)]
-pub struct Thin<S> {
-    /// Refractive index.
-    pub index: S,
-    /// Share of the light that is left after one way through the pane, at every angle.
-    pub transmittance: S,
-    /// The pane as a layer in which light interferes, if it has a thickness.
-    pub film: Option<Coating<S>>,
+pub enum Thin<S> {
+    /// A window of which nothing but its two surfaces is seen. All reflections between them are summed.
+    Pane {
+        /// Refractive index.
+        index: S,
+        /// Share of the light that is left after one way through the pane, at every angle.
+        transmittance: S,
+    },
+    /// One layer with a thickness: a soap film, a flake of mica, gold leaf. Light that is reflected by its two surfaces
+    /// interferes, and what it absorbs is by its extinction.
+    Film(Coating<S>),
 }
 
 impl<S> Thin<S> {
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Thin<T> {
-        Thin {
-            index: convert(Quantity::Index, &self.index),
-            transmittance: convert(Quantity::Transmittance, &self.transmittance),
-            film: self.film.as_ref().map(|film| film.map(convert)),
+        match self {
+            Self::Pane { index, transmittance } => Thin::Pane {
+                index: convert(Quantity::Index, index),
+                transmittance: convert(Quantity::Transmittance, transmittance),
+            },
+            Self::Film(film) => Thin::Film(film.map(convert)),
+        }
+    }
+
+    /// Its index, if it is clear.
+    pub(super) fn clear_index(&self) -> Option<&S> {
+        match self {
+            Self::Pane { index, .. } => Some(index),
+            Self::Film(film) => film.layers.first().filter(|layer| !layer.is_metal).map(|layer| &layer.index),
+        }
+    }
+
+    /// The share of light that its substance leaves, beside what its surfaces mirror, where that is given.
+    pub fn transmittance(&self) -> Option<&S> {
+        match self {
+            Self::Pane { transmittance, .. } => Some(transmittance),
+            Self::Film(_) => None,
         }
     }
 }
 
 impl Thin<Table> {
+    /// About what share of a lane one of its two surfaces mirrors, in a medium of an index, of light at an angle of a
+    /// cosine: of a clear film without interference, of metal as if it were thick.
+    pub fn reflectance_of_one_surface<const N: usize>(&self, draw: &Draw<N>, lane: usize, here: f64, cos: f64) -> f64 {
+        let read = |table| draw.read_lane(table, lane);
+        match self {
+            Self::Film(Coating { layers, .. }) if layers[0].is_metal => {
+                let [s, p] = conductor_reflectance(here, read(&layers[0].index), read(&layers[0].k), cos);
+                0.5 * (s + p)
+            }
+            Self::Film(Coating { layers, .. }) => reflectance(here, read(&layers[0].index), cos),
+            Self::Pane { index, .. } => reflectance(here, read(index), cos),
+        }
+    }
+
     /// What goes straight on.
     pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
         let (panes, polarization) = self.share(arrival, true);
@@ -58,16 +90,21 @@ impl Thin<Table> {
         lanes: LaneSet,
         mueller: &mut Mueller<N>,
     ) {
-        let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
         let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
-        let mut last = Last::NONE;
-        let film = self.film.as_ref().map(|film| film.met(arrival, false));
-        mueller.set_lanes(axis, lanes, |lane| {
-            if let Some(film) = &film {
-                let n = arrival.incident_of(lane);
-                let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
-                return if crosses { refracted.block() } else { reflected.block() };
+        let (index, transmittance) = match self {
+            Self::Pane { index, transmittance } => (index, transmittance),
+            Self::Film(film) => {
+                let film = film.met(arrival, false);
+                return mueller.set_lanes(axis, lanes, |lane| {
+                    let n = arrival.incident_of(lane);
+                    let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
+                    if crosses { refracted.block() } else { reflected.block() }
+                });
             }
+        };
+        let (index, left) = (arrival.draw.read_exact(index), arrival.read(transmittance));
+        let mut last = Last::NONE;
+        mueller.set_lanes(axis, lanes, |lane| {
             let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
             if n1 == n2 {
                 return if crosses { Block::IDENTITY.times(t) } else { Block::default() };
@@ -82,26 +119,41 @@ impl Thin<Table> {
     /// What of each lane goes straight on, or is mirrored, and the largest degree of polarization that this gives to
     /// unpolarized light; of a film, in which light interferes, that of all lanes together.
     fn share<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> (Lanes<N>, f32) {
-        let (index, left) = (arrival.draw.read_exact(&self.index), arrival.read(&self.transmittance));
-        let film = self.film.as_ref().map(|film| film.met(arrival, false));
-        let (cos, mut last) = (arrival.wo.dot(arrival.normal), Last::NONE);
+        let cos = arrival.wo.dot(arrival.normal);
         let mut lanes = [[0.0; 2]; N];
-        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let (n1, t) = (arrival.incident_of(lane), f64::from(left[lane]));
-            let [through, back] = match &film {
-                Some(film) => {
-                    let StackShares { reflected, refracted } = film.at_cosine(lane, n1, n1, cos);
-                    [refracted, reflected].map(|share| [share.s, share.p])
+        let present = (0..N).filter(|&lane| arrival.present[lane] != 0.0);
+        let mean = |lanes: &[[f64; 2]; N]| Lanes::from_fn(|lane| (0.5 * (lanes[lane][0] + lanes[lane][1])) as f32);
+        match self {
+            Self::Pane { index, transmittance } => {
+                let (index, left) = (arrival.draw.read_exact(index), arrival.read(transmittance));
+                let mut last = Last::NONE;
+                for lane in present {
+                    let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
+                    let [through, back] = match n1 == n2 {
+                        true => [[t; 2], [0.0; 2]],
+                        false => last.of(pane, |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t)),
+                    };
+                    lanes[lane] = if crosses { through } else { back };
                 }
-                None if index[lane] == n1 => [[t; 2], [0.0; 2]],
-                None => last.of([n1, index[lane], t], |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t)),
-            };
-            lanes[lane] = if crosses { through } else { back };
+                (mean(&lanes), largest(lanes.into_iter().map(degree)))
+            }
+            Self::Film(film) => {
+                let film = film.met(arrival, false);
+                for lane in present {
+                    let n = arrival.incident_of(lane);
+                    let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
+                    let share = if crosses { refracted } else { reflected };
+                    lanes[lane] = [share.s, share.p];
+                }
+                (mean(&lanes), of_all_lanes(lanes.into_iter()) as f32)
+            }
         }
-        let share = Lanes::from_fn(|lane| (0.5 * (lanes[lane][0] + lanes[lane][1])) as f32);
-        let lanes = lanes.into_iter();
-        (share, if film.is_some() { of_all_lanes(lanes) as f32 } else { largest(lanes.map(degree)) })
     }
+}
+
+/// The share of unpolarized light that a surface between two clear media mirrors.
+fn reflectance(n1: f64, n2: f64, cos: f64) -> f64 {
+    if n1 == n2 { 0.0 } else { Interface::new(n1, n2, cos).reflectance }
 }
 
 /// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.

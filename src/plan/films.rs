@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::material::{
-    COHERENT_NM, Coating, CoatingLayer, Layer, Material, PHASE_STEP, PathDifference, Retardance, Stack,
+    COHERENT_NM, Coating, CoatingLayer, Layer, Material, PHASE_STEP, PathDifference, Retardance, Stack, Thin,
 };
 use crate::math::Complex;
 use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
@@ -29,11 +29,12 @@ pub(super) enum Beyond<'a> {
 /// The films of a material alone, without the parts it is made of.
 pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
     let (coating, beyond, lets_through) = match material {
-        Material::Dielectric(glass) => (&glass.coating, Beyond::Glass(&glass.index), true),
-        Material::Thin(pane) => (&pane.film, Beyond::Nothing, true),
-        Material::Conductor(metal) => (&metal.coating, Beyond::Metal(&metal.n, &metal.k), false),
-        Material::Plastic(plastic) => (&plastic.coating, Beyond::Glass(&plastic.index), true),
+        Material::Dielectric(glass) => (glass.coating.as_ref(), Beyond::Glass(&glass.index), true),
+        Material::Thin(Thin::Film(film)) => (Some(film), Beyond::Nothing, true),
+        Material::Conductor(metal) => (metal.coating.as_ref(), Beyond::Metal(&metal.n, &metal.k), false),
+        Material::Plastic(plastic) => (plastic.coating.as_ref(), Beyond::Glass(&plastic.index), true),
         Material::Diffuse(_) | Material::Mirror(_) | Material::Emissive(_) => return Vec::new(),
+        Material::Thin(Thin::Pane { .. }) => return Vec::new(),
         Material::Mix(_) | Material::Mask(_) | Material::Polarizer(_) | Material::Retarder(_) => return Vec::new(),
     };
     let Some(coating) = coating else { return Vec::new() };

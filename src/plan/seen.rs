@@ -202,7 +202,9 @@ fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Ti
     let filter = |quantity, curve: &'a Curve| vec![Tint::Filter(quantity, farthest_from_gray(curve))];
     match (whole[step.part], step.way) {
         (Material::Mirror(mirror), _) => filter(Quantity::Reflectance, &mirror.reflectance),
-        (Material::Thin(pane), Way::Crossed) => filter(Quantity::Transmittance, &pane.transmittance),
+        (Material::Thin(pane), Way::Crossed) => {
+            pane.transmittance().map_or_else(Vec::new, |left| filter(Quantity::Transmittance, left))
+        }
         (Material::Dielectric(glass), Way::Crossed) => filter(Quantity::Transmittance, &glass.transmittance),
         (Material::Dielectric(glass), Way::Reflected(_)) => filter(Quantity::Reflectance, &glass.reflectance),
         (Material::Dielectric(glass), Way::Inside(_)) => {

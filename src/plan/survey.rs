@@ -129,7 +129,10 @@ impl<'a> Survey<'a> {
                         let shades = plastic.reflectance.shades().into_iter();
                         tints.extend(shades.map(|shade| Tint::Coated(plastic, shade)));
                     }
-                    Material::Thin(thin) => tints.extend(filters(Quantity::Transmittance, &thin.transmittance)),
+                    Material::Thin(thin) => {
+                        let left = thin.transmittance().into_iter();
+                        tints.extend(left.flat_map(|left| filters(Quantity::Transmittance, left)));
+                    }
                     Material::Mirror(mirror) => tints.extend(filters(Quantity::Reflectance, &mirror.reflectance)),
                     Material::Conductor(metal) if metal.coating.is_none() => tints.push(Tint::Metal(metal, 1.0)),
                     Material::Conductor(_) => {}

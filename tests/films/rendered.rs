@@ -125,12 +125,13 @@ fn layers_are_listed_from_the_outside_inward_and_met_from_both_sides() {
 
 #[test]
 fn a_film_is_reflected_by_and_seen_through() {
-    for (k, thickness) in [(0.0, 300.0), (0.05, 700.0)] {
-        let material = format!("thin = {{ index = 1.33, k = {k:?}, thickness_nm = {thickness:?} }}");
+    for ([n, k], thickness) in [([1.33, 0.0], 300.0), ([1.33, 0.05], 700.0), ([0.2, 3.4], 30.0)] {
+        let name = if n < 1.0 { "n" } else { "index" };
+        let material = format!("thin = {{ {name} = {n:?}, k = {k:?}, thickness_nm = {thickness:?} }}");
         let nm = [450.0, 550.0, 650.0];
         for degrees in ANGLES {
             let expected =
-                nm.map(|nm| shares(1.0, &[([1.33, -k], thickness)], [1.0, 0.0], degrees.to_radians().cos(), nm));
+                nm.map(|nm| shares(1.0, &[([n, -k], thickness)], [1.0, 0.0], degrees.to_radians().cos(), nm));
             for (way, name) in NAMED.iter().enumerate() {
                 let found = match way {
                     0 => reflected(&material, degrees, nm),

@@ -136,7 +136,7 @@ fn tint(random: &mut Random) -> Vec<f64> {
 
 /// What is left of light after a chain: by 1 nm, and in lanes.
 fn left(met: &[Met], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
-    use abbe::material::{Material, conductor_reflectance};
+    use abbe::material::{Material, Thin, conductor_reflectance};
     let read = |rgb: &Basis, quantity: Quantity, curve: &Curve| match basis {
         Some(basis) => basis.tabulate(quantity, curve).bins().to_vec(),
         None => visible::wavelengths().map(|nm| curve.reader(quantity, rgb.upsampler())(nm)).collect(),
@@ -156,7 +156,7 @@ fn left(met: &[Met], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
                         .map(|(n, k)| 0.5 * conductor_reflectance(1.0, *n, *k, cos).iter().sum::<f64>())
                         .collect()
                 }
-                Material::Thin(thin) => read(Quantity::Transmittance, &thin.transmittance),
+                Material::Thin(Thin::Pane { transmittance, .. }) => read(Quantity::Transmittance, transmittance),
                 _ => unreachable!("no other links have colors"),
             };
         if left.is_empty() {

@@ -1,7 +1,7 @@
 //! Layers in which light interferes, as authors write them.
 
 use super::asked::{Asked, spectrum, spectrum_or};
-use crate::material::{Coating, CoatingLayer, MAX_LAYERS};
+use crate::material::{Coating, CoatingLayer, MAX_LAYERS, Thin};
 use crate::scene::text::{Fields, Value};
 
 const EXAMPLE: &str = "write coating = [{ index = 1.38, thickness_nm = 100 }, ..], from the outside inward";
@@ -24,42 +24,45 @@ fn of_layers(layers: Vec<CoatingLayer<Asked>>) -> Coating<Asked> {
 }
 
 fn layer(value: Value) -> Option<CoatingLayer<Asked>> {
-    Fields::read(value, |fields| {
-        let thickness = spectrum(fields, "thickness_nm");
-        let [metal, n, index, k] = ["metal", "n", "index", "k"].map(|key| fields.get(key));
-        let (index, k) = match (metal, n) {
-            (None, None) => (spectrum(fields, "index"), spectrum_or(fields, "k", 0.0)),
-            (Some(metal), None) if index.is_none() && k.is_none() => {
-                let metal = Asked::There(metal.text().map(|_| metal)?);
-                (metal, metal)
-            }
-            (None, Some(n)) if index.is_none() => (Asked::There(n), spectrum(fields, "k")),
-            (Some(given), _) | (None, Some(given)) => {
-                return given
-                    .refuse("a layer has an `index` and its `k`, or it is of metal: a `metal`, or its `n` and `k`");
-            }
-        };
-        Some(CoatingLayer { index, k, is_metal: metal.or(n).is_some(), thickness })
-    })
+    Fields::read(value, layer_of)
 }
 
-/// The layer that a thin film is, of its index, if it has a thickness; none if that does not fit to its other keys,
-/// which is told.
-pub(super) fn film<'d>(fields: &mut Fields<'d>, index: Asked<'d>) -> Option<Option<Coating<Asked<'d>>>> {
-    let (thickness, k) = (fields.get("thickness_nm"), fields.get("k"));
-    match (thickness, k, fields.get("transmittance")) {
-        (None, None, _) => Some(None),
-        (None, Some(k), _) => k.refuse_key(
-            "`k` goes with `thickness_nm`",
-            Some("a pane without one absorbs by its `transmittance`".into()),
-        ),
-        (Some(_), _, Some(transmittance)) => {
-            let help = "what a film absorbs is by its extinction: write `k`";
-            transmittance.refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()))
+fn layer_of<'d>(fields: &mut Fields<'d>) -> Option<CoatingLayer<Asked<'d>>> {
+    let thickness = spectrum(fields, "thickness_nm");
+    let [metal, n, index, k] = ["metal", "n", "index", "k"].map(|key| fields.get(key));
+    let (index, k) = match (metal, n) {
+        (None, None) => (spectrum(fields, "index"), spectrum_or(fields, "k", 0.0)),
+        (Some(metal), None) if index.is_none() && k.is_none() => {
+            let metal = Asked::There(metal.text().map(|_| metal)?);
+            (metal, metal)
         }
-        (Some(thickness), k, None) => {
-            let (k, thickness) = (k.map_or(Asked::Default(0.0), Asked::There), Asked::There(thickness));
-            Some(Some(of_layers(vec![CoatingLayer { index, k, is_metal: false, thickness }])))
+        (None, Some(n)) if index.is_none() => (Asked::There(n), spectrum(fields, "k")),
+        (Some(given), _) | (None, Some(given)) => {
+            return given
+                .refuse("a layer has an `index` and its `k`, or it is of metal: a `metal`, or its `n` and `k`");
         }
+    };
+    Some(CoatingLayer { index, k, is_metal: metal.or(n).is_some(), thickness })
+}
+
+/// A pane, or with a thickness a film of one layer; none if its keys do not fit together, which is told.
+pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
+    let index = fields.get("index");
+    let (transmittance, thickness) = (fields.get("transmittance"), fields.get("thickness_nm"));
+    let [k, metal, n] = ["k", "metal", "n"].map(|key| fields.get(key));
+    if thickness.is_none()
+        && let Some(k) = k.filter(|_| index.is_some() || n.is_none())
+    {
+        let help = "a pane without one absorbs by its `transmittance`";
+        return k.refuse_key("`k` goes with `thickness_nm`", Some(help.into()));
     }
+    if let (Some(transmittance), true) = (transmittance, thickness.or(metal).or(n).is_some()) {
+        let help = "what a film absorbs is by its extinction: write `k`";
+        return transmittance
+            .refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()));
+    }
+    if thickness.or(metal).or(n).is_some() {
+        return Some(Thin::Film(of_layers(vec![layer_of(fields)?])));
+    }
+    Some(Thin::Pane { index: spectrum(fields, "index"), transmittance: spectrum_or(fields, "transmittance", 1.0) })
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::asked::{Asked, spectrum, spectrum_or};
 use super::camera::extinction;
-use super::coating::{coating, film};
+use super::coating::{coating, thin};
 use super::context::Context;
 use super::curve_text::CurveText;
 use super::fluorescence::{conserves, diffuse, written};
@@ -12,7 +12,7 @@ use super::image::surface_curve;
 use super::measures::direction;
 use crate::material::{
     Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
-    Roughness, Thin,
+    Roughness,
 };
 use crate::scene::text::{Choice, Fields, Value, exactly, shown};
 use crate::shape::Sides;
@@ -48,11 +48,7 @@ const MATERIAL: Choice<Reader> = Choice {
         }),
         ("conductor", conductor),
         ("dielectric", |_, fields| dielectric(fields)),
-        ("thin", |_, fields| {
-            let (index, transmittance) = (spectrum(fields, "index"), spectrum_or(fields, "transmittance", 1.0));
-            let film = film(fields, index)?;
-            Some(Draft::Whole(Material::Thin(Thin { index, transmittance, film })))
-        }),
+        ("thin", |_, fields| Some(Draft::Whole(Material::Thin(thin(fields)?)))),
         ("emissive", |_, fields| {
             let radiance = spectrum(fields, "radiance");
             let words = [("both", Sides::Both), ("front", Sides::Front)];

@@ -173,11 +173,10 @@ impl Colors<'_> {
             Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
-                let index: [f64; 4] = draw.read_exact(&pane.index);
                 let here = media::index(&world.scene, draw, inside)[0];
-                let one = Interface::new(here, index[0], wo.dot(normal)).reflectance;
+                let one = pane.reflectance_of_one_surface(draw, 0, here, wo.dot(normal));
                 // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
-                let mirrored = if index[0] == here { 0.0 } else { 2.0 * one / (1.0 + one) };
+                let mirrored = 2.0 * one / (1.0 + one);
                 if walk.takes(mirrored, false, choice) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {

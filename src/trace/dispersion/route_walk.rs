@@ -116,10 +116,9 @@ impl<'a> Walker<'a> {
             }
             Material::Thin(pane) => {
                 let inside = media::index(&world.scene, &self.draw, walk.media.inside(&world.scene));
-                let index = self.draw.read_exact(&pane.index);
-                let cos = at.wo().dot(normal);
-                let r = if index[1] == inside[1] { 0.0 } else { Interface::new(inside[1], index[1], cos).reflectance };
-                let (tint, through) = (self.draw.read_at(&pane.transmittance, uv), (1.0 - r) * (1.0 - r));
+                let r = pane.reflectance_of_one_surface(&self.draw, 1, inside[1], at.wo().dot(normal));
+                let tint = pane.transmittance().map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
+                let through = (1.0 - r) * (1.0 - r);
                 let crossed = at.step(Way::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
                 self.go_straight(at, straight);
@@ -269,12 +268,12 @@ impl<'a> Walker<'a> {
                 let material = world.scene.material_of(hit.object);
                 let part = self.part(material, uv, at.u[2]);
                 let transmittance = match material.with_parts()[part] {
-                    Material::Thin(pane) => &pane.transmittance,
-                    Material::Dielectric(glass) => &glass.transmittance,
+                    Material::Thin(pane) => pane.transmittance(),
+                    Material::Dielectric(glass) => Some(&glass.transmittance),
                     _ => return,
                 };
                 let step = Step { material: object.material, part, way: Way::Crossed };
-                let tint = self.draw.read_at(transmittance, uv);
+                let tint = transmittance.map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
                 let (boundary, _) = walk.media.at_surface(&world.scene, object.material, point, walk.ray.direction);
                 let media = walk.media.beyond(&boundary);
                 walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
