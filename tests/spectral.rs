@@ -208,9 +208,20 @@ fn ideal_lines_stay_in_their_bands() {
 #[test]
 fn spectra_know_surfaces_over_all_bands() {
     let all = "{ from = 360, to = 830, step = 5 }";
+    let common = "{ from = 400, to = 700, step = 10 }";
     let (even, edge) = ([[360.0, 0.0], [830.0, 1.0]], [[740.0, 0.2], [760.0, 0.8]]);
-    for (bands, reflectance, most) in [("true", even, 0.02), (all, even, 0.03), ("true", edge, 0.03), (all, edge, 0.05)]
-    {
+    // Paint that is white by titanium dioxide is dark to the ultraviolet.
+    let titania = [[380.0, 0.1], [395.0, 0.9]];
+    let cases = [
+        ("true", even, 0.005),
+        (all, even, 0.01),
+        ("true", edge, 0.03),
+        (all, edge, 0.05),
+        ("true", titania, 0.07),
+        (common, titania, 0.02),
+        (common, even, 0.005),
+    ];
+    for (bands, reflectance, most) in cases {
         let [[first, low], [last, high]] = reflectance;
         let image = rendered(&format!(
             "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\n\

@@ -133,15 +133,23 @@ pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basi
 }
 
 /// Fixed lanes beside heroes and emission lines, spread over all bands of a spectral image if there are any: beyond the
-/// first and last wavelength, surfaces are taken to be as they are there.
+/// first and last lane, surfaces are taken to be as they are there.
 pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown: Option<&WavelengthBands>) -> Basis {
     let lines = own_lines(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());
+    let space = survey.color_space;
     let [from, to] = Basis::best_range_nm(bands, survey.needs_ultraviolet());
-    let [first, last] = shown.map_or([from, to], WavelengthBands::range_nm);
-    let basis = Basis::bands_over(survey.color_space, bands, [from.min(first), to.max(last)], &lines);
+    let basis = match shown.map(WavelengthBands::range_nm) {
+        None => Basis::bands_over(space, bands, [from, to], &lines),
+        // From end to end: half a step from there, an edge at 380 nm was off by 0.15.
+        Some([first, last]) => {
+            let (from, to) = (from.min(first), to.max(last));
+            let step = (to - from) / (bands - 1) as f64;
+            Basis::wavelengths(space, (0..bands).map(|i| from + i as f64 * step).collect(), &lines)
+        }
+    };
     let (lights, dyes) = survey.shining();
-    basis.seen_under(&lights, &dyes)
+    basis.seen_under(&lights, &dyes, shown)
 }
 
 /// Fewest interpolated wavelengths beside the lanes of emission lines.

@@ -125,7 +125,9 @@ impl Basis {
     /// Reads reflectances and transmittances onto the lanes so that they have their colors under some lights, and let
     /// as much light excite dyes as they do. Without this, a lane reads them at its own wavelength. Three bands stay as
     /// they are.
-    pub fn seen_under(self, lights: &[Emission], dyes: &[Dye]) -> Self {
+    ///
+    /// Of an image whose spectra are wanted too, `shown` are the bands: all of their wavelengths count alike there.
+    pub fn seen_under(self, lights: &[Emission], dyes: &[Dye], shown: Option<&WavelengthBands>) -> Self {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
         let mut lines: Vec<[f64; 2]> = self.wavelengths_nm[functions.len()..].iter().map(|&nm| [nm, 0.0]).collect();
         for &[nm, _] in lights.iter().flat_map(Emission::lines) {
@@ -153,7 +155,8 @@ impl Basis {
             return self;
         }
         let ends = [self.wavelengths_nm[0], self.wavelengths_nm[functions.len() - 1]];
-        let projection = Projection::new(&parts, functions.len(), ends);
+        let shown = shown.map(WavelengthBands::range_nm);
+        let projection = Projection::new(&parts, functions.len(), ends, shown);
         Self { projection: Some(Arc::new(projection)), ..self }
     }
 

@@ -35,6 +35,9 @@ pub(super) struct Part {
 
 /// The weight of what no measure tells beside all that they tell, spread evenly over the lanes' wavelengths.
 const UNSEEN: f64 = 1e-3;
+/// The same, spread evenly over the wavelengths that are shown, where spectra are: within 1e-3 of the closest numbers
+/// there are at every wavelength, and colors of several reflections are as close as without.
+const SHOWN: f64 = 1.0;
 /// The weight of a measure beside that of all wavelengths, where it shall be the spectrum's own.
 const EXACT: f64 = 1e5;
 /// The same where there are more measures than that is possible for: of weights from 0 to 1e5, close to the best for
@@ -43,17 +46,22 @@ const BALANCED: f64 = 10.0;
 
 impl Projection {
     /// `parts`: the wavelengths of the visible grid, then ideal lines. `smooth`: how many lanes are interpolated, and
-    /// the first and last wavelength of those in nm.
-    pub(super) fn new(parts: &[Part], smooth: usize, [first, last]: [f64; 2]) -> Self {
+    /// the first and last wavelength of those in nm. `shown`: the first and last of bands that are shown too.
+    pub(super) fn new(parts: &[Part], smooth: usize, ends: [f64; 2], shown: Option<[f64; 2]>) -> Self {
         let (lanes, measures) = (parts[0].shares.len(), parts[0].worth.len());
         let each = 1.0 / measures as f64;
         // Every measure takes one of the lanes' numbers; half of them are left to come close.
         let kept = each * if 2 * measures <= smooth { EXACT } else { BALANCED };
-        let unseen = UNSEEN / (last - first + 1.0);
+        let even = |weight: f64, [first, last]: [f64; 2]| {
+            move |at_nm: f64| if (first..=last).contains(&at_nm) { weight / (last - first + 1.0) } else { 0.0 }
+        };
+        let (unseen, shown) = (even(UNSEEN, ends), shown.map(|shown| even(SHOWN, shown)));
+        let of_line = UNSEEN / (ends[1] - ends[0] + 1.0);
         let mut taken = vec![vec![0.0; parts.len()]; lanes];
         for (number, part) in parts.iter().enumerate() {
             let seen = each * part.worth.iter().map(|x| x.abs()).sum::<f64>();
-            let beside = if number >= COUNT || (first..=last).contains(&part.at_nm) { unseen } else { 0.0 };
+            let smooth = || unseen(part.at_nm) + shown.as_ref().map_or(0.0, |shown| shown(part.at_nm));
+            let beside = if number < COUNT { smooth() } else { of_line };
             taken.iter_mut().zip(&part.shares).for_each(|(lane, share)| lane[number] = (seen + beside) * share);
         }
         for measure in 0..measures {

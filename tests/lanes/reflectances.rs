@@ -69,7 +69,7 @@ fn a_reflectance_has_its_very_color_under_each_light_where_there_are_lanes_enoug
         (16, &[589.0, 589.6], vec![lights[0].clone(), sodium]),
     ];
     for (bands, lines, lights) in cases {
-        let basis = Basis::bands(SPACE, bands, lines).seen_under(&emissions(&lights), &[]);
+        let basis = Basis::bands(SPACE, bands, lines).seen_under(&emissions(&lights), &[], None);
         for (patch, light) in patches().iter().flat_map(|patch| lights.iter().map(move |light| (patch, light))) {
             let off = missed(colors(&basis, light, &[patch]));
             assert!(off < 1e-5, "{bands} lanes, {} lights: {patch:?} under {light:?}: {off:.1e}", lights.len());
@@ -86,7 +86,7 @@ fn light_of_two_and_four_reflections_is_closer_than_where_lanes_are_read_at_thei
             let mut sums = [0.0; 2];
             for light in ["D65", "A", "FL11"].map(illuminant) {
                 let own = Basis::bands(SPACE, bands, &[]);
-                let seen = own.clone().seen_under(&emissions(std::slice::from_ref(&light)), &[]);
+                let seen = own.clone().seen_under(&emissions(std::slice::from_ref(&light)), &[], None);
                 for (basis, sum) in [own, seen].iter().zip(&mut sums) {
                     let chain = |first: usize| {
                         let surfaces: Vec<&Curve> = steps.iter().map(|step| &patches[(first + step) % 24]).collect();
@@ -111,7 +111,7 @@ fn numbers_stay_within_a_spectrums_bounds_and_even_spectra_are_even() {
         CurveKind::Samples(vec![[from, 0.0], [from + 1.0, 1.0], [to, 1.0], [to + 1.0, 0.0]]).into()
     };
     for bands in 1..=MAX_LANES {
-        let basis = Basis::bands(SPACE, bands, &[]).seen_under(&lights, &[]);
+        let basis = Basis::bands(SPACE, bands, &[]).seen_under(&lights, &[], None);
         for (from, to) in [(350.0, 550.0), (500.0, 560.0), (545.0, 547.0), (600.0, 900.0)] {
             let numbers = read(&basis, &step(from, to));
             assert!(numbers.iter().all(|x| (0.0..=1.0).contains(x)), "{bands} lanes, {from} to {to} nm: {numbers:?}");
@@ -126,7 +126,7 @@ fn what_no_light_shows_and_no_lights_at_all_leave_finite_numbers() {
     let invisible: Curve = CurveKind::Lines(vec![[320.0, 1.0]]).into();
     for lights in [vec![], vec![dark], vec![invisible.clone()], vec![illuminant("D65"), invisible]] {
         for basis in [Basis::bands(SPACE, 12, &[320.0]), Basis::bands_from_ultraviolet(SPACE, 31, &[320.0])] {
-            let basis = basis.seen_under(&emissions(&lights), &[]);
+            let basis = basis.seen_under(&emissions(&lights), &[], None);
             for patch in &patches() {
                 let numbers = read(&basis, patch);
                 assert!(numbers.iter().all(|x| (0.0..=1.0).contains(x)), "{} lights: {numbers:?}", lights.len());
@@ -144,7 +144,7 @@ fn a_filter_lets_as_much_light_excite_a_dye_as_it_does() {
     let dye = Dye { absorption: bell(365.0, 20.0, 0.9), emission: bell(440.0, 22.0, 1.0), quantum_yield: 0.85 };
     let light = illuminant("D65");
     let own = Basis::bands_from_ultraviolet(SPACE, 20, &[]);
-    let seen = own.clone().seen_under(&emissions(std::slice::from_ref(&light)), std::slice::from_ref(&dye));
+    let seen = own.clone().seen_under(&emissions(std::slice::from_ref(&light)), std::slice::from_ref(&dye), None);
     let filter: Curve = CurveKind::Samples(vec![[350.0, 0.0], [390.0, 1.0]]).into();
     let exact = {
         let excited = dye.excited_by(&Emission::new(&light, SPACE));
