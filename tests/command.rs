@@ -131,6 +131,13 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     flag("--width", "write --set film.width=640");
     flag("-o", "write --exr frame.exr");
     flag("--frames", "write --frame 1-24");
+    flag("--denoise", "write --layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr");
+    let spaced = "error: names of layers are joined by commas, without spaces\nhelp: write --layers lights,N,P\n";
+    assert_refuses(&["ball.toml", "--layers", "lights", "N", "P"], 2, spaced);
+    assert_refuses(&["ball.toml", "--layers", "lights,", "N,", "P", "--quiet"], 2, spaced);
+    let first = "error: merge has no argument --exr\n\
+                 help: the image to write comes first: render merge frame.exr frame.*.part\n";
+    assert_refuses(&["merge", "a.1-of-2.part", "a.2-of-2.part", "--exr", "a.exr"], 2, first);
     let command =
         |word: &str, help: &str| assert_refuses(&[word, "ball.toml"], 2, &refusal(&format!("command `{word}`"), help));
     command("vew", "did you mean render view?");

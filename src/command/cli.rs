@@ -13,7 +13,7 @@ use clap::error::{ContextKind, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use super::frames::{Frames, check_numbered, numbered};
-use super::meant::meant;
+use super::meant::{meant, meant_below};
 use super::messages::{Listener, Protocol, is_colored, listener, speak_to};
 use super::outputs::{check_exposure, check_png, ends_in, is_standard};
 use super::{catalog, diff, info, keep, manual, merge, view};
@@ -354,7 +354,11 @@ fn whole() -> Command {
 }
 
 fn read<A: Parser>(words: &[OsString], request: fn(A) -> Request) -> Result<Request> {
-    A::try_parse_from(words).map_or_else(told, |arguments| Ok(request(arguments)))
+    let refused = |said| match meant_below(&said, words) {
+        Some((message, help)) => Error::refuse(message, help),
+        None => told(said),
+    };
+    A::try_parse_from(words).map_or_else(refused, |arguments| Ok(request(arguments)))
 }
 
 /// What clap has to say: help and version are an answer like any other, a mistake ends the command.

@@ -164,8 +164,9 @@ impl ExrFile {
         layers
     }
 
-    /// The layer of a name, or the channel of a full name as a layer of its own; without a name the beauty, or else the
-    /// first layer. `shown` is the file's name in messages.
+    /// The layer of a name, or the channel of a full name, or the band of a spectrum around a wavelength, such as
+    /// `550nm` or `S1.550nm`, as a layer of its own; without a name the beauty, or else the first layer. `shown` is the
+    /// file's name in messages.
     ///
     /// # Errors
     /// [`Error::Arguments`] if there is none, with the nearest name and those that there are.
@@ -187,7 +188,25 @@ impl ExrFile {
                 return Ok(ExrLayer::new(wanted, part, vec![channel]));
             }
         }
-        Err(self.no_layer(wanted, shown, &[]))
+        self.band(wanted).ok_or_else(|| self.no_layer(wanted, shown, &[]))
+    }
+
+    /// The band of a spectrum in which a wavelength lies, such as `550nm`; of the first spectrum if none is named.
+    fn band(&self, wanted: &str) -> Option<ExrLayer<'_>> {
+        let wanted = wanted.strip_suffix("nm")?.trim().replace(',', ".");
+        let (spectrum, nm) = match wanted.parse::<f64>() {
+            Ok(nm) => (None, nm),
+            Err(_) => wanted.split_once('.').and_then(|(name, nm)| Some((Some(name), nm.parse().ok()?)))?,
+        };
+        let of = |layer: &ExrLayer| spectrum.is_none_or(|name| name == layer.name);
+        let mut spectra = self.layers().into_iter().filter_map(|layer| Some((layer.bands_nm()?, layer)));
+        let (centers, layer) = spectra.find(|(_, layer)| of(layer))?;
+        let off = |center: f64| (center - nm).abs();
+        let at = (0..centers.len()).min_by(|&a, &b| off(centers[a]).total_cmp(&off(centers[b])))?;
+        let others = centers.iter().filter(|&&other| other != centers[at]);
+        let step = others.map(|other| (other - centers[at]).abs()).fold(f64::INFINITY, f64::min);
+        let band = layer.channels[at];
+        (2.0 * off(centers[at]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
     }
 
     /// What is told of a layer that is not there: the nearest name and those that there are, of layers and of what else

@@ -17,10 +17,21 @@ pub struct ExrLayer<'f> {
     pub channels: Vec<&'f Channel>,
 }
 
+/// The center in nm of the band of a spectrum that a channel holds, as the name `S0.380,000000nm` has it (Fichet,
+/// Pacanowski & Wilkie 2021).
+fn center_nm(channel: &Channel) -> Option<f64> {
+    channel.name.strip_suffix("nm")?.replace(',', ".").parse().ok()
+}
+
 impl<'f> ExrLayer<'f> {
     pub(super) fn new(name: &str, part: &'f Part, mut channels: Vec<&'f Channel>) -> Self {
         channels.sort_by_key(|channel| place(&channel.name));
         Self { name: name.to_owned(), part, channels }
+    }
+
+    /// The centers of its bands in nm, in the order of its channels, if they are those of a spectrum.
+    pub fn bands_nm(&self) -> Option<Vec<f64>> {
+        self.channels.iter().map(|channel| center_nm(channel)).collect()
     }
 
     /// Red, green and blue, if the layer has them.

@@ -70,6 +70,30 @@ fn each_layer_is_shown_as_what_it_is() {
 }
 
 #[test]
+fn a_band_of_a_spectrum_is_shown_by_its_wavelength_and_bands_are_not_taken_for_colors() {
+    let folder = Folder::new();
+    let band = |name, values: [f32; 2]| (name, values.to_vec());
+    let spectra = [
+        band("S0.380,000000nm", [0.0, 1.0]),
+        band("S0.385,000000nm", [1.0, 3.0]),
+        band("S0.390,000000nm", [2.0, 2.0]),
+        band("S1.385,000000nm", [4.0, 5.0]),
+    ];
+    folder.write("a.exr", Exr::new([2, 1], spectra.to_vec()).bytes());
+    let said = |layer: &[&str]| pixels(&folder, layer).1;
+    for name in ["385nm", "383.1nm", "387,4 nm", "S0.385nm", "S0.386.5nm", "S0.385,000000nm"] {
+        let said = said(&[name]);
+        assert!(said.starts_with("S0.385,000000nm: black is 1.0, white 3.0"), "{name}: {said}");
+    }
+    assert!(said(&["S1.385nm"]).starts_with("S1.385,000000nm: black is 4.0"));
+    assert!(said(&[]).starts_with("there are no R, G and B: this is S0.385,000000nm\n"));
+    let refused = |layer: &str| render(&folder, &["view", "a.exr", layer, "--png", "look.png"]);
+    refused("S0")
+        .assert_refused(2, "error: S0 holds the 3 bands of a spectrum\nhelp: name one by its wavelength: S0.385nm\n");
+    refused("370nm").assert_refused(2, "error: a.exr has no layer 370nm\nhelp: it has S0, S1\n");
+}
+
+#[test]
 fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
     let folder = Folder::new();
     folder.write("a.exr", Exr::new([2, 1], vec![("Y", vec![1.0, 3.0])]).bytes());

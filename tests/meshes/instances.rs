@@ -37,6 +37,20 @@ const STEPS: &str =
     "{ scale = [1, 0.6, 0.8] }, { rotate = { axis = [1, 2, 0], degrees = 40 } }, { translate = [2, 0, 0] }";
 
 #[test]
+fn a_matrix_is_the_map_of_its_columns_and_their_shift() {
+    let start = view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 8) + "[material]\ngray.diffuse.reflectance = 0.5\n";
+    let ball = |steps: &str| object("ball.obj", "gray", steps);
+    let matrix = "{ matrix = [[0, 0, 2, 1], [3, 0, 0, 0], [0, 5, 0, -4], [0, 0, 0, 1]] }";
+    let text = start + &ball("{ scale = [3, 5, 2] }, { translate = [0, -4, 1] }") + &ball(matrix);
+    let objects = scene_in(folder().path(), &text).objects;
+    let [steps, matrix] = [0, 1].map(|i| objects[i].shape.bounds().expect("finite"));
+    // Its rows are those of the steps, turned by one: x becomes y, y becomes z, and z becomes x.
+    for (of_steps, of_matrix) in [(steps.min, matrix.min), (steps.max, matrix.max)] {
+        assert!((of_matrix - abbe::math::DVec3::new(of_steps.z, of_steps.x, of_steps.y)).length() < 1e-6);
+    }
+}
+
+#[test]
 fn objects_of_one_mesh_file_share_it_in_memory() {
     let start = view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 8) + "[material]\ngray.diffuse.reflectance = 0.5\n";
     let text = start

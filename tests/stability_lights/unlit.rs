@@ -122,6 +122,14 @@ fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
     let away = view([0.0, 2.0, 8.0], [0.0, 2.0, 20.0], 40.0, 16) + &white(BALL);
     assert_warns(&(away.clone() + light), &["the camera sees no object"]);
     assert_warns(&(away + &environment(1.0)), &[]);
+    // A star, a wire and a far plane lie between the rays that look for objects.
+    for small in [
+        "sphere = { center = [0.03, 1, 0], radius = 0.001 }",
+        "cube = { center = [0, 1, 0], size = [0.001, 40, 0.001] }",
+        "plane = { point = [0, -0.935, 0], normal = [0, 1, 0.2] }",
+    ] {
+        assert_warns(&(view([0.0, 2.0, 8.0], [0.0, 2.0, 0.0], 40.0, 16) + &white(small) + light), &[]);
+    }
     let inside = view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16) + &white("cube = { center = [0, 0, 0], size = 40 }");
     assert_warns(&(inside.clone() + &environment(1.0)), &["the camera is inside object 1, which is opaque"]);
     assert_warns(&(inside + light), &[]);

@@ -25,6 +25,7 @@ Examples:
   render view rainbow.exr --exposure 2         four times as bright
   render view rainbow.exr CryptoObject         every object in its own color
   render view rainbow.exr CryptoObject.prism   the matte of one object
+  render view rainbow.spectral.exr 550nm       the band of a spectrum around a wavelength
   render view rainbow.exr --png look.png       a PNG instead
   render view rainbow.exr albedo --sixel       for terminals that know sixels
 
@@ -38,8 +39,8 @@ pub struct Query {
     #[arg(value_name = "FILE.exr")]
     file: PathBuf,
 
-    /// A layer such as albedo, N or Z, a channel such as albedo.R, mattes such as CryptoObject, or one of them such as
-    /// CryptoObject.ball; the image itself if absent
+    /// A layer such as albedo, N or Z, a channel such as albedo.R, a band of a spectrum such as 550nm, mattes such as
+    /// CryptoObject, or one of them such as CryptoObject.ball; the image itself if absent
     layer: Option<String>,
 
     /// Write an 8-bit sRGB picture of full size, and show nothing
@@ -70,7 +71,7 @@ pub fn run(query: &Query) -> Result<()> {
     let file = ExrFile::read(&query.file)?;
     let shown = query.file.display().to_string();
     let picture = match file.layer(query.layer.as_deref(), &shown) {
-        Ok(layer) => of_layer(query, &file, &layer)?,
+        Ok(layer) => of_layer(query, &file, &one_band(query, &file, layer, &shown)?)?,
         Err(unknown) => of_mattes(query, &file, &shown, unknown)?,
     };
     match &query.png {
@@ -83,6 +84,17 @@ pub fn run(query: &Query) -> Result<()> {
         }
         None => answer(&terminal::drawn(&picture, query.sixel)?),
     }
+}
+
+/// The layer, or of a spectrum that nobody asked for the band in its middle.
+fn one_band<'f>(query: &Query, file: &'f ExrFile, layer: ExrLayer<'f>, shown: &str) -> Result<ExrLayer<'f>> {
+    let Some(centers) = layer.bands_nm().filter(|centers| centers.len() > 1) else { return Ok(layer) };
+    let middle = centers.len() / 2;
+    if query.layer.is_none() {
+        return file.layer(Some(&layer.channels[middle].full_name()), shown);
+    }
+    let message = format!("{} holds the {} bands of a spectrum", layer.name, centers.len());
+    Error::refuse(message, format!("name one by its wavelength: {}.{}nm", layer.name, centers[middle]))
 }
 
 /// A layer as a picture; says what is to be known of it.

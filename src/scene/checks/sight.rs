@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use crate::light::Light;
 use crate::material::{Material, reflect};
-use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::math::{Bounds, BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::scene::{Hit, Projection, Scene};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Curve;
@@ -162,6 +162,28 @@ impl<'a> Sight<'a> {
         let size = DVec2::new(self.scene.film.width.into(), self.scene.film.height.into());
         let inside = seen.film.cmpge(DVec2::ZERO).all() && seen.film.cmple(size).all();
         inside && self.is_free(place, seen.start)
+    }
+
+    /// Whether the picture may show an object between the rays through it: the box of one reaches into the picture, or
+    /// lies around the camera, or a corner of the picture shows one without end.
+    pub(super) fn may_miss_an_object(&self) -> bool {
+        let Scene { camera, film, objects, .. } = self.scene;
+        let size = DVec2::new(film.width.into(), film.height.into());
+        let reaches_in = |bounds: Bounds| {
+            let corner = |i: u32| {
+                let upper = |axis: u32| if i >> axis & 1 == 0 { bounds.min } else { bounds.max };
+                DVec3::new(upper(0).x, upper(1).y, upper(2).z)
+            };
+            let seen: Vec<DVec2> = (0..8).filter_map(|i| Some(camera.see(corner(i), [0.5; 2])?.film)).collect();
+            let low = seen.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+            let high = seen.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+            let is_across = !seen.is_empty() && seen.len() < 8;
+            is_across || (low.cmple(size).all() && high.cmpge(DVec2::ZERO).all())
+        };
+        let corners = [DVec2::ZERO, DVec2::new(size.x, 0.0), DVec2::new(0.0, size.y), size];
+        let seen = (0..objects.len()).filter(|&object| self.scene.is_seen(object as u32));
+        seen.filter_map(|object| objects[object].shape.bounds()).any(reaches_in)
+            || corners.iter().any(|&corner| self.scene.intersect_seen(&camera.ray(corner), None).is_some())
     }
 
     /// Whether nothing opaque lies between a place and a point before it.

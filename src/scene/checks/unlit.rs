@@ -49,7 +49,8 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
 fn empty_view(sight: &Sight) -> Option<String> {
     let Scene { lights, hidden_lights, .. } = sight.scene;
     let shows_sky = (0..lights.len()).any(|id| lights[id].is_infinite() && !hidden_lights.contains(&id));
-    let is_empty = !lights.is_empty() && !shows_sky && sight.first_met().all(|met| met.is_none());
+    let is_empty =
+        !lights.is_empty() && !shows_sky && sight.first_met().all(|met| met.is_none()) && !sight.may_miss_an_object();
     is_empty
         .then(|| "the camera sees no object: none of 576 rays meets one; `look_at` is a point that it looks at".into())
 }

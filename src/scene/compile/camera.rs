@@ -5,7 +5,7 @@ use std::ops::Bound;
 use super::context::Context;
 use super::measures::{MAX_LENGTH, direction, length, point};
 use crate::math::DVec3;
-use crate::scene::text::{Fields, Value, above_0_to, at};
+use crate::scene::text::{Fields, Value, above_0_to, at, shown};
 use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};
 
 /// Nearest focus: what a lens bends by, radius over this, stays within f64.
@@ -37,7 +37,8 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let kind = named.map_or(Some(ProjectionKind::Perspective), |value| value.word(&PROJECTIONS));
         let projection = projection(context, camera, kind);
         let shift = camera.or("shift", [0.0; 2], shift);
-        let lens = camera.maybe("lens", lens);
+        let far = position.zip(target.as_ref()).map(|(position, target)| (target.it - position).length());
+        let lens = camera.maybe("lens", |value| lens(value, far));
         let near = camera.or("near", 0.0, |value| {
             value.within(0.0..=MAX_LENGTH, &format!("near is a distance from 0 to {MAX_LENGTH:e}"), None)
         });
@@ -151,17 +152,20 @@ fn shift(value: Value) -> Option<[f64; 2]> {
 }
 
 /// `lens = { radius = 0.02, focus_distance = 6 }`: the radius of the opening in scene units, 0 for a pinhole, and the
-/// distance along the viewing direction at which points are sharp, `inf` for those infinitely far away.
-fn lens(value: Value) -> Option<Lens> {
+/// distance along the viewing direction at which points are sharp, `inf` for those infinitely far away. What the camera
+/// looks at is so far away.
+fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
     Fields::read(value, |lens| {
         let radius = lens.need("radius", |value| {
             value.within(0.0..=MAX_LENGTH, &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"), None)
         });
-        let focus = lens.need("focus_distance", |value| {
-            let help = "write inf to see sharply what is far away";
-            let what = format!("a focus lies at least {NEAREST_FOCUS:e} away");
-            value.within(NEAREST_FOCUS..=f64::INFINITY, &what, Some(help))
-        });
+        let Some(focus) = lens.get("focus_distance") else {
+            let help = far.map(|far| format!("`look_at` is {} away, in scene units", shown(far)));
+            return lens.lack("focus_distance", help.as_deref());
+        };
+        let help = "write inf to see sharply what is far away";
+        let what = format!("a focus lies at least {NEAREST_FOCUS:e} away");
+        let focus = focus.within(NEAREST_FOCUS..=f64::INFINITY, &what, Some(help));
         Some(Lens::new(radius?, focus?))
     })
 }

@@ -1,10 +1,11 @@
 //! The steps of a transform.
 
 use super::measures::{direction, near, point};
-use crate::math::{DVec3, Transform};
+use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::text::{At, Choice, Fields, Value, at};
 
-/// One step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`.
+/// One step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or
+/// `{ matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, by which columns are multiplied.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
     /// A factor for each axis.
@@ -13,6 +14,8 @@ pub(super) enum Step {
     Rotate(Transform),
     /// A shift.
     Translate(DVec3),
+    /// Any of these, one after another.
+    Matrix(Transform),
 }
 
 const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
@@ -35,8 +38,28 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
             })
         }),
         ("translate", |value| point(value).map(Step::Translate)),
+        ("matrix", |value| matrix(value).map(Step::Matrix)),
     ],
 };
+
+/// Four rows of four numbers, of which the last says nothing.
+fn matrix(value: Value) -> Option<Transform> {
+    let help = "write four rows of four numbers, the last of them [0, 0, 0, 1]";
+    let row = |row: Value| near(row, "a number of a matrix", row.as_list("a row of a matrix", help).numbers()?);
+    if value.node().as_array().is_none_or(|rows| rows.len() != 4) {
+        return value.advise("a matrix is a list of 4 rows", help);
+    }
+    let rows: [[f64; 4]; 4] = value.array(row)?;
+    let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
+    let last = [0.0, 0.0, 0.0, 1.0];
+    match rows[3] == last {
+        true => Some(Transform::affine(DMat3::from_cols(column(0), column(1), column(2)), column(3))),
+        false if column(3) == DVec3::ZERO && rows[3][3] == 1.0 => {
+            value.advise("this matrix has its shift in the last row", "transpose it: the shift is the last column")
+        }
+        false => value.entry(3).advise("the last row of a matrix is [0, 0, 0, 1]", help),
+    }
+}
 
 /// The steps of a list.
 pub(super) fn steps(value: Value) -> Option<Vec<At<Step>>> {
@@ -51,7 +74,7 @@ pub(super) fn map_of(steps: &[At<Step>], first: Transform) -> Option<Transform> 
     steps.iter().try_fold(first, |map, At { place, it: step }| {
         let next = match *step {
             Step::Scale(factors) => Transform::scale(factors),
-            Step::Rotate(turn) => turn,
+            Step::Rotate(map) | Step::Matrix(map) => map,
             Step::Translate(by) => Transform::translate(by),
         };
         let map = map.then(&next);

@@ -6,7 +6,7 @@ use toml::de::DeTable;
 
 use super::document::Document;
 use super::include::INCLUDE;
-use super::suggest::{TABLE, color_elsewhere, meant, suggestion};
+use super::suggest::{TABLE, color_elsewhere, meant, outside_of_material, suggestion};
 use super::value::Value;
 use crate::error::nearest;
 
@@ -209,7 +209,10 @@ impl<R: Copy> Choice<R> {
         let word = stray.key();
         let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
         if is_part {
-            let help = format!("what belongs to `{kind}` stands inside of it: {kind} = {{ .., {word} = .. }}");
+            let outside = outside_of_material(word).filter(|_| self.knows("mask")).map(str::to_owned);
+            let help = outside.unwrap_or_else(|| {
+                format!("what belongs to `{kind}` stands inside of it: {kind} = {{ .., {word} = .. }}")
+            });
             stray.refuse_key::<()>(format!("unknown key `{word}` beside `{kind}`"), Some(help));
         }
         is_part

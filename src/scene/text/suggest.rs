@@ -12,7 +12,7 @@ use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 use crate::spectrum::ColorSpace;
 
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 30] = [
+const ELSEWHERE: [(&str, &[&str]); 34] = [
     ("index", &["ior", "eta", "int_ior"]),
     ("reflectance", &["albedo", "color"]),
     ("rgb", &["color"]),
@@ -22,8 +22,8 @@ const ELSEWHERE: [(&str, &[&str]); 30] = [
     ("toward", &["direction"]),
     ("sun", &["directional", "distant"]),
     ("intensity", &["radiance", "power"]),
-    ("irradiance", &["intensity"]),
-    ("radiance", &["intensity"]),
+    ("irradiance", &["intensity", "illuminance"]),
+    ("radiance", &["intensity", "power", "strength", "brightness", "color"]),
     ("look_at", &["target", "to"]),
     ("position", &["from", "eye", "origin", "location"]),
     ("file", &["path", "filename"]),
@@ -40,14 +40,18 @@ const ELSEWHERE: [(&str, &[&str]); 30] = [
     ("error", &["noise_threshold"]),
     ("scale", &["strength", "multiplier", "intensity"]),
     ("amount", &["factor"]),
-    ("quad", &["rectangle"]),
-    ("mesh", &["cylinder"]),
-    ("environment", &["envmap", "infinite"]),
+    ("quad", &["rectangle", "rect"]),
+    ("sphere", &["ball"]),
+    ("plane", &["floor", "ground"]),
+    ("disc", &["circle"]),
+    ("mesh", &["cylinder", "cone", "torus", "model", "obj"]),
+    ("checker", &["checkerboard", "chessboard"]),
+    ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri"]),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 24] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 40] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -89,7 +93,32 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 24] = [
         "vertical_fov",
         "write vertical_fov, in degrees: 27 sees as much as a lens of 50 mm before film of 36 x 24 mm",
     ),
-    (&["aperture", "f_stop", "fstop"], "lens", "write lens = { radius = 0.02, focus_distance = 6 }"),
+    (
+        &["aperture", "f_stop", "fstop", "focus", "focus_distance", "focal_distance", "dof", "depth_of_field"],
+        "lens",
+        "write lens = { radius = 0.02, focus_distance = 6 }",
+    ),
+    (
+        &["type", "orthographic", "perspective", "equirectangular"],
+        "vertical_fov",
+        "write projection = \"orthographic\", \"perspective\" or \"equirectangular\"",
+    ),
+    (
+        &["direction", "forward", "rotation", "rotate", "transform", "matrix"],
+        "vertical_fov",
+        "write look_at, the point in the middle of the image, and up",
+    ),
+    (
+        &["roll"],
+        "vertical_fov",
+        "`up` rolls the camera, as up = [0.17, 0.98, 0] does by 10 degrees if it looks along -z",
+    ),
+    (&["far", "clip_end"], "vertical_fov", "nothing is too far away to be seen: leave it out"),
+    (
+        &["bounces", "depth"],
+        "max_bounces",
+        "write max_bounces = 8, or diffuse_bounces for those of matte surfaces alone",
+    ),
     (
         &["f_number", "f_stop", "fstop", "aperture"],
         "focus_distance",
@@ -118,6 +147,41 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 24] = [
     ),
     (&["a", "b", "first", "second"], "amount", "write materials = [\"one\", \"other\"]"),
     (&["alpha"], "roughness", "write `roughness`, the square root of alpha"),
+    (&["roughness"], "reflectance", "a rough mirror is of metal: conductor = { metal = \"Al\", roughness = 0.2 }"),
+    (
+        &["color", "reflectance", "albedo", "tint"],
+        "metal",
+        "a metal has the color of its kind, such as \"Cu\"; mirror = { reflectance = { rgb = [0.9, 0.6, 0.5] } } has any",
+    ),
+    (&RELIEF, "reflectance", OF_RELIEF),
+    (&RELIEF, "metal", OF_RELIEF),
+    (
+        &["opacity", "transparency"],
+        "fluorescence",
+        "holes are a material around this one: mask = { material = \"NAME\", opacity = 0.5 }",
+    ),
+    (
+        &["position", "location"],
+        "instances",
+        "write the `center` of its shape, or transform = [{ translate = [0, 1, 0] }]",
+    ),
+    (
+        &["smooth"],
+        "instances",
+        "write it into the braces of a mesh: shape.mesh = { file = \"cup.obj\", smooth = true }",
+    ),
+    (&["priority"], "instances", "write it into the material: dielectric = { index = 1.5, priority = 1 }"),
+    (
+        &["rotate", "rotation"],
+        "wrap",
+        "an image of the sky is turned by `transform` beside `radiance`, any other with its object",
+    ),
+    (&["color_space", "colorspace", "gamma"], "wrap", "write encoding = \"srgb\" or encoding = \"linear\""),
+    (
+        &["elevation", "azimuth", "altitude"],
+        "angular_diameter",
+        "write `toward`, from the scene to the sun: [0, 1, 1] is 45 degrees high",
+    ),
     (&["diameter"], "radius", "write `radius`, half of it"),
     (
         &["diffuse", "emissive", "dielectric", "conductor", "mirror", "plastic", "thin", "color", "roughness"],
@@ -125,6 +189,39 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 24] = [
         "write it in a [material.NAME], and material = \"NAME\" here",
     ),
 ];
+
+/// Keys of an object that stand in its material by mistake, and where they belong.
+const RELIEF: [&str; 4] = ["normal_map", "bump_map", "normal", "bump"];
+const OF_RELIEF: &str = "write normal_map or bump_map in the [[object]], beside its `material`";
+
+/// Where a key belongs that stands beside a kind of material, if not into that.
+pub(super) fn outside_of_material(word: &str) -> Option<&'static str> {
+    RELIEF.contains(&word).then_some(OF_RELIEF)
+}
+
+/// Keys that no section has, and where what they ask for is said. What camera, film and render know holds one of
+/// [`OF_SECTIONS`].
+const OF_NO_SECTION: [(&[&str], &str); 9] = [
+    (
+        &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "brightness"],
+        "the EXR holds the light itself; --exposure 2 brightens the picture of --png",
+    ),
+    (
+        &["white_balance", "whitebalance", "white_point"],
+        "colors are those of the light: balance them afterwards, or light by numbers, which are white",
+    ),
+    (&["denoise", "denoiser"], "render the layers albedo and N, and then: python tools/denoise.py out.exr"),
+    (&["threads"], "it is an argument of the command: --threads 4"),
+    (&["output", "file", "filename"], "it is an argument of the command: --exr out.exr"),
+    (&["frame", "frames"], "it is an argument of the command: --frame 1-24"),
+    (&["fps", "frame_rate", "frames_per_second"], "write metadata = { frames_per_second = 24 } in [film]"),
+    (&["motion_blur", "shutter", "shutter_speed"], "an image shows one moment: there is no motion blur"),
+    (
+        &["background", "transparent"],
+        "A is 0 where no object is; a sky is a [[light]], and visible_to_camera = false beside it hides it",
+    ),
+];
+const OF_SECTIONS: [&str; 3] = ["vertical_fov", "color_space", "diffuse_bounces"];
 
 /// Keys of an object that stand in its shape by mistake, and keys of which a shape has one.
 const BESIDE_SHAPE: [&[&str]; 2] =
@@ -157,11 +254,17 @@ pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
 fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
     let help = IN_OTHER_WORDS.iter().find(|(words, beside, _)| words.contains(&word) && known.contains(beside));
     let of_spectrum = || {
+        let word = if matches!(word, "texture" | "map") { "image" } else { word };
         let is_kind = matches!(word, "image" | "rgb" | "samples" | "blackbody" | "illuminant");
         let of_light = matches!(word, "blackbody" | "illuminant");
         let spectra = [("reflectance", !of_light), ("radiance", true), ("irradiance", true), ("intensity", true)];
         let (key, _) = spectra.into_iter().find(|(key, fits)| is_kind && *fits && known.contains(key))?;
         Some(format!("write {key} = {{ {word} = .. }}"))
+    };
+    let of_no_section = || {
+        let is_section = OF_SECTIONS.iter().any(|own| known.contains(own));
+        let (_, help) = OF_NO_SECTION.iter().find(|(words, _)| is_section && words.contains(&word))?;
+        Some((*help).to_owned())
     };
     let [of_object, of_shape] = BESIDE_SHAPE;
     let is_within = of_object.contains(&word) && of_shape.iter().any(|key| known.contains(key));
@@ -169,6 +272,7 @@ fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
         .or_else(|| is_within.then(|| "write it beside `shape`, in its [[object]]".into()))
         .or_else(of_spectrum)
         .or_else(|| in_another_section(word, known))
+        .or_else(of_no_section)
 }
 
 /// Where a key belongs that one section has, and another, or the file outside of all of them, does not know.
@@ -325,6 +429,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         }
         _ if wanted == TABLE && SHORT.iter().any(|short| short.0 == key) => in_short(key, value, written),
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
+        DeValue::Array(_) if key == "scale" && wanted == "a number" => {
+            Some("`scale` multiplies the values; copies of an image are set by `repeat`".into())
+        }
         DeValue::Array(_) if key == "image" => Some("write the name of its file, such as \"wood.png\"".into()),
         DeValue::Table(_) if key == "roughness" => {
             Some("it is the same all over: two materials `mix` by an image".into())

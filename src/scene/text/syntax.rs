@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::mistake::Mistake;
+use crate::error::nearest;
 
 /// What the error of reading a text as TOML means.
 pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake {
@@ -35,13 +36,9 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid mantissa" => ("a number starts with a digit, as in 0.5".into(), None),
         "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
         "unexpected leading zero" => ("a number starts with no needless 0".into(), None),
+        // Of a value without quotes the reader goes by the first letter.
+        "invalid float" | "invalid integer number" | "invalid boolean" if is_word(written) => word(written),
         "invalid float" | "invalid integer number" => ("this is no number".into(), None),
-        "invalid boolean" => (
-            "this is neither true nor false".into(),
-            Some(written.to_lowercase())
-                .filter(|word| word == "true" || word == "false")
-                .map(|word| format!("write {word}")),
-        ),
         "missing assignment between key-value pairs" => {
             let help = rest.trim_start().starts_with(':') || before.trim_end().ends_with(':');
             ("a key is followed by `=` and its value".into(), help.then(|| "write `=` instead of `:`".into()))
@@ -87,6 +84,25 @@ fn of_inline_table(before: &str) -> Mistake {
     Mistake { span: start..before.len().min(start + 1), message: message.into(), help }
 }
 
+/// Whether letters stand for no number that is spelt in some way.
+fn is_word(written: &str) -> bool {
+    let is_number = ["inf", "infinity", "nan"].contains(&&*written.to_lowercase());
+    written.starts_with(char::is_alphabetic) && !is_number
+}
+
+/// A word without quotes: a truth in other words, or a text.
+fn word(written: &str) -> (String, Option<String>) {
+    let truth = match &*written.to_lowercase() {
+        "true" | "yes" | "on" => "true",
+        "false" | "no" | "off" => "false",
+        other => {
+            let or_truth = nearest(other, ["true", "false"]).map(|near| format!(", or {near}")).unwrap_or_default();
+            return ("a text stands in quotes".into(), Some(format!("write {written:?}{or_truth}")));
+        }
+    };
+    ("this is neither true nor false".into(), Some(format!("write {truth}")))
+}
+
 fn unquoted(written: &str) -> (String, Option<String>) {
     let parts: Vec<&str> = written.split_whitespace().collect();
     if parts.is_empty() {
@@ -100,7 +116,7 @@ fn unquoted(written: &str) -> (String, Option<String>) {
     } else if written.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) {
         ("this is no number".into(), Some("a number stands alone, without a unit or a calculation".into()))
     } else {
-        ("a text stands in quotes".into(), Some(format!("write {written:?}")))
+        word(written)
     }
 }
 
