@@ -41,7 +41,7 @@ pub fn ply() -> Vec<Vec<u8>> {
     let face = |f: &[u32; 3]| format!("3 {} {} {}\n", f[0], f[1], f[2]);
     let faces: String = FACES.iter().map(face).collect();
     let plain: String = POINTS.iter().map(|p| place(p) + "\n").collect();
-    let rich: String = POINTS.iter().map(|p| format!("{} 0 1 0 0.5 0.25 7\n", place(p))).collect();
+    let rich: String = POINTS.iter().map(|p| format!("{} 0 1. -0 .5 0.25 7\n", place(p))).collect();
     let more = "property float nx\nproperty float ny\nproperty float nz\nproperty double u\nproperty double v\n\
                 property uchar flags\nelement edge 2\nproperty int a\nproperty list ushort float b\n";
     let mut files = vec![
