@@ -65,6 +65,8 @@ pub(in crate::scene) enum Unreadable {
     Exr(#[from] ::exr::error::Error),
     #[error("it is a deep image, which has many values to a pixel")]
     Deep,
+    #[error("Abbe does not know its compression")]
+    Compression,
     /// No red, green and blue, but these channels.
     #[error("it has the channels {0}")]
     Channels(String),
@@ -91,6 +93,7 @@ impl Unreadable {
             Self::Large(..) => Some("make it smaller"),
             Self::Deep => Some("flatten it"),
             Self::Sparse => Some("save all channels in full size"),
+            Self::Compression => Some("save it by ZIP"),
             Self::Format(_) => Some("save it as red, green and blue"),
             Self::Size(_) => Some("save it with its rows from the top, each from the left"),
             _ => None,
