@@ -156,7 +156,11 @@ pub fn png() -> Vec<Vec<u8>> {
 pub fn jpeg() -> Vec<Vec<u8>> {
     let encoded =
         |quality, progressive, bytes: usize| pictures::jpeg([17, 9], quality, progressive, &numbers(17 * 9 * bytes));
+    // A directory of one entry, the orientation.
+    let exif = b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
+    let plain = encoded(50, false, 3);
     vec![
+        [&plain[..2], exif, &plain[2..]].concat(),
         encoded(90, false, 3),
         encoded(30, false, 3),
         encoded(80, false, 1),
