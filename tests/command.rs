@@ -303,6 +303,8 @@ fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
     assert_eq!((picture.width, picture.pixels.len()), (6, 6 * 4));
     // The sky of radiance 1 in the corner is full white.
     assert_eq!(picture.pixels[0], [255; 3]);
+    let says_srgb = |bytes: &[u8]| bytes.windows(4).any(|name| name == b"sRGB");
+    assert!(says_srgb(&folder.read("look.png")), "programs that manage colors need to be told");
 }
 
 #[test]

@@ -144,6 +144,36 @@ fn shading_normals_turn_with_the_mesh_whether_it_is_baked_or_an_instance() {
     }
 }
 
+/// As programs write what they have mirrored without turning its faces.
+#[test]
+fn faces_that_run_the_other_way_around_than_their_normals_are_smooth_all_the_same() {
+    let (points, faces) = ball(16, 8);
+    let back: Vec<[u32; 3]> = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let normals: Vec<[f32; 3]> = points.iter().map(|p| p.to_array().map(|x| x as f32)).collect();
+    let built = |faces: Vec<[u32; 3]>, normals: Vec<[f32; 3]>| {
+        let (mesh, _) = Mesh::new(Vertices::Double(points.clone()), faces).expect("faces with area");
+        Shape::Mesh(mesh.with(Attributes { normals, ..Attributes::default() }).into())
+    };
+    let at = |shape: &Shape, ray: &Ray| {
+        let crossing = shape.intersect(ray, f64::INFINITY).expect("it is aimed at");
+        shape.point(ray, &crossing)
+    };
+    let (right, turned) = (built(faces.clone(), normals.clone()), built(back, normals.clone()));
+    // Where one corner alone looks away, and far, the normal of the face is as good as any.
+    let torn = built(faces, [&[[0.0, -9.0, 0.0]], &normals[1..]].concat());
+    let mut random = Random::new(5);
+    let mut flat = 0;
+    for _ in 0..500 {
+        let ray = Ray::new(random.direction() * 3.0, -random.direction());
+        let ray = Ray::new(ray.origin, random.direction() * 0.5 - ray.origin);
+        let [a, b, c] = [&right, &turned, &torn].map(|shape| at(shape, &ray));
+        assert!((a.shading + b.shading).length() < 1e-12 && (a.normal + b.normal).length() < 1e-12);
+        assert!(c.shading.dot(c.normal) > 0.0);
+        flat += usize::from(c.shading == c.normal);
+    }
+    assert!(flat > 0, "no ray met the tip");
+}
+
 #[test]
 fn normals_computed_from_faces_are_those_of_a_ball() {
     // Weighted by angles they do not depend on how squares are cut into triangles.

@@ -25,8 +25,8 @@ pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
     png(&bytes, [film.width, film.height], path)
 }
 
-/// The bytes of a PNG of this width and height, of red, green and blue of 8 bits, row by row; `path` is what it is
-/// called if it cannot be made.
+/// The bytes of a PNG of this width and height, of red, green and blue of 8 bits, row by row, which it says are sRGB;
+/// `path` is what it is called if it cannot be made.
 ///
 /// # Errors
 /// If the encoder refuses the size.
@@ -35,6 +35,7 @@ pub fn png(bytes: &[u8], [width, height]: [u32; 2], path: &Path) -> Result<Vec<u
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, width, height);
         encoder.set_color(png::ColorType::Rgb);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         encoder.set_compression(png::Compression::Fast);
         encoder.set_filter(png::Filter::Adaptive);
         let mut writer = encoder.write_header()?;

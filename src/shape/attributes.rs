@@ -17,13 +17,21 @@ pub struct Attributes {
 impl Attributes {
     /// The unit normal at affine coordinates of a triangle whose own normal is `flat`.
     ///
-    /// Of no use are interpolated normals that vanish or look away from the triangle's front.
+    /// Of no use are interpolated normals that vanish or look away from the triangle's front. Where those of all three
+    /// corners look away, it is the triangle that runs the other way around, as in meshes that a program has mirrored:
+    /// they are turned.
     pub(super) fn shading(&self, corners: [u32; 3], uv: [f64; 2], flat: DVec3) -> DVec3 {
         if self.normals.is_empty() {
             return flat;
         }
         let interpolated: [f64; 3] = interpolated(&self.normals, corners, uv);
-        DVec3::from(interpolated).try_normalize().filter(|normal| normal.dot(flat) > 0.0).unwrap_or(flat)
+        let Some(normal) = DVec3::from(interpolated).try_normalize() else { return flat };
+        let looks_away = |corner: u32| flat.dot(self.normals[corner as usize].map(f64::from).into()) < 0.0;
+        match normal.dot(flat) {
+            along if along > 0.0 => normal,
+            along if along < 0.0 && corners.into_iter().all(looks_away) => -normal,
+            _ => flat,
+        }
     }
 
     /// The texture coordinates at affine coordinates of a triangle.

@@ -85,6 +85,10 @@ fn triangles() -> u32 {
 
 /// Beginnings of the names of required extensions that change nothing but looks.
 const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
+/// Places, normals and texture coordinates in whole numbers, which are read in every file.
+const QUANTIZED: &str = "KHR_mesh_quantization";
+/// What moves the texture coordinates of materials.
+const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
 /// What places a mesh many times; where it is not required, programs that do not know it place it once.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// How far the last row of an affine matrix may be from 0, 0, 0, 1 where one was made of others in 32 bits.
@@ -95,13 +99,16 @@ const MOST: usize = 1 << 27;
 /// Reads the triangles of a file's default scene, placed by its nodes.
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let bytes = fs::read(path).map_err(|error| error.to_string())?;
-    let (json, binary) = if bytes.starts_with(b"glTF") { chunks(&bytes)? } else { (&bytes[..], None) };
+    let (json, binary) = match bytes.starts_with(b"glTF") {
+        true => chunks(&bytes)?,
+        false => (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes), None),
+    };
     let document: Document =
         serde_json::from_slice(json).map_err(|error| format!("its JSON is not that of glTF: {error}"))?;
     if !document.asset.version.starts_with("2.") {
         return Err(format!("it is glTF {:?}, not 2.0", document.asset.version));
     }
-    let refused = |name: &&String| !HARMLESS.iter().any(|start| name.starts_with(start));
+    let refused = |name: &&String| **name != QUANTIZED && !HARMLESS.iter().any(|start| name.starts_with(start));
     if let Some(name) = document.extensions_required.iter().find(refused) {
         return Err(format!("it needs the extension {name}, which Abbe does not read"));
     }
@@ -110,12 +117,14 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let store = Store::open(&document.buffers, folder, binary)?;
     let mut file = document.read(&placed, &store, smooth)?;
     file.names_materials = !document.materials.is_empty();
+    let uses = |extension: &str| document.extensions_used.iter().any(|name| name == extension);
     let has_morphs = document.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| !p.targets.is_empty());
     for (what, there) in [
         ("animations", !document.animations.is_empty()),
         ("skins", !document.skins.is_empty()),
         ("morph targets", has_morphs),
-        ("copies by EXT_mesh_gpu_instancing", document.extensions_used.iter().any(|name| name == INSTANCING)),
+        ("copies by EXT_mesh_gpu_instancing", uses(INSTANCING)),
+        ("texture transforms", uses(TEXTURE_TRANSFORM) && !file.attributes.coordinates.is_empty()),
     ] {
         file.ignored.extend(there.then_some(what));
     }

@@ -125,7 +125,9 @@ impl Accessor {
     }
 }
 
+const BYTE: u32 = 5120;
 const UNSIGNED_BYTE: u32 = 5121;
+const SHORT: u32 = 5122;
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
@@ -133,23 +135,31 @@ const FLOAT: u32 = 5126;
 /// Bytes of a component.
 fn size(component_type: u32) -> usize {
     match component_type {
-        UNSIGNED_BYTE => 1,
-        UNSIGNED_SHORT => 2,
+        BYTE | UNSIGNED_BYTE => 1,
+        SHORT | UNSIGNED_SHORT => 2,
         _ => 4,
     }
 }
 
 impl<'a> Data<'a> {
-    /// Entries of K numbers; whole ones stand for 0 to 1 where they are normalized.
+    /// Entries of K numbers; whole ones stand for 0 to 1, or -1 to 1, where they are normalized (section 3.6.2.2 of the
+    /// specification).
     pub(super) fn floats<const K: usize>(&self) -> Result<Vec<[f32; K]>, String> {
         let Accessor { component_type, normalized, kind, .. } = self.accessor;
+        let is_vector = *kind == format!("VEC{K}");
         let read: fn(&[u8]) -> f32 = match (*component_type, normalized) {
             (FLOAT, _) => |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+            (BYTE, true) => |b| (f32::from(b[0] as i8) / 127.0).max(-1.0),
+            (BYTE, false) => |b| f32::from(b[0] as i8),
             (UNSIGNED_BYTE, true) => |b| f32::from(b[0]) / 255.0,
+            (UNSIGNED_BYTE, false) if is_vector => |b| f32::from(b[0]),
+            (SHORT, true) => |b| (f32::from(i16::from_le_bytes([b[0], b[1]])) / 32767.0).max(-1.0),
+            (SHORT, false) => |b| f32::from(i16::from_le_bytes([b[0], b[1]])),
             (UNSIGNED_SHORT, true) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0,
+            (UNSIGNED_SHORT, false) if is_vector => |b| f32::from(u16::from_le_bytes([b[0], b[1]])),
             _ => return Err(format!("accessor {} has components of type {component_type}", self.number)),
         };
-        if *kind != format!("VEC{K}") {
+        if !is_vector {
             return Err(format!("accessor {} is of type {kind:?}, not VEC{K}", self.number));
         }
         let step = size(*component_type);

@@ -29,6 +29,7 @@ mod outline;
 mod packed;
 mod plane;
 mod ply;
+mod ply_body;
 mod polygon;
 mod pool;
 mod quad;

@@ -1,17 +1,13 @@
 //! Triangles from PLY files (Turk 1994, *The PLY Polygon File Format*).
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
-};
+use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
 use super::faces::Faces;
 use super::mesh_data::{MeshFile, NO_VERTEX, check_finite, no_such_vertex};
 use super::numbered::Numbered;
+use super::ply_body::Body;
 use super::{Attributes, Vertices};
 
 #[derive(Default)]
@@ -138,13 +134,7 @@ struct Lists {
 }
 
 impl Lists {
-    fn vertices(
-        &mut self,
-        reader: &mut Reader<BufReader<File>>,
-        element: &ElementDef,
-        header: &Header,
-        smooth: bool,
-    ) -> Result<(), String> {
+    fn vertices(&mut self, body: &mut Body, element: &ElementDef, smooth: bool) -> Result<(), String> {
         for axis in ["x", "y", "z"] {
             match element.properties.get(axis).map(|property| &property.data_type) {
                 Some(PropertyType::Scalar(ScalarType::Float)) => {}
@@ -155,7 +145,7 @@ impl Lists {
         let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
         let has_normals = smooth && has(&["nx", "ny", "nz"]);
         let pair = COORDINATES.iter().position(|names| has(names));
-        in_batches(reader, element, header, |vertex: Vertex| {
+        body.elements(element, |vertex: Vertex| {
             match &mut self.vertices {
                 Vertices::Single(points) => points.push(vertex.place.map(|x| x as f32)),
                 Vertices::Double(points) => points.push(vertex.place.into()),
@@ -212,85 +202,31 @@ impl Lists {
 ///
 /// A vertex with several texture coordinates becomes several.
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
-    let mut file = BufReader::new(File::open(path).map_err(|error| error.to_string())?);
-    // The parser would look for the end of the first line, however far away that is.
-    if !file.fill_buf().map_err(|error| error.to_string())?.starts_with(b"ply") {
-        return Err("a PLY file begins with a line `ply`, and this one does not".into());
-    }
-    let mut reader = Reader::new(file);
-    let header = Parser::<Vertex>::new().read_header(&mut reader).map_err(|error| ply_error(error, true))?;
-    let of_corners = header.elements.get("face").and_then(|faces| faces.properties.get(OF_CORNERS));
+    let mut body = Body::open(path)?;
+    let elements: Vec<ElementDef> = body.header.elements.values().cloned().collect();
+    let of_corners = body.header.elements.get("face").and_then(|faces| faces.properties.get(OF_CORNERS));
     let mut lists = Lists { corners: of_corners.map(|_| Numbered::default()), ..Lists::default() };
-    // Elements without properties are lines of a text, but nothing at all in a binary file, however many there are.
-    let takes_no_bytes = |e: &ElementDef| e.properties.is_empty() && header.encoding != Encoding::Ascii;
-    for element in header.elements.values() {
+    for element in &elements {
         match element.name.as_str() {
-            "vertex" => lists.vertices(&mut reader, element, &header, smooth)?,
-            _ if takes_no_bytes(element) => {}
+            "vertex" => lists.vertices(&mut body, element, smooth)?,
+            // Elements without properties are lines of a text, but nothing at all in bytes, however many there are.
+            _ if element.properties.is_empty() && !body.has_lines() => {}
             "face" => {
                 has_corners(element, "faces")?;
-                let keep = |face: Face| lists.push(&face.corners, &face.coordinates);
-                in_batches(&mut reader, element, &header, keep)?;
+                body.elements(element, |face: Face| lists.push(&face.corners, &face.coordinates))?;
             }
             "tristrips" => {
                 has_corners(element, "tristrips")?;
                 let keep = |strips: Face| strips.triangles(|corners| lists.push(&corners, &[]));
-                in_batches(&mut reader, element, &header, keep)?;
+                body.elements(element, keep)?;
             }
-            _ => in_batches(&mut reader, element, &header, |_: Vertex| ())?,
+            _ => body.elements(element, |_: Vertex| ())?,
         }
     }
     lists.part_corners()?;
     let Lists { vertices, attributes, faces, .. } = lists;
     let faces = faces.triangles(&vertices)?;
     Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
-}
-
-/// Elements that are read at once: each takes several times the memory of what is kept of it.
-const BATCH: usize = 4096;
-
-/// Hands all elements of one kind over, one after the other.
-fn in_batches<E: PropertyAccess>(
-    reader: &mut Reader<BufReader<File>>,
-    element: &ElementDef,
-    header: &Header,
-    mut keep: impl FnMut(E),
-) -> Result<(), String> {
-    let (parser, mut batch) = (Parser::<E>::new(), element.clone());
-    for done in (0..element.count).step_by(BATCH) {
-        batch.count = BATCH.min(element.count - done);
-        let read = parser.read_payload_for_element(reader, &batch, header);
-        let has_lines = header.encoding == Encoding::Ascii;
-        let of_all = |error| count_from(&ply_error(error, has_lines), batch.count, done, element.count);
-        read.map_err(of_all)?.into_iter().for_each(&mut keep);
-    }
-    Ok(())
-}
-
-/// A message about the end of a file with the numbers of all elements instead of those of a batch.
-fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
-    let numbers = message.split_once(&format!("(expected {batch}, got "));
-    let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
-    match numbers {
-        Some((before, (got, after))) => match got.parse::<usize>() {
-            Ok(got) => format!("{before}(expected {all}, got {}){after}", done + got),
-            Err(_) => message.to_owned(),
-        },
-        None => message.to_owned(),
-    }
-}
-
-/// What is wrong with a file, or with a part of it that has lines or none.
-fn ply_error(error: ParseError, has_lines: bool) -> String {
-    let text = error.to_string();
-    let first = text.lines().next().unwrap_or_default().trim_end_matches('.');
-    let message = first.split_once(": ").map_or(first, |(_, message)| message);
-    match (message.strip_prefix("Unexpected end of file"), error.line()) {
-        (Some(place), _) => format!("the file ends too early,{place}"),
-        (None, Some(line)) if has_lines => format!("line {line} does not fit a PLY file with this header"),
-        (None, Some(_)) => "its bytes do not fit a PLY file with this header".into(),
-        (None, None) => message.to_owned(),
-    }
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub fn ply() -> Vec<Vec<u8>> {
     let face = |f: &[u32; 3]| format!("3 {} {} {}\n", f[0], f[1], f[2]);
     let faces: String = FACES.iter().map(face).collect();
     let plain: String = POINTS.iter().map(|p| place(p) + "\n").collect();
-    let rich: String = POINTS.iter().map(|p| format!("{} 0 1 0 0.5 0.25 7\n", place(p))).collect();
+    let rich: String = POINTS.iter().map(|p| format!("{} 0 1. -0 .5 0.25 7\n", place(p))).collect();
     let more = "property float nx\nproperty float ny\nproperty float nz\nproperty double u\nproperty double v\n\
                 property uchar flags\nelement edge 2\nproperty int a\nproperty list ushort float b\n";
     let mut files = vec![
@@ -156,7 +156,11 @@ pub fn png() -> Vec<Vec<u8>> {
 pub fn jpeg() -> Vec<Vec<u8>> {
     let encoded =
         |quality, progressive, bytes: usize| pictures::jpeg([17, 9], quality, progressive, &numbers(17 * 9 * bytes));
+    // A directory of one entry, the orientation.
+    let exif = b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
+    let plain = encoded(50, false, 3);
     vec![
+        [&plain[..2], exif, &plain[2..]].concat(),
         encoded(90, false, 3),
         encoded(30, false, 3),
         encoded(80, false, 1),

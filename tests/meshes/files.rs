@@ -94,6 +94,38 @@ fn every_kind_of_ply_gives_the_same_triangles() {
 }
 
 #[test]
+fn a_ply_in_lines_may_write_numbers_and_comments_in_any_way() {
+    let text = ply_text();
+    // A comment that is no UTF-8.
+    let latin = |bytes: &[u8]| {
+        let at = bytes.windows(7).position(|part| part == b"pyramid").expect("its comment");
+        [&bytes[..at], b"r\xe4t", &bytes[at + 7..]].concat()
+    };
+    let body = |change: &dyn Fn(&str) -> String| {
+        let (header, body) = text.split_once("end_header\n").expect("a header");
+        format!("{header}end_header\n{}", change(body)).into_bytes()
+    };
+    for bytes in [
+        latin(text.as_bytes()),
+        latin(&ply_binary(false, true)),
+        body(&|body| body.replace("0.", ".").replace(" 255", " +255")),
+        body(&|body| body.replace("1.1", "11.e-1").replace("1.3", "13.E-1")),
+        body(&|body| body.replace('\n', "\n\n")),
+        body(&|body| body.replace('\n', " \r\n\t").replace(' ', "  ")),
+    ] {
+        assert_eq!(read("a.ply", &bytes).0, triangles(true), "{}", String::from_utf8_lossy(&bytes));
+    }
+    // Programs write normals that are no numbers for faces without area.
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\n".to_owned()
+        + &["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
+    let header = header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let (_folder, path) = file("a.ply", header + "0 0 0 nan -nan NaN\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+    assert_eq!(read_mesh(&path).expect("its normals are not used").faces, [[0, 1, 2]]);
+    let told = read_smooth_mesh(&path).err();
+    assert_eq!(told.as_deref(), Some("the normal of vertex 0 (counted from 0) is not finite"));
+}
+
+#[test]
 fn strips_of_a_ply_are_cut_into_triangles() {
     let header = ply_header("ascii", "float", "int").replace("element face 5", "element tristrips 2");
     let vertices = POINTS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();

@@ -49,12 +49,73 @@ fn every_way_to_store_a_gltf_gives_the_same_triangles() {
     for width in [1, 2, 4] {
         assert_eq!(read("a.gltf", document(&embedded(width), width, "").as_bytes()).0, triangles(true));
         assert_eq!(read("a.glb", &glb(&document("", width, ""), &binary(width))).0, triangles(true));
+        let marked = format!("\u{feff}{}", document(&embedded(width), width, ""));
+        assert_eq!(read("a.gltf", marked.as_bytes()).0, triangles(true));
         let (folder, path) = file("a.GLTF", document(r#""uri":"a%20b.bin","#, width, ""));
         std::fs::write(folder.path().join("a b.bin"), binary(width)).expect("the file can be written");
         let mesh = read_mesh(&path).expect("a glTF file");
         assert_eq!(mesh.faces, FACES);
         assert_eq!(mesh.others, [folder.path().join("a b.bin")]);
     }
+}
+
+/// `KHR_mesh_quantization`, as gltfpack writes it.
+#[test]
+fn places_may_be_whole_numbers() {
+    let text = |kind: u32, width: usize, normalized: bool| {
+        let (view, scale) = (format!(r#"{{"buffer":0,"byteLength":{}}}"#, 20 * width), r#","scale":[2,2,2]"#);
+        let head =
+            r#""extensionsRequired":["KHR_mesh_quantization"],"extensionsUsed":["KHR_texture_transform"],"scene":0"#;
+        let accessor = format!(r#""componentType":{kind},"normalized":{normalized},"count":5"#);
+        let json = document("", 1, scale)
+            .replace(r#""scene":0"#, head)
+            .replace(r#""componentType":5126,"count":5"#, &accessor)
+            .replace(
+                r#"{"buffer":0,"byteLength":60}"#,
+                &view.replace('}', &format!(r#","byteStride":{}}}"#, 4 * width)),
+            )
+            .replace(r#""byteOffset":60,"#, &format!(r#""byteOffset":{},"#, 20 * width));
+        json.replace(r#""byteLength":78"#, &format!(r#""byteLength":{}"#, 20 * width + 18))
+    };
+    let corners: Vec<u8> = FACES.iter().flatten().map(|&corner| corner as u8).collect();
+    // Each kind of numbers, how many bytes they have, and what stands for 1.
+    for (kind, width, one) in [(5120, 1, 127), (5121, 1, 255), (5122, 2, 32767), (5123, 2, 65535)] {
+        for normalized in [true, false] {
+            let place = |point: usize, axis: usize| (point as i64 + 2 * axis as i64) * (one / 9);
+            let numbers =
+                (0..5).flat_map(|point| (0..4).map(move |axis| if axis < 3 { place(point, axis) } else { 0 }));
+            let numbers: Vec<u8> = numbers.flat_map(|number| number.to_le_bytes()[..width].to_vec()).collect();
+            let bytes = glb(&text(kind, width, normalized), &[&numbers[..], &corners].concat());
+            let scale = if normalized { 2.0 / one as f64 } else { 2.0 };
+            let point = |point: u32| {
+                DVec3::from([0, 1, 2].map(|axis| f64::from((place(point as usize, axis) as f64 * scale) as f32)))
+            };
+            for (found, face) in read("a.glb", &bytes).0.iter().zip(FACES) {
+                for (found, expected) in found.iter().zip(face.map(point)) {
+                    assert!((*found - expected).length() <= 1e-6 * expected.length(), "{kind}: {found} {expected}");
+                }
+            }
+        }
+    }
+    // The lowest number of a byte is -1, as the next one is.
+    let numbers = [[-128_i8, -127, 127, 0], [0; 4], [127, 0, 0, 0], [0, 127, 0, 0], [0; 4]].concat();
+    let numbers: Vec<u8> = numbers.into_iter().map(|number| number as u8).collect();
+    let (_folder, path) = file("a.glb", glb(&text(5120, 1, true), &[&numbers[..], &corners].concat()));
+    let mesh = read_mesh(&path).expect("a glTF file");
+    assert_eq!(mesh.vertices.at(0), DVec3::new(-2.0, -2.0, 2.0));
+    assert!(mesh.ignored.is_empty(), "no texture coordinates are moved where there are none");
+}
+
+#[test]
+fn texture_transforms_are_said_to_be_ignored() {
+    let coordinates = r#""POSITION":0,"TEXCOORD_0":2"#;
+    let accessor = r#""type":"SCALAR"},{"bufferView":0,"componentType":5126,"count":5,"type":"VEC2"}"#;
+    let text = document(&embedded(1), 1, "")
+        .replace(r#""POSITION":0"#, coordinates)
+        .replace(r#""type":"SCALAR"}"#, accessor)
+        .replace(r#""scene":0"#, r#""extensionsUsed":["KHR_texture_transform"],"scene":0"#);
+    let (_folder, path) = file("a.gltf", text);
+    assert_eq!(read_mesh(&path).expect("a glTF file").ignored, ["texture transforms"]);
 }
 
 #[test]

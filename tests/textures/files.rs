@@ -107,6 +107,32 @@ fn what_the_color_profile_of_a_jpeg_says_is_told() {
     }
 }
 
+#[test]
+fn a_photo_of_a_turned_camera_is_told() {
+    // A directory of two entries of 12 bytes, the second of which is the orientation, 6 for a quarter turn.
+    let exif = |orientation: u8, is_big: bool| -> Vec<u8> {
+        let short = |x: u16| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
+        let long = |x: u32| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
+        let entry =
+            |tag: u16, value: u8| [&short(tag)[..], &short(3), &long(1), &short(value.into()), &[0; 2]].concat();
+        let head = if is_big { b"MM\0*" } else { b"II*\0" };
+        [&head[..], &long(8), &short(2), &entry(0x100, 8), &entry(0x112, orientation), &[0; 4]].concat()
+    };
+    let whole = jpeg([8, 8], 75, false, &[100; 8 * 8 * 3]);
+    let damaged = (0..38).map(|end| (exif(6, false)[..end].to_vec(), end > 31));
+    let good = [(exif(6, true), true), (exif(8, false), true), (exif(1, true), false), (exif(0, false), false)];
+    for (exif, is_told) in good.into_iter().chain(damaged) {
+        let folder = tempfile::tempdir().unwrap();
+        let length = (exif.len() as u16 + 8).to_be_bytes();
+        let bytes = [&whole[..2], &[0xff, 0xe1], &length, b"Exif\0\0", &exif, &whole[2..]].concat();
+        std::fs::write(folder.path().join("a.jpg"), bytes).unwrap();
+        let told = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
+        let said =
+            |told: &String| told.contains("the EXIF orientation of a.jpg is ignored: save it upright if it lies");
+        assert!(told.len() == usize::from(is_told) && told.iter().all(said), "{exif:?}: {told:?}");
+    }
+}
+
 /// Of colors alone, and unless the file says that they are sRGB all the same.
 #[test]
 fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {

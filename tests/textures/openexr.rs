@@ -63,6 +63,26 @@ fn grays_layers_and_small_letters_are_read() {
 }
 
 #[test]
+fn compressions_that_are_not_known_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // Enough alike that it is not kept as it is.
+    let plain = Exr::new([16, 2], vec![("Y", vec![0.5; 32])]);
+    Exr { compression: Compression::ZIP16, ..plain }.write(&folder.join("a.exr"));
+    let mut bytes = std::fs::read(folder.join("a.exr")).unwrap();
+    let attribute = b"compression\0compression\0\x01\0\0\0";
+    let at = bytes.windows(attribute.len()).position(|part| part == attribute).expect("every file has it");
+    // High-throughput JPEG 2000 in blocks of 256 and of 32 rows, and what may come.
+    for compression in [10, 11, 200] {
+        bytes[at + attribute.len()] = compression;
+        std::fs::write(folder.join("a.exr"), &bytes).unwrap();
+        let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }");
+        assert_eq!(found.message, "a.exr is not read: Abbe does not know its compression", "{compression}");
+        assert_eq!(found.help.as_deref(), Some("save it by ZIP"));
+    }
+}
+
+#[test]
 fn channels_that_are_no_image_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -99,7 +99,7 @@ impl TextureOf<'_> {
         let (srgb, directions) = (self.srgb, self.meaning == Meaning::Directions);
         let (width, not_srgb) = (whole.width, whole.not_srgb.as_deref());
         let picked = self.picked(whole.channels, whole.has_alpha())?;
-        match whole.steps {
+        let mut file = match whole.steps {
             Steps::Words(numbers) => {
                 let even = |word: u16| f64::from(word) / 65535.0;
                 let value = |word: u16| match directions {
@@ -110,7 +110,7 @@ impl TextureOf<'_> {
                 let table: Vec<f32> = (0..=u16::MAX).map(|word| value(word) as f32).collect();
                 let ignores_alpha = !directions && picked.ignores(&numbers, u16::MAX);
                 let floats = picked.of(&numbers).map(|word| table[usize::from(word)]).collect();
-                Ok(self.file(Image::of_floats(width, picked.channels(), floats), ignores_alpha, not_srgb))
+                self.file(Image::of_floats(width, picked.channels(), floats), ignores_alpha, not_srgb)
             }
             Steps::Bytes(numbers) => {
                 let ignores_alpha = !directions && picked.ignores(&numbers, u8::MAX);
@@ -119,9 +119,12 @@ impl TextureOf<'_> {
                     true => Image::of_signed_bytes(width, channels, bytes),
                     false => Image::of_bytes(width, channels, bytes, srgb),
                 };
-                Ok(self.file(image, ignores_alpha, not_srgb))
+                self.file(image, ignores_alpha, not_srgb)
             }
-        }
+        };
+        let turned = |file| format!("the EXIF orientation of {file} is ignored: save it upright if it lies askew");
+        file.warnings.extend(whole.is_turned.then(|| turned(self.path.display())));
+        Ok(file)
     }
 
     fn of_floats(self, image: Floats) -> Result<ImageFile, Fault> {

@@ -70,9 +70,14 @@ fn cells(line: &str) -> Vec<&str> {
     let is_decimal = line.split_whitespace().nth(1).is_some() && !line.split_whitespace().any(has_cells);
     let separates = |separator: &char| line.contains(*separator) && !(*separator == ',' && is_decimal);
     match [';', ',', '\t'].into_iter().find(separates) {
-        Some(separator) => line.split(separator).map(str::trim).collect(),
+        Some(separator) => line.split(separator).map(|cell| unquoted(cell.trim())).collect(),
         None => line.split_whitespace().collect(),
     }
+}
+
+/// Cells may stand in quotes: RFC 4180, section 2. Half of one that holds a separator is none.
+fn unquoted(cell: &str) -> &str {
+    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
 }
 
 #[cfg(test)]
@@ -89,6 +94,7 @@ mod tests {
         assert_eq!(read_columns("400;0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
         assert_eq!(read_columns("400 ,0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
         assert_eq!(read_columns("dull paint,shiny\n400,0.5", 2).unwrap(), [row(2, [400.0, 0.5])]);
+        assert_eq!(read_columns("\"nm\",\"R, dull\"\n\"400\", \" 0.5\"", 2).unwrap(), [row(2, [400.0, 0.5])]);
     }
 
     #[test]
@@ -101,6 +107,7 @@ mod tests {
             assert_eq!(fault.message, ", line 1: \"0,5\" is not a number");
             assert_eq!(fault.help.as_deref(), Some("a decimal point is written `.`"));
         }
+        assert_eq!(told("\"400\",\"0,5\"", 2), ", line 1: \"\\\"0\" is not a number");
         assert_eq!(told("# nothing", 2), " holds no numbers");
     }
 }

@@ -18,12 +18,7 @@ use crate::spectrum::{Matrix, matrix_of_file};
 /// # Errors
 /// If it is none, is damaged, claims a size that it cannot have, or has no channels that make an image.
 pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unreadable> {
-    let reader = exr::block::read(Cursor::new(bytes), false).map_err(|error| match error {
-        // Of all that a file's head may ask for, this alone is what other programs read.
-        exr::error::Error::NotSupported(what) if what.contains("subsampling") => Unreadable::Sparse,
-        exr::error::Error::NotSupported(what) if what.contains("deep") => Unreadable::Deep,
-        other => other.into(),
-    })?;
+    let reader = exr::block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     let fit = |size: Vec2<usize>, channels: usize| {
         let length = (size.width() as u64 * size.height() as u64).saturating_mul(4 * channels as u64);
         fits(size.width(), size.height(), length, bytes)
@@ -45,11 +40,22 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     };
     let chunks = reader
         .filter_chunks(false, |_, tile, block| block.layer == chosen.part && tile.is_largest_resolution_level())?;
-    chunks.decompress_sequential(false, |_, block| {
+    let keep_all = chunks.decompress_sequential(false, |_, block| {
         keep(&mut floats, &block, &header, &chosen);
         Ok(())
-    })?;
+    });
+    keep_all.map_err(unreadable)?;
     Ok(floats)
+}
+
+/// What other programs may read is told apart from what is no OpenEXR file.
+fn unreadable(error: exr::error::Error) -> Unreadable {
+    match error {
+        exr::error::Error::NotSupported(what) if what.contains("subsampling") => Unreadable::Sparse,
+        exr::error::Error::NotSupported(what) if what.contains("deep") => Unreadable::Deep,
+        exr::error::Error::NotSupported(what) if what.contains("compression method") => Unreadable::Compression,
+        other => other.into(),
+    }
 }
 
 /// Whether the numbers were made to look alike rather than kept. PXR24 only rounds them, and turns no sign.

@@ -4,8 +4,8 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::icc;
 use super::texels::{Steps, Unreadable, Whole, fits};
+use super::{exif, icc};
 
 /// Reads a JPEG: gray stays gray, all other colors become red, green and blue.
 ///
@@ -28,7 +28,8 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
         return Err(Unreadable::Short);
     }
     let not_srgb = decoder.icc_profile().and_then(|profile| icc::not_srgb(&profile));
-    Ok(Whole { width, channels, not_srgb, steps: Steps::Bytes(numbers) })
+    let is_turned = decoder.exif().is_some_and(|exif| exif::is_turned(exif));
+    Ok(Whole { width, channels, not_srgb, is_turned, steps: Steps::Bytes(numbers) })
 }
 
 /// Whether the markers of a file (ITU-T T.81, B.1.1) lead to the end of its image. What lies behind may be anything.

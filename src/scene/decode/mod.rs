@@ -1,5 +1,6 @@
 //! The files of images that a scene names: bytes in, the numbers of their texels out, as they stand in the file.
 
+mod exif;
 mod exr;
 mod exr_channels;
 mod icc;

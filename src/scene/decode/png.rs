@@ -2,8 +2,8 @@ use std::io::Cursor;
 
 use png::{BitDepth, Decoder, DecodingError, Info, Limits, ScaledFloat, SourceChromaticities, Transformations};
 
-use super::icc;
 use super::texels::{Steps, Unreadable, Whole, fits};
+use super::{exif, icc};
 use crate::film::MOST_TEXELS;
 use crate::spectrum::{ColorSpace, Primaries};
 
@@ -22,12 +22,13 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     let mut numbers = vec![0; size];
     reader.next_frame(&mut numbers)?;
     let not_srgb = not_srgb(reader.info());
+    let is_turned = reader.info().exif_metadata.as_deref().is_some_and(exif::is_turned);
     let (color, depth) = reader.output_color_type();
     let steps = match depth {
         BitDepth::Sixteen => Steps::Words(numbers.as_chunks().0.iter().map(|word| u16::from_be_bytes(*word)).collect()),
         _ => Steps::Bytes(numbers),
     };
-    Ok(Whole { width, channels: color.samples(), not_srgb, steps })
+    Ok(Whole { width, channels: color.samples(), not_srgb, is_turned, steps })
 }
 
 /// What the chunks of a file say of its colors, the strongest first, if that is not sRGB.

@@ -10,6 +10,8 @@ pub(in crate::scene) struct Whole {
     pub(in crate::scene) channels: usize,
     /// What the file says of its colors that is not sRGB.
     pub(in crate::scene) not_srgb: Option<String>,
+    /// Whether the file says that it is upright only when it is turned or mirrored.
+    pub(in crate::scene) is_turned: bool,
     pub(in crate::scene) steps: Steps,
 }
 
@@ -63,6 +65,8 @@ pub(in crate::scene) enum Unreadable {
     Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
     #[error(transparent)]
     Exr(#[from] ::exr::error::Error),
+    #[error("Abbe does not know its compression")]
+    Compression,
     #[error("it is a deep image, which has many values to a pixel")]
     Deep,
     /// No red, green and blue, but these channels.
@@ -89,6 +93,7 @@ impl Unreadable {
     pub(in crate::scene) fn remedy(&self) -> Option<&'static str> {
         match self {
             Self::Large(..) => Some("make it smaller"),
+            Self::Compression => Some("save it by ZIP"),
             Self::Deep => Some("flatten it"),
             Self::Sparse => Some("save all channels in full size"),
             Self::Format(_) => Some("save it as red, green and blue"),

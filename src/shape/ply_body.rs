@@ -1,0 +1,167 @@
+//! PLY files as they stand on the disk: a header, and elements in lines or in bytes.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::str::FromStr;
+
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    DefaultElement, ElementDef, Encoding, Header, Property, PropertyAccess, PropertyType, ScalarType,
+};
+
+/// A file whose header has been read.
+pub(super) struct Body {
+    pub(super) header: Header,
+    rest: Reader<BufReader<File>>,
+    /// How many lines have been read.
+    lines: usize,
+}
+
+/// Elements that are read at once: each takes several times the memory of what is kept of it.
+const BATCH: usize = 4096;
+
+impl Body {
+    /// Reads the header. Its comments may be in any encoding.
+    pub(super) fn open(path: &Path) -> Result<Self, String> {
+        let mut file = BufReader::new(File::open(path).map_err(|error| error.to_string())?);
+        // Else the end of the first line would be looked for, however far away that is.
+        if !file.fill_buf().map_err(|error| error.to_string())?.starts_with(b"ply") {
+            return Err("a PLY file begins with a line `ply`, and this one does not".into());
+        }
+        let (mut bytes, mut lines, mut is_whole) = (Vec::new(), 0, false);
+        while !is_whole {
+            let start = bytes.len();
+            file.read_until(b'\n', &mut bytes).map_err(|error| error.to_string())?;
+            is_whole = bytes.len() == start || bytes[start..].trim_ascii() == b"end_header";
+            lines += 1;
+        }
+        let text = String::from_utf8_lossy(&bytes);
+        let header = Parser::<DefaultElement>::new().read_header(&mut Reader::new(text.as_bytes()));
+        let header = header.map_err(|error| ply_error(error, true))?;
+        Ok(Self { header, rest: Reader::new(file), lines })
+    }
+
+    pub(super) fn has_lines(&self) -> bool {
+        self.header.encoding == Encoding::Ascii
+    }
+
+    /// Hands all elements of one kind over, one after the other.
+    pub(super) fn elements<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        mut keep: impl FnMut(E),
+    ) -> Result<(), String> {
+        if self.has_lines() {
+            return self.in_lines(element, keep);
+        }
+        let (parser, mut batch) = (Parser::<E>::new(), element.clone());
+        for done in (0..element.count).step_by(BATCH) {
+            batch.count = BATCH.min(element.count - done);
+            let read = parser.read_payload_for_element(&mut self.rest, &batch, &self.header);
+            let of_all = |error| count_from(&ply_error(error, false), batch.count, done, element.count);
+            read.map_err(of_all)?.into_iter().for_each(&mut keep);
+        }
+        Ok(())
+    }
+
+    /// The parser of the crate knows neither `nan` nor numbers such as `1.` and `.5`.
+    fn in_lines<E: PropertyAccess>(&mut self, element: &ElementDef, mut keep: impl FnMut(E)) -> Result<(), String> {
+        let ElementDef { name, count, properties } = element;
+        let mut line = Vec::new();
+        for done in 0..*count {
+            line.clear();
+            while line.trim_ascii().is_empty() {
+                line.clear();
+                let read = self.rest.get_mut().read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
+                if read == 0 {
+                    let message = format!("while reading element '{name}' (expected {count}, got {done})");
+                    return Err(format!("the file ends too early, {message}"));
+                }
+                self.lines += 1;
+                if properties.is_empty() {
+                    break;
+                }
+            }
+            let read = of_line(&String::from_utf8_lossy(&line), element);
+            keep(read.ok_or_else(|| no_fit(self.lines))?);
+        }
+        Ok(())
+    }
+}
+
+/// What stands in a line; none if that is not what the header says.
+fn of_line<E: PropertyAccess>(line: &str, element: &ElementDef) -> Option<E> {
+    let (mut words, mut read) = (line.split_ascii_whitespace(), E::new());
+    for (name, property) in &element.properties {
+        let value = match &property.data_type {
+            PropertyType::Scalar(kind) => scalar(kind, words.next()?),
+            PropertyType::List(_, kind) => {
+                let count = words.next()?.parse().ok()?;
+                list(kind, count, &mut words)
+            }
+        };
+        read.set_property(name, value?);
+    }
+    Some(read)
+}
+
+fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
+    Some(match kind {
+        ScalarType::Char => Property::Char(word.parse().ok()?),
+        ScalarType::UChar => Property::UChar(word.parse().ok()?),
+        ScalarType::Short => Property::Short(word.parse().ok()?),
+        ScalarType::UShort => Property::UShort(word.parse().ok()?),
+        ScalarType::Int => Property::Int(word.parse().ok()?),
+        ScalarType::UInt => Property::UInt(word.parse().ok()?),
+        ScalarType::Float => Property::Float(word.parse().ok()?),
+        ScalarType::Double => Property::Double(word.parse().ok()?),
+    })
+}
+
+fn list<'l>(kind: &ScalarType, count: usize, words: &mut impl Iterator<Item = &'l str>) -> Option<Property> {
+    Some(match kind {
+        ScalarType::Char => Property::ListChar(numbers(count, words)?),
+        ScalarType::UChar => Property::ListUChar(numbers(count, words)?),
+        ScalarType::Short => Property::ListShort(numbers(count, words)?),
+        ScalarType::UShort => Property::ListUShort(numbers(count, words)?),
+        ScalarType::Int => Property::ListInt(numbers(count, words)?),
+        ScalarType::UInt => Property::ListUInt(numbers(count, words)?),
+        ScalarType::Float => Property::ListFloat(numbers(count, words)?),
+        ScalarType::Double => Property::ListDouble(numbers(count, words)?),
+    })
+}
+
+fn numbers<'l, T: FromStr>(count: usize, words: &mut impl Iterator<Item = &'l str>) -> Option<Vec<T>> {
+    (0..count).map(|_| words.next()?.parse().ok()).collect()
+}
+
+fn no_fit(line: usize) -> String {
+    format!("line {line} does not fit a PLY file with this header")
+}
+
+/// A message about the end of a file with the numbers of all elements instead of those of a batch.
+fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
+    let numbers = message.split_once(&format!("(expected {batch}, got "));
+    let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
+    match numbers {
+        Some((before, (got, after))) => match got.parse::<usize>() {
+            Ok(got) => format!("{before}(expected {all}, got {}){after}", done + got),
+            Err(_) => message.to_owned(),
+        },
+        None => message.to_owned(),
+    }
+}
+
+/// What is wrong with a file, or with a part of it that has lines or none.
+fn ply_error(error: ParseError, has_lines: bool) -> String {
+    let text = error.to_string();
+    let first = text.lines().next().unwrap_or_default().trim_end_matches('.');
+    let message = first.split_once(": ").map_or(first, |(_, message)| message);
+    match (message.strip_prefix("Unexpected end of file"), error.line()) {
+        (Some(place), _) => format!("the file ends too early,{place}"),
+        (None, Some(line)) if has_lines => no_fit(line),
+        (None, Some(_)) => "its bytes do not fit a PLY file with this header".into(),
+        (None, None) => message.to_owned(),
+    }
+}
