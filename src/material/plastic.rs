@@ -129,8 +129,13 @@ impl Plastic<Table> {
     ) -> Option<([f64; N], f64)> {
         let reflection = surface.evaluate(wo, wi)?;
         let base_pdf = wi.z * FRAC_1_PI;
+        let mut last = Last::NONE;
         let lanes = self.lanes(arrival, [wo.z, wi.z], |lane| {
-            (lane.coat(surface, &reflection) + lane.base() * base_pdf, lane.reflected())
+            let coat = match lane.film {
+                Some(_) => lane.coat(surface, &reflection),
+                None => last.of(lane.indices, |_| lane.coat(surface, &reflection)),
+            };
+            (coat + lane.base() * base_pdf, lane.reflected())
         });
         let chance = chance_of_coat(&lanes.map(|lane| lane.1));
         let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
@@ -142,7 +147,7 @@ impl Plastic<Table> {
         &self,
         arrival: &Arrival<N>,
         cosines: [f64; 2],
-        of_lane: impl Fn(&CoatLane) -> T,
+        mut of_lane: impl FnMut(&CoatLane) -> T,
     ) -> [T; N] {
         let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));

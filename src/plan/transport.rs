@@ -34,14 +34,16 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
         (filter != Filter::Center)
             .then(|| format!("each sample falls {place} its pixel (filter \"{}\")", filter.name()))
     };
+    let leaves = |object: &Object| Some(format!("light leaves {} in every direction", object.name));
     let why = match scattering {
         _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
         _ if scene.camera.has_lens() => Some("each sample sees through another point of the lens".to_owned()),
         None => anywhere(),
-        Some(object) => match (scene.render.diffuse_bounces.filter(|_| rough.is_none()), extended_light(scene)) {
-            (Some(0), None) => anywhere(),
-            (Some(0), Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
-            _ => Some(format!("light leaves {} in every direction", object.name)),
+        Some(object) => match (scene.render.diffuse_bounces, rough, extended_light(scene)) {
+            (Some(0), Some(rough), _) => leaves(rough),
+            (Some(0), None, None) => anywhere(),
+            (Some(0), None, Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
+            _ => leaves(object),
         },
     };
     match why.or_else(|| holes_beside_mattes(scene)).or_else(|| too_many_ways(scene, basis, together)) {

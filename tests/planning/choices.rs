@@ -201,3 +201,20 @@ fn lamps_and_skies_that_the_camera_does_not_see_are_not_seen_through_holes_and_p
         }
     }
 }
+
+/// With `diffuse_bounces` of 0 light leaves matte surfaces for the camera alone.
+#[test]
+fn the_surface_is_named_that_leaves_light_to_chance() {
+    for (render, name) in [("", "object 1"), ("diffuse_bounces = 0", "object 2")] {
+        let view = view([0.0, 1.0, 6.0], [0.0, 1.0, 0.0], 40.0, 8);
+        let plan = plan(&scene(&format!(
+            "{view}\n[render]\n{render}\n[material.floor]\ndiffuse = {{ reflectance = 0.5 }}\n\
+             [material.metal]\nconductor = {{ metal = \"Au\", roughness = 0.3 }}\n\
+             [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"floor\"\n\
+             [[object]]\nshape.sphere = {{ center = [0, 1, 0], radius = 1 }}\nmaterial = \"metal\"\n\
+             [[light]]\npoint = {{ position = [3, 3, 3], intensity = 9 }}\n"
+        )));
+        let says = format!("transport random: light leaves {name} in every direction");
+        assert!(plan.because.iter().any(|line| line.starts_with(&says)), "{:?}", plan.because);
+    }
+}
