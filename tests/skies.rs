@@ -168,6 +168,26 @@ fn an_even_image_is_the_sky_of_its_color() {
     }
 }
 
+/// Nothing is left to chance where a convex body sees nothing but an even sky, however dark it is: bounces are not
+/// ended because their surface is.
+#[test]
+fn dark_bodies_under_an_even_sky_have_no_noise() {
+    for reflectance in [0.5, 0.03, 0.001] {
+        let text = format!(
+            "{}[render]\nsamples = 4\n[material.paint]\ndiffuse = {{ reflectance = {reflectance} }}\n\
+             [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"paint\"\n\
+             [[light]]\nenvironment = {{ radiance = 1 }}\n",
+            view([0.0, 0.0, 6.0], [0.0; 3], 10.0, 8)
+        );
+        let scene = scene_in(Path::new("."), &text);
+        let film = film_of(&scene, plan(&scene).method);
+        for (number, pixel) in film.pixels.iter().enumerate() {
+            let off = f64::from(pixel.rgb[1]) / reflectance - 1.0;
+            assert!(off.abs() <= 1e-5, "{reflectance}: pixel {number} is off by {off}");
+        }
+    }
+}
+
 /// Files that were cut off or damaged are refused in words, whatever byte is hit.
 #[test]
 fn a_damaged_image_never_stops_the_program() {

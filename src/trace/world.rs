@@ -40,6 +40,8 @@ pub struct World {
     /// Those that the camera does not see.
     pub(super) hidden_media: Media,
     pub(super) has_media: bool,
+    /// Whether light comes from all of a sky, of which bounces find much.
+    pub(super) has_sky: bool,
     /// Whether there are objects that the camera does not see, or sees as holes.
     pub(super) hides_objects: bool,
     /// Whether some of them are holdouts or shadow catchers, over which samples count in whole.
@@ -75,6 +77,7 @@ impl World {
             Quantity::Emission => tables.of(curve, |curve| method.basis.tabulate(quantity, curve)),
             _ => method.basis.tabulate(quantity, curve),
         });
+        let has_sky = scene.lights.iter().any(|light| matches!(light, Light::Environment(_)));
         let hides_objects = scene.objects.iter().any(|object| object.sight != Sight::Shown);
         let is_matte = |sight: Sight| matches!(sight, Sight::Holdout | Sight::ShadowCatcher);
         let has_mattes = scene.objects.iter().any(|object| is_matte(object.sight));
@@ -98,6 +101,7 @@ impl World {
             camera_media: Media::default(),
             hidden_media: Media::default(),
             has_media,
+            has_sky,
             hides_objects,
             has_mattes,
             lobes,

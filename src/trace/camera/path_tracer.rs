@@ -402,7 +402,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.walker.polarize(path, at);
         self.walker.account(path, at, onward.map(|onward| &onward.straight));
-        let mut departure = Departure::new(world, path, at).with(scatter.as_ref(), onward).awaiting(is_awaited);
+        let departure = Departure::new(world, path, at).of_camera_path();
+        let mut departure = departure.with(scatter.as_ref(), onward).awaiting(is_awaited);
         if !goes_on {
             self.walker.keep_single(&departure);
         }

@@ -208,13 +208,16 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Follows all branches that roulette leaves.
     fn follow_many(&mut self, departure: &Departure<N, P>, sampler: &Sampler, roulette: f64) {
-        let sooner = if departure.at.lobes.is_diffuse() { SOONER } else { 1.0 };
+        let is_diffuse = departure.at.lobes.is_diffuse();
+        let is_seen = departure.is_seen && self.world.has_sky;
         for (number, branch) in self.branches.iter().enumerate() {
             let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
-            let weight = departure.weight(branch);
-            let roulette = if branch.pdf.is_some() { roulette * sooner } else { roulette };
+            let (weight, wide) = (departure.weight(branch), branch.pdf.is_some() && is_diffuse);
+            let roulette = if wide { roulette * SOONER } else { roulette };
+            // Under a sky a dark surface makes its pixels as dark as the path: they may be no noisier than bright ones.
+            let counted = if wide && is_seen { departure.path.weight(departure.at.arrival.draw) } else { weight };
             if weight != 0.0
-                && let Some(factor) = survival(weight, roulette, departure.path.vertices, u)
+                && let Some(factor) = survival(counted, roulette, departure.path.vertices, u)
             {
                 departure.send(number, branch, self.ways.get(number), factor, &mut self.pending);
             }
@@ -250,6 +253,8 @@ pub struct Departure<'a, const N: usize, P = Polarized> {
     onward: Option<&'a Onward<N, P>>,
     /// Whether that is followed for certain.
     is_awaited: bool,
+    /// Whether the camera sees the surface.
+    is_seen: bool,
     /// Whether all branches count as leaving a diffuse surface, and not the wide ones alone.
     all_count: bool,
     branches: usize,
@@ -257,12 +262,18 @@ pub struct Departure<'a, const N: usize, P = Polarized> {
 
 impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
-        Self { world, path, at, scatter: None, onward: None, is_awaited: false, all_count: false, branches: 0 }
+        let (scatter, onward) = (None, None);
+        Self { world, path, at, scatter, onward, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
     }
 
     /// With lights sampled here, and what goes straight on.
     pub fn with(self, scatter: Option<&'a ScatterSample>, onward: Option<&'a Onward<N, P>>) -> Self {
         Self { scatter, onward, ..self }
+    }
+
+    /// Of a path from the camera.
+    pub fn of_camera_path(self) -> Self {
+        Self { is_seen: self.path.is_seen, ..self }
     }
 
     /// With what goes straight on followed for certain, for it is where the camera ray meets something.
