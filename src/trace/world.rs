@@ -40,8 +40,8 @@ pub struct World {
     /// Those that the camera does not see.
     pub(super) hidden_media: Media,
     pub(super) has_media: bool,
-    /// Whether light comes from all of a sky, of which bounces find much.
-    pub(super) has_sky: bool,
+    /// Whether light comes from a sky without anything bright, of which bounces find much.
+    pub(super) has_soft_light: bool,
     /// Whether there are objects that the camera does not see, or sees as holes.
     pub(super) hides_objects: bool,
     /// Whether some of them are holdouts or shadow catchers, over which samples count in whole.
@@ -77,7 +77,8 @@ impl World {
             Quantity::Emission => tables.of(curve, |curve| method.basis.tabulate(quantity, curve)),
             _ => method.basis.tabulate(quantity, curve),
         });
-        let has_sky = scene.lights.iter().any(|light| matches!(light, Light::Environment(_)));
+        let is_sky = |light: &Light<Table>| matches!(light, Light::Environment(_));
+        let has_soft_light = scene.lights.iter().any(is_sky) && !scene.lights.iter().any(Light::sends_photons);
         let hides_objects = scene.objects.iter().any(|object| object.sight != Sight::Shown);
         let is_matte = |sight: Sight| matches!(sight, Sight::Holdout | Sight::ShadowCatcher);
         let has_mattes = scene.objects.iter().any(|object| is_matte(object.sight));
@@ -101,7 +102,7 @@ impl World {
             camera_media: Media::default(),
             hidden_media: Media::default(),
             has_media,
-            has_sky,
+            has_soft_light,
             hides_objects,
             has_mattes,
             lobes,

@@ -209,12 +209,12 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Follows all branches that roulette leaves.
     fn follow_many(&mut self, departure: &Departure<N, P>, sampler: &Sampler, roulette: f64) {
         let is_diffuse = departure.at.lobes.is_diffuse();
-        let is_seen = departure.is_seen && self.world.has_sky;
+        let is_seen = departure.is_seen && self.world.has_soft_light;
         for (number, branch) in self.branches.iter().enumerate() {
             let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
             let (weight, wide) = (departure.weight(branch), branch.pdf.is_some() && is_diffuse);
             let roulette = if wide { roulette * SOONER } else { roulette };
-            // Under a sky a dark surface makes its pixels as dark as the path: they may be no noisier than bright ones.
+            // In soft light a dark surface makes its pixels as dark as the path: they may be no noisier than bright ones.
             let counted = if wide && is_seen { departure.path.weight(departure.at.arrival.draw) } else { weight };
             if weight != 0.0
                 && let Some(factor) = survival(counted, roulette, departure.path.vertices, u)
