@@ -214,7 +214,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
             let (weight, wide) = (departure.weight(branch), branch.pdf.is_some() && is_diffuse);
             let roulette = if wide { roulette * SOONER } else { roulette };
-            // In soft light a dark surface makes its pixels as dark as the path: they may be no noisier than bright ones.
+            // In soft light dark surfaces make pixels as dark as paths: they may be no noisier than bright ones.
             let counted = if wide && is_seen { departure.path.weight(departure.at.arrival.draw) } else { weight };
             if weight != 0.0
                 && let Some(factor) = survival(counted, roulette, departure.path.vertices, u)
