@@ -141,7 +141,7 @@ pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown:
     let [from, to] = Basis::best_range_nm(bands, survey.needs_ultraviolet());
     let basis = match shown.map(WavelengthBands::range_nm) {
         None => Basis::bands_over(space, bands, [from, to], &lines),
-        // From end to end: half a step from there, an edge at 380 nm was off by 0.15.
+        // Lanes stand at both ends: where they stood half a step inside, an edge at 380 nm was off by 0.15.
         Some([first, last]) => {
             let (from, to) = (from.min(first), to.max(last));
             let step = (to - from) / (bands - 1) as f64;

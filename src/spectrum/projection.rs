@@ -35,8 +35,8 @@ pub(super) struct Part {
 
 /// The weight of what no measure tells beside all that they tell, spread evenly over the lanes' wavelengths.
 const UNSEEN: f64 = 1e-3;
-/// The same, spread evenly over the wavelengths that are shown, where spectra are: within 1e-3 of the closest numbers
-/// there are at every wavelength, and colors of several reflections are as close as without.
+/// Where spectra are shown, the weight of all wavelengths of their bands, spread evenly over them: with more, edges in
+/// spectra hardly come closer; with 1e-3 to 1, predicted colors of five gallery scenes are equally close.
 const SHOWN: f64 = 1.0;
 /// The weight of a measure beside that of all wavelengths, where it shall be the spectrum's own.
 const EXACT: f64 = 1e5;

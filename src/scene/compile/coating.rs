@@ -56,13 +56,14 @@ pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
         let help = "a pane without one absorbs by its `transmittance`";
         return k.refuse_key("`k` goes with `thickness_nm`", Some(help.into()));
     }
-    if let (Some(transmittance), true) = (transmittance, thickness.or(metal).or(n).is_some()) {
+    if thickness.or(metal).or(n).is_none() {
+        let transmittance = spectrum_or(fields, "transmittance", 1.0);
+        return Some(Thin::Pane { index: spectrum(fields, "index"), transmittance });
+    }
+    if let Some(transmittance) = transmittance {
         let help = "what a film absorbs is by its extinction: write `k`";
         return transmittance
             .refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()));
     }
-    if thickness.or(metal).or(n).is_some() {
-        return Some(Thin::Film(of_layers(vec![layer_of(fields)?])));
-    }
-    Some(Thin::Pane { index: spectrum(fields, "index"), transmittance: spectrum_or(fields, "transmittance", 1.0) })
+    Some(Thin::Film(of_layers(vec![layer_of(fields)?])))
 }
