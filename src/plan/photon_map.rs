@@ -24,7 +24,7 @@ const RAREST: f64 = 1.0 / 16.0;
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
-/// Photons of a pass: more would take longer to look through than to send.
+/// Photons of a pass, if fewer are not enough: more would take longer to look through than to send.
 const OF_A_PASS: f64 = 32_768.0;
 /// Photons of a map that tells whether any are gathered, and what they are worth.
 const FEW: u64 = 4096;
@@ -50,12 +50,12 @@ pub(super) fn with_map(
     let most = f64::from(method.samples);
     // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
-    let passes = |photons: f64| {
+    let passes = |photons: f64, of_a_pass: f64| {
         let all = (photons * samples).ceil();
-        let count = (all / OF_A_PASS).round().clamp(1.0, most);
+        let count = (all / of_a_pass).round().clamp(1.0, most);
         MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius, chance: 1.0 }
     };
-    let map = passes(PHOTONS);
+    let map = passes(PHOTONS, OF_A_PASS);
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
         photons: (PHOTONS * samples).ceil() as u64,
         lights: small_lights(untaught, &places, SMALL),
@@ -70,7 +70,7 @@ pub(super) fn with_map(
     let few = MapPasses { photons: map.photons.min(FEW).min(affordable), ..map };
     let with_few = untaught.with_light_pass(asked(few));
     let Some(worth) = gathered_worth(&with_few, &places) else { return as_shown() };
-    let map = MapPasses { chance: chance(&worth), ..passes(photons(&worth)) };
+    let map = MapPasses { chance: chance(&worth), ..passes(photons(&worth), worth.enough.min(OF_A_PASS)) };
     let line = described(&map, samples, method);
     (asked(map), vec![line])
 }

@@ -314,3 +314,19 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     let pane = "[[object]]\nmaterial = \"glass\"\nshape.cube = { center = [0, 2, 4.5], size = [9, 9, 0.1] }\n";
     asks(format!("{ball}{pane}{point}"), "photon map: 12 passes of");
 }
+
+/// In a box lit by a lamp in a ball of glass, pixels are so wide that thousands of photons lie around each place: more
+/// passes of fewer make the same image in less time.
+#[test]
+fn a_pass_has_no_more_photons_than_are_worth_looking_through() {
+    let text = "[camera]\nposition = [0, 1, 3]\nlook_at = [0, 1, 0]\nprojection = \"equirectangular\"\n\
+                [film]\nwidth = 24\nheight = 12\n[render]\nsamples = 64\n\
+                [material.matte]\ndiffuse = { reflectance = 0.6 }\n[material.lamp]\nemissive = { radiance = 20 }\n\
+                [material.glass]\ndielectric = { index = 1.5 }\n"
+        .to_owned()
+        + &object("matte", "cube = { center = [0, 1, 0], size = 8 }")
+        + &object("glass", "sphere = { center = [1, 2, 0], radius = 0.4 }")
+        + &object("lamp", "sphere = { center = [1, 2, 0], radius = 0.1 }");
+    let map = plan(&scene(&text)).method.map().unwrap();
+    assert!(map.photons < 1024 && map.count > 8, "{map:?}");
+}

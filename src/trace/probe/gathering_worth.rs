@@ -3,16 +3,16 @@
 use std::cell::Cell;
 
 use super::pilot::SampleWorth;
-use super::reach::reaches_photons;
+use super::reach::{looked_through, reaches_photons};
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
 use crate::trace::camera::{Finding, PathTracer};
 use crate::trace::contribution::{Contribution, Found};
 use crate::trace::pass::Pass;
-use crate::trace::photon::photons;
+use crate::trace::photon::{PhotonMap, photons};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
-use crate::trace::{RAYS_OF_A_LOOK, World};
+use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
 
 /// What a map's photons add to the noise, and the camera samples that gather them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,12 +21,17 @@ pub struct GatheredWorth {
     pub variance: f64,
     /// Rays that a photon follows.
     pub rays: f64,
+    /// Photons of a pass of which enough are looked through at a place, on average, and more would cost time alone.
+    pub enough: f64,
     /// Second moment of what a camera sample gathers, scaled as the variance of camera samples is.
     pub second_moment: f64,
     /// What else camera samples bring.
     pub samples: SampleWorth,
 }
 
+/// Photons that are looked through at a place, on average, in a pass that has enough: their noise then is small beside
+/// that of paths that lead there, and to look through them takes as long as a few rays.
+const ENOUGH: f64 = 16.0;
 /// Maps that are compared.
 const MAPS: u64 = 2;
 /// Pixels along each side of the image that gather from them, and how many samples of each.
@@ -61,19 +66,40 @@ impl Sums {
     }
 }
 
+/// A first map of photons, and a world whose maps have no more photons than are enough.
+struct First<const N: usize> {
+    enough: f64,
+    world: World,
+    /// None if it had more.
+    photons: Option<PhotonMap<N>>,
+}
+
+impl<const N: usize> First<N> {
+    fn new(world: &World, reached: &[DVec3]) -> Option<Self> {
+        let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0))?;
+        if !reaches_photons(world, reached, &photons) {
+            return None;
+        }
+        let enough = photons.sent as f64 * (ENOUGH / looked_through(world, reached, &photons));
+        let fewer = |map: MapPasses| MapPasses { photons: map.photons.min(enough.ceil() as u64), ..map };
+        let pass = world.method.light_pass.as_ref().map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() });
+        let is_enough = photons.sent as f64 <= enough;
+        Some(Self { enough, world: world.with_light_pass(pass), photons: is_enough.then_some(photons) })
+    }
+}
+
 fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
+    let First { enough, ref world, photons: mut first } = First::<N>::new(world, reached)?;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
     let mut places: Vec<_> = film.whole().middles_of_cells(SIDE).collect();
     let mut by_photons = vec![Sums::default(); places.len()];
     let mut by_samples = by_photons.clone();
-    let (mut sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
+    let (mut all_sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
     for map in 0..MAPS {
-        let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, map as u32))?;
-        if map == 0 && !reaches_photons(world, reached, &photons) {
-            return None;
-        }
-        (sent, rays) = (sent + photons.sent, rays + photons.stats.rays);
+        let sent = || photons::<N, Polarized>(world, &Pass::of_photons_alone(world, map as u32));
+        let photons = first.take().or_else(sent)?;
+        (all_sent, rays) = (all_sent + photons.sent, rays + photons.stats.rays);
         let all_gathered = Cell::new([0.0; 3]);
         let observer = |finding: Finding| {
             if let Finding::Light(Contribution { found: Found::Gathered, rgb, .. }) = finding {
@@ -115,8 +141,9 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
     let variances = by_samples[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
     let taken = MAPS as f64 * count * f64::from(SAMPLES);
     Some(GatheredWorth {
-        variance: mean(&of_maps) * pixels * sent as f64 / MAPS as f64,
-        rays: rays as f64 / sent as f64,
+        variance: mean(&of_maps) * pixels * all_sent as f64 / MAPS as f64,
+        rays: rays as f64 / all_sent as f64,
+        enough,
         second_moment: second_moment / taken * pixels * pixels,
         samples: SampleWorth::of(variances, pixels, of_samples as f64 / taken),
     })

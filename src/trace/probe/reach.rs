@@ -24,10 +24,18 @@ pub fn reached_places(world: &World) -> Vec<DVec3> {
 
 /// Whether any photon lies within a pixel of such places, where all of `SIDE` times `SIDE` fill the image.
 pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> bool {
-    let camera = &world.scene.camera;
     let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
-    places.iter().any(|&place| {
-        let radius = coarse * camera.pixel_width((place - camera.position()).length());
-        photons.any_near(place, radius)
-    })
+    places.iter().any(|&place| photons.any_near(place, coarse * pixel_at(world, place)))
+}
+
+/// How many photons are looked through around such a place, on average.
+pub fn looked_through<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> f64 {
+    let count = |&place: &DVec3| photons.count_near(place, photons.kernel.radius * pixel_at(world, place));
+    places.iter().map(count).sum::<u64>() as f64 / places.len() as f64
+}
+
+/// How wide a pixel is at a place that is seen straight.
+fn pixel_at(world: &World, place: DVec3) -> f64 {
+    let camera = &world.scene.camera;
+    camera.pixel_width((place - camera.position()).length())
 }
