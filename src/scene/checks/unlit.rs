@@ -24,7 +24,9 @@ const TOLD: usize = 4;
 /// What is wrong with each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut sight = Sight::new(scene);
-    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(|&id| scene.lights[id].is_sampled()).collect();
+    // One that is switched off is told nothing of.
+    let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
+    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
     sight.look(|sight, places| {
         let reaches = |id: &LightId| places.iter().any(|place| reaches(sight, &scene.lights[*id], place));
         dark.retain(|id| !reaches(id));
