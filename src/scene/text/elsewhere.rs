@@ -218,9 +218,18 @@ pub(super) fn called_here(word: &str) -> impl Iterator<Item = &'static str> {
     ELSEWHERE.iter().filter(move |(_, words)| words.contains(&word)).map(|(here, _)| *here)
 }
 
+/// Kinds of materials, each with a key of its own: what stands beside it and is a word of others is told as within it.
+const OF_KINDS: [(&str, &str); 4] =
+    [("diffuse", "fluorescence"), ("mirror", "reflectance"), ("conductor", "metal"), ("dielectric", "priority")];
+
 /// Where a key belongs that stands beside a kind of material, if not into that.
-pub(super) fn outside_of_material(word: &str) -> Option<&'static str> {
-    RELIEF.contains(&word).then_some(OF_RELIEF)
+pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str> {
+    let of_other = || {
+        let (_, own) = OF_KINDS.iter().find(|(known, _)| *known == kind)?;
+        let (.., help) = IN_OTHER_WORDS.iter().find(|(words, beside, _)| words.contains(&word) && beside == own)?;
+        Some(*help)
+    };
+    if RELIEF.contains(&word) { Some(OF_RELIEF) } else { of_other() }
 }
 
 /// Keys that no section has, and where what they ask for is said. What camera, film and render know holds one of

@@ -223,7 +223,7 @@ impl<R: Copy> Choice<R> {
         let word = stray.key();
         let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
         if is_part {
-            let outside = outside_of_material(word).filter(|_| self.knows("mask")).map(str::to_owned);
+            let outside = outside_of_material(kind, word).filter(|_| self.knows("mask")).map(str::to_owned);
             let help = outside.unwrap_or_else(|| {
                 format!("what belongs to `{kind}` stands inside of it: {kind} = {{ .., {word} = .. }}")
             });
