@@ -62,12 +62,37 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
         if let Some(frame) = job.frame.filter(|_| count > 1) {
             messages::say_frame(frame, number, count);
         }
+        if number == 1 {
+            check_ends(jobs, &job, source)?;
+        }
         let code = do_one(&job, source, &mut warned)?;
         if code != ExitCode::SUCCESS {
             return Ok(code);
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses to render the first of several frames if the one with the least or the greatest number is wrong: what a
+/// value may be lies between two others, and so most mistakes of a frame are found before any is rendered.
+fn check_ends(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
+    if !matches!(first.output, Output::Image { .. }) {
+        return Ok(());
+    }
+    for job in jobs.ends() {
+        let job = job?;
+        if let (Some(frame), Err(error)) = (job.frame.filter(|_| job.frame != first.frame), checked(&job, source)) {
+            // What is wrong with all frames is told of the first.
+            checked(first, source)?;
+            messages::say(&format!("frame {frame} is wrong, so none is rendered"));
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
+fn checked(job: &Job, source: &Source) -> Result<()> {
+    job.options.apply(&mut source.compile_with(&job.set)?)
 }
 
 /// Does a frame. What was warned of in another one is not said again.

@@ -427,6 +427,18 @@ error: a radius is a length above 0, not 0
 }
 
 #[test]
+fn lines_that_end_as_on_old_macintoshes_are_refused_in_plain_words() {
+    let folder = Folder::with("scene.toml", "[camera]\rposition = [0, 1, 6]\r");
+    let answer = render(&folder, &["--check", "scene.toml"]);
+    assert!(answer.stderr.starts_with("error: a carriage return alone ends no line\n --> scene.toml:1:10\n"));
+    assert!(
+        answer.stderr.contains("= help: save the file with the line ends of Unix or Windows\n"),
+        "{}",
+        answer.stderr
+    );
+}
+
+#[test]
 fn a_byte_order_mark_does_not_move_the_column() {
     let folder = Folder::with("scene.toml", format!("\u{feff}{}", BASE.replace("[camera]", "[kamera]")));
     let answer = render(&folder, &["--check", "scene.toml"]);

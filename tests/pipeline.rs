@@ -303,6 +303,22 @@ fn settings_in_any_language_stand_in_the_file() {
 }
 
 #[test]
+fn a_frame_beyond_what_a_value_may_be_is_told_before_any_is_rendered() {
+    let folder = Folder::new();
+    folder.write("zoom.toml", SCENE.replace("vertical_fov = 35", "vertical_fov = \"$frame\""));
+    for frames in ["178-181", "178,0,179"] {
+        let answer = render(&folder, &["zoom.toml", "--frame", frames, "--exr", "z.%d.exr"]);
+        let wrong = if frames == "178-181" { 181 } else { 0 };
+        let told = format!("\nframe {wrong} is wrong, so none is rendered\nerror: ");
+        assert!(answer.code == Some(2) && answer.stderr.contains(&told), "{}", answer.stderr);
+        assert_eq!(folder.listing(), ["zoom.toml"]);
+    }
+    // What is wrong with all of them is told of the first.
+    let answer = render(&folder, &["zoom.toml", "--frame", "181-190", "--exr", "z.%d.exr"]);
+    assert!(answer.code == Some(2) && answer.stderr.starts_with("frame 181, 1 of 10\nerror: "), "{}", answer.stderr);
+}
+
+#[test]
 fn frames_are_rendered_one_after_another() {
     let folder = folder();
     folder.write("turn.toml", SCENE.replace("degrees = 30", "degrees = \"$frame\""));

@@ -235,10 +235,14 @@ impl Jobs {
 
     /// Each by itself.
     pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
-        let frames = &self.0.frame;
-        let numbers = frames.iter().flat_map(Frames::numbers).map(Some);
-        let without = frames.is_none().then_some(None);
+        let numbers = self.0.frame.iter().flat_map(Frames::numbers).map(Some);
+        let without = self.0.frame.is_none().then_some(None);
         numbers.chain(without).map(|frame| job((*self.0).clone(), frame))
+    }
+
+    /// The frames with the least and the greatest number.
+    pub fn ends(&self) -> impl Iterator<Item = Result<Job>> {
+        self.0.frame.iter().flat_map(Frames::ends).map(|frame| job((*self.0).clone(), Some(frame)))
     }
 
     /// Refuses what several frames cannot have.

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use abbe::film::{ExrFile, TELL_VARIANCE, check_writable};
+use abbe::film::{ExrFile, TELL_VARIANCE};
 use abbe::look::{Difference, Noise, WorstPixel, compare, number};
 use abbe::{Error, Result};
 use clap::Parser;
 
 use super::messages::{aligned, answer_lines, print_error, say};
-use super::outputs::{check_png, spare};
+use super::outputs::{Folders, check_png, spare};
 use super::signals::catch_plainly;
 
 const HELP: &str = "\
@@ -93,8 +93,8 @@ fn compared(query: &Query) -> Result<bool> {
     lines.extend(aligned(&rows));
     if let Some(png) = &query.png {
         let (picture, white) = found.picture();
-        check_writable(png)?;
         catch_plainly()?;
+        let _folders = Folders::of_files(&[png])?;
         picture.write_png(png)?;
         let what = match (white > 0.0, found.torn) {
             (true, _) => format!("white is a difference of {} or more", number(white)),

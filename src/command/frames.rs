@@ -27,6 +27,13 @@ impl Frames {
         self.0.iter().enumerate().flat_map(of_run)
     }
 
+    /// The least and the greatest number.
+    pub fn ends(&self) -> impl Iterator<Item = u32> {
+        let least = self.0.iter().map(|run| run.first).min();
+        let greatest = self.0.iter().map(|run| run.last - (run.last - run.first) % run.step).max();
+        least.into_iter().chain(greatest)
+    }
+
     /// How many they are.
     pub fn count(&self) -> u64 {
         match &self.0[..] {
@@ -172,6 +179,9 @@ mod tests {
         for (text, count) in [("7", 1), ("1-10x4", 3), ("1-9x4", 3), ("1-8x4", 2), ("0-4294967295", 1 << 32)] {
             assert_eq!(text.parse::<Frames>().map(|frames| frames.count()), Ok(count));
         }
+        let ends = |text: &str| text.parse::<Frames>().map(|frames| frames.ends().collect::<Vec<_>>());
+        assert_eq!([ends("7"), ends("17, 1-8x4, 4-6")], [Ok(vec![7, 7]), Ok(vec![1, 17])]);
+        assert_eq!(ends("1-8x4"), Ok(vec![1, 5]));
         assert_eq!(numbers("7"), Ok(vec![7]));
         assert_eq!(numbers("0-3"), Ok(vec![0, 1, 2, 3]));
         assert_eq!(numbers("4-4"), Ok(vec![4]));

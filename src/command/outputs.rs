@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::fs;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use abbe::film::check_writable;
 use abbe::{Error, Result, Scene};
@@ -101,28 +102,41 @@ pub fn check_exposure(stops: Option<f64>) -> Result<()> {
     }
 }
 
+/// Folders that were made for files, in which nothing may stand yet.
+static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn made() -> MutexGuard<'static, Vec<PathBuf>> {
+    MADE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes those in which nothing stands.
+pub fn remove_empty_folders() {
+    let mut made = made();
+    made.sort_by_key(|folder| Reverse(folder.components().count()));
+    // One that is not empty stays.
+    made.drain(..).for_each(|folder| drop(fs::remove_dir(folder)));
+}
+
 /// Folders that are made for files; those in which nothing stands in the end are removed.
-#[derive(Default)]
-pub struct Folders(Vec<PathBuf>);
+#[must_use]
+pub struct Folders(());
 
 impl Folders {
     /// Finds out before a long render whether files can be written, and makes the folders that are missing.
     pub fn of_files(files: &[&Path]) -> Result<Self> {
-        let mut made = Self::default();
+        let all = Self(());
         for file in files {
             let folders = file.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
             let missing = folders.take_while(|folder| !folder.exists());
-            made.0.extend(missing.map(Path::to_owned));
+            made().extend(missing.map(Path::to_owned));
             check_writable(file)?;
         }
-        Ok(made)
+        Ok(all)
     }
 }
 
 impl Drop for Folders {
     fn drop(&mut self) {
-        self.0.sort_by_key(|folder| Reverse(folder.components().count()));
-        // One that is not empty stays.
-        self.0.iter().for_each(|folder| drop(fs::remove_dir(folder)));
+        remove_empty_folders();
     }
 }

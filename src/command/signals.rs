@@ -7,6 +7,7 @@ use abbe::film::remove_unfinished;
 use abbe::{Error, Result};
 
 use super::messages::say_last;
+use super::outputs::remove_empty_folders;
 use super::progress;
 
 /// Whether the command was told to stop.
@@ -59,7 +60,7 @@ pub fn catch(stops_at_once: bool) -> Result<()> {
         let has_begun = HAS_BEGUN.load(Ordering::Relaxed);
         let leave_nothing = || {
             progress::clear();
-            remove_unfinished();
+            leave_no_rest();
         };
         if stops_at_once || !has_begun {
             leave_nothing();
@@ -80,13 +81,19 @@ pub fn catch(stops_at_once: bool) -> Result<()> {
     })
 }
 
+/// Removes what was begun of files, and folders that were made for them alone.
+fn leave_no_rest() {
+    remove_unfinished();
+    remove_empty_folders();
+}
+
 /// Lets Ctrl-C end a command that keeps nothing, without what it has begun to write.
 ///
 /// # Errors
 /// If it cannot be caught.
 pub fn catch_plainly() -> Result<()> {
     handle(|| {
-        remove_unfinished();
+        leave_no_rest();
         say_last("stopped", STOPPED_CODE);
     })
 }

@@ -127,12 +127,16 @@ impl BlockReader {
     /// The next block.
     ///
     /// # Errors
-    /// [`Error::Decode`] if it is not what was written.
+    /// [`Error::Decode`] if it is not what was written, or something else was.
     pub fn block<T: DeserializeOwned>(&mut self) -> Result<T> {
         let bytes = self.content()?;
         match postcard::take_from_bytes(&bytes) {
             Ok((content, [])) => Ok(content),
-            _ => Err(self.damaged()),
+            // Its checksum is right.
+            _ => {
+                let message = "it was written by another build of the renderer; read it with that one, or make it anew";
+                Err(Error::Decode { path: self.path.clone(), message: message.to_owned() })
+            }
         }
     }
 
@@ -173,5 +177,27 @@ impl BlockReader {
     pub fn damaged(&self) -> Error {
         let message = "it is damaged or cut short; delete it and make it anew".to_owned();
         Error::Decode { path: self.path.clone(), message }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_of_another_content_is_told_from_one_that_is_damaged() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (path, kind) = (folder.path().join("a.part"), *b"AbbeTest");
+        write_blocks(&path, kind, &|blocks| blocks.block(&u32::MAX)).expect("it can be written");
+        let read =
+            || BlockReader::open(&path, kind).expect("it can be read").expect("it is of this kind").block::<u8>();
+        let told = |error: Error| error.to_string();
+        let another = told(read().expect_err("it is no byte"));
+        assert!(another.contains("it was written by another build of the renderer"), "{another}");
+        let mut bytes = std::fs::read(&path).expect("it is there");
+        bytes[kind.len() + HEAD] ^= 1;
+        std::fs::write(&path, bytes).expect("it can be written");
+        let damaged = told(read().expect_err("a bit is wrong"));
+        assert!(damaged.contains("it is damaged or cut short"), "{damaged}");
     }
 }

@@ -23,6 +23,12 @@ impl PixelBounds {
         [self.corner[0] + (index % self.size[0]) as i64, self.corner[1] + (index / self.size[0]) as i64]
     }
 
+    /// The number of a pixel of its, which is told by its column and row.
+    pub(crate) fn index(&self, [x, y]: [i64; 2]) -> usize {
+        let [column, row] = [(x - self.corner[0]) as usize, (y - self.corner[1]) as usize];
+        row * self.size[0] + column
+    }
+
     /// How many pixels it has.
     pub(crate) fn pixels(&self) -> usize {
         self.size[0] * self.size[1]

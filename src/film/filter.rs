@@ -204,7 +204,8 @@ fn blackman_harris(u: f64) -> f64 {
             low = x
         }
         let next = x - error / density;
-        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        // An exact root is a bound itself.
+        let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
         let step = (next - x).abs();
         x = next;
         if step <= 1e-12 {
@@ -217,6 +218,11 @@ fn blackman_harris(u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_middle_of_the_window_is_an_exact_root() {
+        assert_eq!(blackman_harris(0.5), 0.0);
+    }
 
     #[test]
     fn the_share_within_the_cut_is_that_of_the_normal_distribution() {

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::emission_map::Cells;
 use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
-use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Frame, Ray, cosine_hemisphere, unit};
+use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Ray, cosine_about};
 use crate::shape::{Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape};
 use crate::spectrum::Quantity;
 
@@ -270,7 +270,7 @@ impl<S> Area<S> {
             let front = self.front();
             let (side, a) =
                 if a < front { (point.normal, a / front) } else { (-point.normal, (a - front) / (1.0 - front)) };
-            unit(Frame::about(side).to_world(cosine_hemisphere([a, b])))
+            cosine_about(side, [a, b])
         } else {
             cone.sample([a, b])?
         };

@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::{Beam, BrightPart, LeSample, LightSample, Panorama};
-use crate::math::{DMat3, DVec3, Frame, cosine_hemisphere, unit};
+use crate::math::{DMat3, DVec3, cosine_about, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
@@ -88,7 +88,7 @@ impl<S> Environment<S> {
                 (unit(sky.turn.transpose() * direction), pdf)
             }
             None => {
-                let direction = unit(Frame::about(normal).to_world(cosine_hemisphere(u)));
+                let direction = cosine_about(normal, u);
                 (direction, self.pdf(direction, normal))
             }
         };

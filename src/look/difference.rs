@@ -89,14 +89,16 @@ pub struct WorstPixel {
     pub values: [Vec<f64>; 2],
 }
 
-/// Compares a layer of two files, without a name the beauty; of mattes such as `CryptoObject`, or one of them such as
-/// `CryptoObject.ball`, the coverage. `shown` are the files' names in messages. Of a crop or an overscan beside the
-/// image, the pixels that both have are compared.
+/// Compares a layer of two files, without a name the beauty; of mattes such as `CryptoObject`, of which
+/// `CryptoObject00` holds some, or one of them such as `CryptoObject.ball`, the coverage. `shown` are the files' names
+/// in messages. Of a crop or an overscan beside the image, the pixels that both have are compared.
 ///
 /// # Errors
 /// [`Error::Arguments`] if one of them has no such layer, or their sizes, channels or color spaces differ, or they
 /// have no pixel in common.
 pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
+    let mattes = layer.map(|wanted| files.map(|file| Mattes::within(file, wanted)));
+    let layer = mattes.and_then(|[a, b]| a.filter(|_| a == b)).or(layer);
     let layers = match [0, 1].map(|i| files[i].layer(layer, shown[i])) {
         [Ok(a), Ok(b)] => [a, b],
         [Err(missing), _] | [_, Err(missing)] => {
@@ -201,15 +203,18 @@ fn by_kind(file: &ExrFile, names: Vec<String>) -> Vec<String> {
     told
 }
 
-/// The layers of both files that have other values in the channels that both have.
+/// The layers of both files that have other values in the channels and the pixels that both have.
 fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     let [first, second] = files.map(ExrFile::layers);
     let mut apart = Vec::new();
     for a in &first {
-        let Some(b) = second.iter().find(|b| b.name == a.name && b.part.bounds == a.part.bounds) else { continue };
+        let Some(b) = second.iter().find(|b| b.name == a.name) else { continue };
+        let bounds = [a, b].map(|layer| layer.part.bounds);
+        let Some(common) = bounds[0].common(&bounds[1]) else { continue };
         let is_apart = |one: &Channel| {
             let other = b.channels.iter().find(|other| other.name == one.name);
-            other.is_some_and(|other| !(0..a.part.bounds.pixels()).all(|at| is_same(one.at(at), other.at(at))))
+            let mut places = (0..common.pixels()).map(|at| bounds.map(|bounds| bounds.index(common.place(at))));
+            other.is_some_and(|other| !places.all(|[a, b]| is_same(one.at(a), other.at(b))))
         };
         if a.channels.iter().any(|one| is_apart(one)) {
             apart.push(a.name.clone());

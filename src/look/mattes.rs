@@ -56,6 +56,12 @@ impl<'f> Mattes<'f> {
         number.is_some_and(|number| number.len() == 2 && number.bytes().all(|digit| digit.is_ascii_digit()))
     }
 
+    /// What the mattes are called of which a layer of a file holds some, such as `CryptoObject` of `CryptoObject00`:
+    /// its values are numbers of names, which are no colors.
+    pub fn within(file: &'f ExrFile, layer: &str) -> Option<&'f str> {
+        Self::all(file).iter().find(|mattes| mattes.is_in(layer)).map(Self::name)
+    }
+
     /// Every name in a color of its own, weighted by its coverage; black where there is nothing.
     pub fn picture(&self) -> Picture {
         let pixel = |at: usize| {

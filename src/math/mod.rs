@@ -27,8 +27,8 @@ pub use ray::{Ray, unit};
 pub use sampler::{BranchKey, Sampler, mix, seed_of};
 pub use transform::Transform;
 pub use warp::{
-    ball_surface, cone, cosine_hemisphere, disk, disk_in_square, one_minus_cos_of_cone, square_around_disk,
-    triangle_coordinates, triangle_square,
+    ball_surface, cone, cosine_about, cosine_hemisphere, disk, disk_in_square, one_minus_cos_of_cone,
+    square_around_disk, triangle_coordinates, triangle_square,
 };
 
 /// Points and directions are 64-bit everywhere: see the rows S1 to X7 of `tests/stability_shapes.rs`.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use super::{DVec2, DVec3};
+use super::{DVec2, DVec3, Frame, unit};
 
 /// A point of the unit disk, uniform by area (density 1 / pi), by the concentric map that keeps strata compact.
 ///
@@ -22,6 +22,11 @@ pub fn disk(u: [f64; 2]) -> DVec2 {
 pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let p = disk(u);
     DVec3::new(p.x, p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
+}
+
+/// A direction above a surface of the unit vector `normal`, with density cos(theta) / pi per steradian.
+pub fn cosine_about(normal: DVec3, u: [f64; 2]) -> DVec3 {
+    unit(Frame::about(normal).to_world(cosine_hemisphere(u)))
 }
 
 /// A direction of the full sphere, uniform (density 1 / (4 pi) per steradian).

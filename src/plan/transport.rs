@@ -2,11 +2,11 @@
 
 use super::survey::method_of_paths;
 use super::words::percent;
-use crate::film::Filter;
+use crate::film::{Filter, Layer};
 use crate::light::Light;
 use crate::material::Material;
-use crate::scene::{Object, Scene, Sight};
-use crate::spectrum::{Basis, Curve};
+use crate::scene::{Object, RenderText, Scene, Sight};
+use crate::spectrum::{Basis, Curve, CurveKind};
 use crate::trace::{Branching, Method, Transport, World, branching};
 
 /// Weight below which deterministic transport follows no branch.
@@ -50,7 +50,8 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
         None => (
             DETERMINISTIC,
             format!(
-                "transport deterministic: no random light path, 1 sample per pixel is exact; branches end below weight {CUTOFF:e}"
+                "transport deterministic: no random light path, 1 sample per pixel is exact{}; branches end below weight {CUTOFF:e}",
+                if asks_for_more(scene) { " and more are the same again, so samples = 1 is enough" } else { "" }
             ),
         ),
         Some(why) => (
@@ -62,6 +63,14 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
             ),
         ),
     }
+}
+
+/// Whether a scene asks for more than one sample of a pixel, and for no layer that needs several.
+fn asks_for_more(scene: &Scene<Curve>) -> bool {
+    let RenderText { samples, error, time, .. } = &scene.render;
+    let of_several = [Layer::Variance, Layer::HalfA, Layer::HalfB];
+    let needs_them = of_several.iter().any(|layer| scene.format.layers.contains(layer));
+    !needs_them && (samples.is_some_and(|samples| samples > 1) || error.is_some() || time.is_some())
 }
 
 /// A light with an extent that next-event estimation would aim at.
@@ -76,7 +85,8 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
 /// That camera samples take surfaces with holes, or what is behind them, in whole.
 fn holes_beside_mattes(scene: &Scene<Curve>) -> Option<String> {
     let has_mattes = scene.objects.iter().any(|object| matches!(object.sight, Sight::Holdout | Sight::ShadowCatcher));
-    let is_mask = |material: &&Material<Curve>| matches!(material, Material::Mask(_));
+    let is_whole = |opacity: &Curve| matches!(opacity.kind, CurveKind::Number(opaque) if opaque * opacity.scale == 1.0);
+    let is_mask = |material: &&Material<Curve>| matches!(material, Material::Mask(mask) if !is_whole(&mask.opacity));
     let parts = |object: &Object| scene.materials[object.material as usize].material.with_parts();
     let holes = |object: &&Object| parts(object).iter().any(is_mask);
     let object = scene.objects.iter().find(holes).filter(|_| has_mattes)?;

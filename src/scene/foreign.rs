@@ -34,9 +34,9 @@ const KINDS: [(&[&str], &str, &str); 11] = [
     (&["py"], "a program", "`python3 FILE` runs it; a scene is a TOML file"),
 ];
 
-/// What a file that is no TOML is by the ending of its name, and what to do with it.
-pub(super) fn foreign(path: &Path) -> Option<(&'static str, String)> {
+/// What a file that is no TOML is by the ending of its name, and what to do with it; `shown` is what it is called
+/// there.
+pub(super) fn foreign(path: &Path, shown: &str) -> Option<(&'static str, String)> {
     let (_, what, help) = KINDS.iter().find(|(endings, ..)| ends_in(path, endings))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    Some((what, help.replace("FILE", &name)))
+    Some((what, help.replace("FILE", shown)))
 }

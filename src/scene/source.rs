@@ -51,7 +51,8 @@ impl Source {
         };
         let text = text_of(bytes, &shown.to_string());
         let is_toml = || text.as_ref().is_ok_and(|text| parsed(text, 0).is_ok());
-        match foreign(path).filter(|_| !is_toml()) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        match foreign(path, &name).filter(|_| !is_toml()) {
             Some((what, help)) => Error::refuse(format!("{shown} is {what}, not a scene in TOML"), help),
             None => Ok(Self { path: path.to_owned(), text: text? }),
         }

@@ -14,6 +14,8 @@ use ply_rs_bw::ply::{
 pub(super) struct Body {
     pub(super) header: Header,
     rest: Reader<BufReader<File>>,
+    /// The last byte of each line.
+    end: u8,
     /// How many lines have been read.
     lines: usize,
 }
@@ -26,20 +28,22 @@ impl Body {
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         let mut file = BufReader::new(File::open(path).map_err(|error| error.to_string())?);
         // Else the end of the first line would be looked for, however far away that is.
-        if !file.fill_buf().map_err(|error| error.to_string())?.starts_with(b"ply") {
+        let first = file.fill_buf().map_err(|error| error.to_string())?;
+        if !first.starts_with(b"ply") {
             return Err("a PLY file begins with a line `ply`, and this one does not".into());
         }
+        let end = end_of_lines(first);
         let (mut bytes, mut lines, mut is_whole) = (Vec::new(), 0, false);
         while !is_whole {
             let start = bytes.len();
-            file.read_until(b'\n', &mut bytes).map_err(|error| error.to_string())?;
+            file.read_until(end, &mut bytes).map_err(|error| error.to_string())?;
             is_whole = bytes.len() == start || bytes[start..].trim_ascii() == b"end_header";
             lines += 1;
         }
-        let text = String::from_utf8_lossy(&bytes);
+        let text = String::from_utf8_lossy(&bytes).replace(char::from(end), "\n");
         let header = Parser::<DefaultElement>::new().read_header(&mut Reader::new(text.as_bytes()));
         let header = header.map_err(|error| ply_error(error, true))?;
-        Ok(Self { header, rest: Reader::new(file), lines })
+        Ok(Self { header, rest: Reader::new(file), end, lines })
     }
 
     pub(super) fn has_lines(&self) -> bool {
@@ -73,7 +77,7 @@ impl Body {
             line.clear();
             while line.trim_ascii().is_empty() {
                 line.clear();
-                let read = self.rest.get_mut().read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
+                let read = self.rest.get_mut().read_until(self.end, &mut line).map_err(|error| error.to_string())?;
                 if read == 0 {
                     let message = format!("while reading element '{name}' (expected {count}, got {done})");
                     return Err(format!("the file ends too early, {message}"));
@@ -87,6 +91,15 @@ impl Body {
             keep(read.ok_or_else(|| no_fit(self.lines))?);
         }
         Ok(())
+    }
+}
+
+/// The byte that ends a line: of old Macintosh files a carriage return alone.
+fn end_of_lines(text: &[u8]) -> u8 {
+    let first = text.iter().position(|byte| matches!(byte, b'\r' | b'\n')).unwrap_or(0);
+    match text.get(first..) {
+        Some([b'\r', next, ..]) if !matches!(next, b'\r' | b'\n') => b'\r',
+        _ => b'\n',
     }
 }
 

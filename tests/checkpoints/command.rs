@@ -352,7 +352,8 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
     let folder = folder();
     for signal in ["-INT", "-TERM"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
-        command.current_dir(folder.path()).args(["s.toml", "--samples", "1000000", "--json"]).stdout(Stdio::piped());
+        let words = ["s.toml", "--samples", "1000000", "--json", "--exr", "new/folder/s.exr"];
+        command.current_dir(folder.path()).args(words).stdout(Stdio::piped());
         let mut child = command.spawn().expect("the command can be started");
         let mut said = BufReader::new(child.stdout.take().expect("it is piped"));
         // It tells its progress once a second.

@@ -323,6 +323,20 @@ fn a_layer_is_compared_by_its_name_and_a_picture_shows_where() {
 }
 
 #[test]
+fn layers_in_windows_of_their_own_are_compared_where_both_have_pixels() {
+    let folder = Folder::new();
+    let mut a = ramp();
+    a.parts[0].0 = "rgb";
+    a.parts.push(("depth", vec![("Z", (0..8).map(|i| i as f32).collect())]));
+    let mut b = Exr { later_corner: [1, 0], ..a.clone() };
+    let apart = "a.exr and b.exr differ: the image is equal, the layer Z is not; --layer Z compares it";
+    assert_says(&diff(&folder, &a, &b, &[]), 1, &[apart]);
+    // Its columns 1 to 4, of which the other one has 3.
+    *b.channel("Z") = vec![1.0, 2.0, 3.0, 9.0, 5.0, 6.0, 7.0, 9.0];
+    assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree: all values are equal"]);
+}
+
+#[test]
 fn what_only_one_of_the_files_has_is_told() {
     let folder = Folder::new();
     let (mut a, mut b) = (ramp(), ramp());

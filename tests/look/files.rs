@@ -17,6 +17,8 @@ type Channels = Vec<(&'static str, Vec<f32>)>;
 pub struct Exr {
     pub size: [usize; 2],
     pub corner: [i32; 2],
+    /// The same of the parts behind the first one.
+    pub later_corner: [i32; 2],
     pub full: [usize; 2],
     pub half: bool,
     pub compression: Compression,
@@ -33,6 +35,7 @@ impl Exr {
         Self {
             size,
             corner: [0, 0],
+            later_corner: [0, 0],
             full: size,
             half: false,
             compression: Compression::Uncompressed,
@@ -54,7 +57,7 @@ impl Exr {
 
     /// The file.
     pub fn bytes(&self) -> Vec<u8> {
-        let layers = self.parts.iter().map(|(name, channels)| {
+        let layers = self.parts.iter().enumerate().map(|(number, (name, channels))| {
             let list = channels.iter().map(|(name, values)| AnyChannel {
                 name: Text::from(*name),
                 sample_data: if self.half {
@@ -65,9 +68,10 @@ impl Exr {
                 quantize_linearly: false,
                 sampling: Vec2(1, 1),
             });
+            let corner = if number == 0 { self.corner } else { self.later_corner };
             let mut attributes = LayerAttributes {
                 layer_name: (!name.is_empty()).then(|| Text::from(*name)),
-                layer_position: Vec2(self.corner[0], self.corner[1]),
+                layer_position: Vec2(corner[0], corner[1]),
                 ..LayerAttributes::default()
             };
             for (key, value) in &self.texts {

@@ -86,6 +86,12 @@ fn every_kind_of_ply_gives_the_same_triangles() {
     assert_eq!(read("a.ply", ply_text().as_bytes()).0, triangles(true));
     let windows = ply_text().replace('\n', "\r\n");
     assert_eq!(read("b.ply", windows.as_bytes()).0, triangles(true));
+    let old_macintosh = ply_text().replace('\n', "\r");
+    assert_eq!(read("d.ply", old_macintosh.as_bytes()).0, triangles(true));
+    let binary = ply_binary(false, true);
+    let header = ply_header("binary_little_endian", "float", "int");
+    let old_header = header.replace('\n', "\r").into_bytes();
+    assert_eq!(read("e.ply", &[&old_header, &binary[header.len()..]].concat()).0, triangles(true));
     for big in [false, true] {
         for single in [false, true] {
             assert_eq!(read("c.PLY", &ply_binary(big, single)).0, triangles(single), "big {big}, single {single}");

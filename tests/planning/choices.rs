@@ -218,3 +218,26 @@ fn the_surface_is_named_that_leaves_light_to_chance() {
         assert!(plan.because.iter().any(|line| line.starts_with(&says)), "{:?}", plan.because);
     }
 }
+
+#[test]
+fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
+    let view = view([0.0, 1.0, 6.0], [0.0, 1.0, 0.0], 40.0, 8).replace("[film]", "[film]\nfilter = \"center\"");
+    let scene = |opacity: &str, render: &str| {
+        scene(&format!(
+            "{view}\n[render]\ndiffuse_bounces = 0\n{render}\n[material]\nfloor.diffuse.reflectance = 0.5\n\
+             leaf.mask = {{ material = \"floor\", opacity = {opacity} }}\n\
+             [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"floor\"\nholdout = true\n\
+             [[object]]\nshape.sphere = {{ center = [0, 1, 0], radius = 1 }}\nmaterial = \"leaf\"\n\
+             [[light]]\npoint = {{ position = [3, 3, 3], intensity = 9 }}\n"
+        ))
+    };
+    for (opacity, says) in
+        [("1", "deterministic"), ("1.0", "deterministic"), ("0.9", "random"), ("{ rgb = [1, 1, 0] }", "random")]
+    {
+        assert_eq!(plan(&scene(opacity, "")).method.transport.name(), says, "{opacity}");
+    }
+    for (render, more) in [("", false), ("samples = 1", false), ("samples = 8", true), ("error = 0.01", true)] {
+        let because = plan(&scene("1", render)).because.concat();
+        assert_eq!(because.contains("and more are the same again, so samples = 1 is enough"), more, "{render}");
+    }
+}

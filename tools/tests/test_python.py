@@ -595,6 +595,8 @@ def test_the_catalog_answers_arrays():
         25.68, abs=0.005
     )
     assert glass.index(587.5618) == n[0, 1] and isinstance(glass.index(587.5618), float)
+    hidden = glass.index(np.ma.array(nm, mask=[[False, True], [False, False]]))
+    assert hidden.mask.tolist() == [[False, True], [False, False]] and hidden[0, 0] == n[0, 0]
     assert glass.v_d == pytest.approx(25.68, abs=0.005) and glass.name == "schott/N-SF11" and glass.source
     # CIE 015:2018, table 1: D65 is 100 at 560 nm, and 117.008 at 460 nm.
     light = abbe.catalog.illuminant("D65")

@@ -4,14 +4,14 @@ mod terminal;
 
 use std::path::PathBuf;
 
-use abbe::film::{BEAUTY, ExrFile, ExrLayer, check_writable};
+use abbe::film::{BEAUTY, ExrFile, ExrLayer};
 use abbe::look::{Exposure, Mattes, Misexposure, Picture, Tone};
 use abbe::{Error, Result};
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 
 use super::messages::{answer, print_written, say};
-use super::outputs::{check_exposure, check_png, spare};
+use super::outputs::{Folders, check_exposure, check_png, spare};
 use super::signals::catch_plainly;
 
 const HELP: &str = "\
@@ -70,14 +70,16 @@ pub fn run(query: &Query) -> Result<()> {
     query.png.as_deref().map_or(Ok(()), |png| spare(&query.file, "image", png))?;
     let file = ExrFile::read(&query.file)?;
     let shown = query.file.display().to_string();
-    let picture = match file.layer(query.layer.as_deref(), &shown) {
+    let of_names = query.layer.as_deref().and_then(|layer| Mattes::within(&file, layer));
+    let wanted = of_names.or(query.layer.as_deref());
+    let picture = match file.layer(wanted, &shown) {
         Ok(layer) => of_layer(query, &file, &one_band(query, &file, layer, &shown)?)?,
-        Err(unknown) => of_mattes(query, &file, &shown, unknown)?,
+        Err(unknown) => of_mattes(query, wanted, &file, &shown, unknown)?,
     };
     match &query.png {
         Some(png) => {
-            check_writable(png)?;
             catch_plainly()?;
+            let _folders = Folders::of_files(&[png])?;
             picture.write_png(png)?;
             print_written(png);
             Ok(())
@@ -116,8 +118,8 @@ fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> 
 }
 
 /// Mattes as a picture, or one of them, if what is asked for and is no layer is a name of mattes.
-fn of_mattes(query: &Query, file: &ExrFile, shown: &str, unknown: Error) -> Result<Picture> {
-    let Some(wanted) = query.layer.as_deref() else { return Err(unknown) };
+fn of_mattes(query: &Query, wanted: Option<&str>, file: &ExrFile, shown: &str, unknown: Error) -> Result<Picture> {
+    let Some(wanted) = wanted else { return Err(unknown) };
     let all = Mattes::all(file);
     let Some((mattes, one)) = Mattes::named(&all, wanted) else {
         let names: Vec<&str> = all.iter().map(Mattes::name).collect();

@@ -1,6 +1,6 @@
 """Glasses, metals, illuminants and reflectances by the names that scenes know them by.
 
-Wavelengths are in nm, single ones or arrays of any shape; what is answered has the same shape.
+Wavelengths are in nm, single ones or arrays of any shape; what is answered has the same shape, and the same mask.
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ def __dir__() -> list[str]:
 def _at(nm: npt.ArrayLike, values: Callable[[bytes], _abbe.Plane]) -> Any:
     wavelengths = np.asarray(nm, dtype=np.float64)
     found = np.asarray(values(wavelengths.tobytes())).reshape(wavelengths.shape)
+    if np.ma.isMaskedArray(nm):
+        found = np.ma.masked_array(found, mask=np.ma.getmaskarray(nm))
     return found if wavelengths.ndim else found[()]
 
 

@@ -1,7 +1,7 @@
 //! Flat surfaces of clear bodies that nothing closes.
 
 use super::probe::met_from_outside;
-use crate::math::{BranchKey, DVec3, Frame, Sampler, cosine_hemisphere, unit};
+use crate::math::{BranchKey, DVec3, Sampler, cosine_about};
 use crate::scene::Scene;
 use crate::scene::text::and_more;
 use crate::shape::Shape;
@@ -35,7 +35,7 @@ fn is_open(scene: &Scene<Curve>, shape: &Shape) -> bool {
         let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 0);
         let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 1);
         let Some((point, _)) = met_from_outside(shape, DVec3::new(x, y, z), [a, b]) else { return false };
-        let inward = unit(Frame::about(-point.normal).to_world(cosine_hemisphere([c, d])));
+        let inward = cosine_about(-point.normal, [c, d]);
         scene.intersect(&point.leave(inward)).is_none()
     })
 }

@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use crate::light::Light;
 use crate::material::{Material, reflect};
-use crate::math::{Bounds, BranchKey, DVec2, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::math::{Bounds, BranchKey, DVec2, DVec3, Ray, Sampler, cosine_about};
 use crate::scene::{Hit, Projection, Scene};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Curve;
@@ -90,7 +90,7 @@ impl<'a> Sight<'a> {
                 return false;
             }
             let direction = match material.scatters_widely() {
-                true => unit(Frame::about(normal).to_world(cosine_hemisphere([u, v]))),
+                true => cosine_about(normal, [u, v]),
                 false => reflect(-ray.direction, normal),
             };
             ray = point.leave(direction);

@@ -7,7 +7,7 @@
 use super::sight::{Place, Sight};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, ball_surface, cosine_hemisphere, unit};
+use crate::math::{BranchKey, DVec3, Ray, Sampler, ball_surface, cosine_about, unit};
 use crate::scene::Scene;
 use crate::shape::{Shape, Sides, SurfacePoint};
 use crate::spectrum::Curve;
@@ -24,7 +24,9 @@ const TOLD: usize = 4;
 /// What is wrong with each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut sight = Sight::new(scene);
-    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(|&id| scene.lights[id].is_sampled()).collect();
+    // One that is switched off is told nothing of.
+    let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
+    let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
     sight.look(|sight, places| {
         let reaches = |id: &LightId| places.iter().any(|place| reaches(sight, &scene.lights[*id], place));
         dark.retain(|id| !reaches(id));
@@ -105,7 +107,7 @@ fn reaches(sight: &Sight, light: &Light<Curve>, place: &Place) -> bool {
     };
     // Nearly all samples of an image of the sky may lead to its sun.
     let sees_sky = || {
-        let direction = unit(Frame::about(place.normal).to_world(cosine_hemisphere([u, v])));
+        let direction = cosine_about(place.normal, [u, v]);
         let shines = matches!(light, Light::Environment(sky) if sky.shines_toward(direction));
         shines && !sight.is_occluded(&place.point.leave(direction), f64::INFINITY, None)
     };
@@ -185,7 +187,7 @@ fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     let point = area.shape.point(&line, &crossing);
     let back = area.sides == Sides::Both && point.normal.dot(direction) > 0.0;
     let normal = if back { -point.normal } else { point.normal };
-    let ray = point.leave(unit(Frame::about(normal).to_world(cosine_hemisphere([c, d]))));
+    let ray = point.leave(cosine_about(normal, [c, d]));
     Some(Start { ray, surface: Some(Place { point, normal, object: area.object }) })
 }
 

@@ -75,7 +75,7 @@ const KINDS: [(&str, Reader); 11] = [
     ("lines", |value| pairs(value, "write [wavelength in nm, power]").map(KindText::Lines)),
     ("image", |value| value.text().map(KindText::Image)),
     ("checker", |value| {
-        let cells = value.list(|entry| curve_text(entry, COLOR))?;
+        let cells = value.list(|entry| CurveText::read(entry, Quantity::Reflectance))?;
         let other = |count| value.refuse_key(format!("a `checker` is a list of 2 spectra, not of {count}"), None);
         Some(KindText::Checker(Box::new(exactly(cells, other)?)))
     }),
@@ -101,6 +101,39 @@ pub(super) fn not_finite(x: f64) -> String {
 
 const COLOR: &str = "{ rgb = [0.7, 0.5, 0.3] }";
 
+/// The keys of which a spectrum of a quantity has one.
+fn fitting(quantity: Quantity) -> &'static [&'static str] {
+    match quantity {
+        Quantity::Index => &["rgb", "samples", "file", "cauchy", "sellmeier", "abbe"],
+        Quantity::Emission => &["rgb", "samples", "file", "illuminant", "blackbody", "lines", "image", "checker"],
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => {
+            &["rgb", "samples", "file", "image", "checker"]
+        }
+        Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => &["rgb", "samples", "file"],
+        Quantity::Excitation | Quantity::Fluorescence => &["samples", "file"],
+        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => &["image", "checker"],
+    }
+}
+
+/// The keys of spectra of other quantities.
+fn unfit(quantity: Quantity) -> impl Iterator<Item = &'static str> {
+    let fitting = fitting(quantity);
+    let varies = fitting.contains(&"image");
+    let has_file = fitting.contains(&"file");
+    let others =
+        [("column", has_file), ("encoding", varies), ("channel", varies), ("wrap", varies), ("filter", varies)];
+    let more = [("repeat", varies), ("luminance", quantity == Quantity::Emission)];
+    let kinds = KINDS.iter().map(move |(key, _)| (*key, fitting.contains(key)));
+    kinds.chain(others).chain(more).filter(|(_, fits)| !fits).map(|(key, _)| key)
+}
+
+/// What a table without a kind is told.
+fn kinds_of(quantity: Quantity) -> String {
+    let names: Vec<_> = fitting(quantity).iter().map(|key| format!("`{key}`")).collect();
+    let (others, last) = names.split_at(names.len() - 1);
+    format!("a spectrum needs one of {} or {}", others.join(", "), last.concat())
+}
+
 /// A spectrum that could stand where one has no kind.
 fn example(quantity: Quantity) -> &'static str {
     match quantity {
@@ -118,7 +151,14 @@ fn example(quantity: Quantity) -> &'static str {
 impl<'d> CurveText<'d> {
     /// What a value says as a spectrum.
     pub(super) fn read(value: Value<'d>, quantity: Quantity) -> Option<Self> {
-        curve_text(value, example(quantity))
+        match value.node() {
+            DeValue::Integer(_) | DeValue::Float(_) => {
+                real(value).map(|number| Self::bare(value, KindText::Number(number)))
+            }
+            DeValue::String(name) => Some(Self::bare(value, KindText::Name(name))),
+            DeValue::Table(_) => Fields::read(value, |table| curve_table(value, table, quantity)),
+            _ => value.wanted("a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }"),
+        }
     }
 
     /// Where its image lies, if that is possible.
@@ -135,18 +175,8 @@ impl<'d> CurveText<'d> {
     }
 }
 
-fn curve_text<'d>(value: Value<'d>, example: &str) -> Option<CurveText<'d>> {
-    match value.node() {
-        DeValue::Integer(_) | DeValue::Float(_) => {
-            real(value).map(|number| CurveText::bare(value, KindText::Number(number)))
-        }
-        DeValue::String(name) => Some(CurveText::bare(value, KindText::Name(name))),
-        DeValue::Table(_) => Fields::read(value, |table| curve_table(value, table, example)),
-        _ => value.wanted("a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }"),
-    }
-}
-
-fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> Option<CurveText<'d>> {
+fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity) -> Option<CurveText<'d>> {
+    table.do_not_hint_at(unfit(quantity));
     let kinds = KINDS.map(|(key, read)| table.get(key).map(|place| (place, read(place))));
     let column = table.maybe("column", at(|value: Value| value.whole(0..=u64::MAX)));
     let encoding = table.maybe("encoding", at(|value: Value| value.word(&ENCODINGS)));
@@ -158,10 +188,8 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, example: &str) -> O
     let luminance = table.maybe("luminance", at(Value::number));
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
-        let names: Vec<_> = KINDS.iter().map(|(key, _)| format!("`{key}`")).collect();
-        let (last, others) = names.split_last()?;
-        let message = format!("a spectrum needs one of {} or {last}", others.join(", "));
-        return if table.has_unknown() { None } else { value.advise(message, format!("such as {example}")) };
+        let help = format!("such as {}", example(quantity));
+        return if table.has_unknown() { None } else { value.advise(kinds_of(quantity), help) };
     };
     if let Some((other, _)) = given.next() {
         let message = format!("a spectrum has exactly one kind, not `{}` and `{}`", place.key(), other.key());

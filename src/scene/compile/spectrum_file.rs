@@ -26,7 +26,9 @@ pub(super) struct Fault {
 /// The line and what is wrong with it.
 pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, Fault> {
     let (mut rows, mut titles) = (Vec::new(), true);
-    for (number, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+    // A carriage return alone ends a line as well.
+    let lines = text.trim_start_matches('\u{feff}').lines().flat_map(|line| line.split('\r'));
+    for (number, line) in lines.enumerate() {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') {
             continue;
@@ -91,6 +93,9 @@ mod tests {
         let row = |line, pair| Row { line, pair };
         assert_eq!(rows, [row(3, [400.0, 0.2]), row(5, [500.0, 0.4])]);
         assert_eq!(read_columns("400 1e-3\n410\t2e-3", 2).unwrap()[1].pair, [410.0, 2e-3]);
+        for ends in ["nm,v\r400,0.1\r500,0.3\r", "nm,v\r\n400,0.1\r\n500,0.3", "nm,v\n400,0.1\n500,0.3\n"] {
+            assert_eq!(read_columns(ends, 2).unwrap(), [row(2, [400.0, 0.1]), row(3, [500.0, 0.3])]);
+        }
         assert_eq!(read_columns("400;0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
         assert_eq!(read_columns("400 ,0.5", 2).unwrap(), [row(1, [400.0, 0.5])]);
         assert_eq!(read_columns("dull paint,shiny\n400,0.5", 2).unwrap(), [row(2, [400.0, 0.5])]);

@@ -45,7 +45,7 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
 /// Four rows of four numbers, of which the last says nothing.
 fn matrix(value: Value) -> Option<Transform> {
     let help = "write four rows of four numbers, the last of them [0, 0, 0, 1]";
-    let row = |row: Value| near(row, "a number of a matrix", row.as_list("a row of a matrix", help).numbers()?);
+    let row = |row: Value| near(row, "an entry of a matrix", row.as_list("a row of a matrix", help).numbers()?);
     if value.node().as_array().is_none_or(|rows| rows.len() != 4) {
         return value.advise("a matrix is a list of 4 rows", help);
     }

@@ -5,8 +5,9 @@ use std::ops::Range;
 use toml::de::DeTable;
 
 use super::document::Document;
+use super::elsewhere::{outside_of_material, value_elsewhere};
 use super::include::INCLUDE;
-use super::suggest::{TABLE, color_elsewhere, meant, outside_of_material, suggestion};
+use super::suggest::{TABLE, meant, suggestion};
 use super::value::Value;
 use crate::error::nearest;
 
@@ -16,6 +17,8 @@ pub(in crate::scene) struct Fields<'d> {
     table: &'d DeTable<'d>,
     span: Range<usize>,
     known: Vec<&'static str>,
+    /// Those of them that make no sense in this place, and are not hinted at.
+    unfit: Vec<&'static str>,
     /// Keys that are needed and not there, and what to do.
     missing: Vec<(&'static str, Option<String>)>,
     /// Keys of which something else was told than that they are not known.
@@ -44,7 +47,8 @@ impl<'d> Fields<'d> {
         span: Range<usize>,
         read: impl FnOnce(&mut Self) -> Option<T>,
     ) -> Option<T> {
-        let mut fields = Self { document, table, span, known: Vec::new(), missing: Vec::new(), told: Vec::new() };
+        let (known, unfit, missing, told) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut fields = Self { document, table, span, known, unfit, missing, told };
         let read = read(&mut fields);
         let are_right = fields.are_right();
         read.filter(|_| are_right)
@@ -52,7 +56,7 @@ impl<'d> Fields<'d> {
 
     /// Whether there are no keys but those that were asked for, and all that are needed; tells of the others.
     fn are_right(&self) -> bool {
-        let unknown = self.unknown();
+        let (unknown, known) = (self.unknown(), self.hints());
         for (span, word) in &unknown {
             let (message, help) = match *word {
                 INCLUDE => (
@@ -61,16 +65,15 @@ impl<'d> Fields<'d> {
                 ),
                 word => {
                     let value = self.table.get(word);
-                    let color = value.and_then(|node| color_elsewhere(word, node.get_ref(), &self.known));
-                    let help = color.unwrap_or_else(|| suggestion(word, word, &self.known));
+                    let known_by_value = value.and_then(|node| value_elsewhere(word, node.get_ref(), &known));
+                    let help = known_by_value.unwrap_or_else(|| suggestion(word, word, &known));
                     (format!("unknown key `{word}`"), help)
                 }
             };
             self.document.tell(span.clone(), message, Some(help));
         }
         // What a key without sense should have been may be what is missing.
-        let is_obscure =
-            !self.told.is_empty() || unknown.iter().any(|(_, word)| meant(word, word, &self.known).is_none());
+        let is_obscure = !self.told.is_empty() || unknown.iter().any(|(_, word)| meant(word, word, &known).is_none());
         for (key, help) in self.missing.iter().filter(|(key, _)| !is_obscure && !self.is_misspelt(key)) {
             self.document.tell(self.span.clone(), format!("`{key}` is missing"), help.clone());
         }
@@ -79,7 +82,13 @@ impl<'d> Fields<'d> {
 
     /// Whether a key that is not known is most likely this one, which is not missing then.
     pub(in crate::scene) fn is_misspelt(&self, key: &str) -> bool {
-        self.unknown().iter().any(|(_, word)| meant(word, word, &self.known) == Some(key))
+        let known = self.hints();
+        self.unknown().iter().any(|(_, word)| meant(word, word, &known) == Some(key))
+    }
+
+    /// The keys that may be meant by another one.
+    fn hints(&self) -> Vec<&'static str> {
+        self.known.iter().copied().filter(|key| !self.unfit.contains(key)).collect()
     }
 
     fn unknown(&self) -> Vec<(Range<usize>, &'d str)> {
@@ -141,6 +150,11 @@ impl<'d> Fields<'d> {
     pub(in crate::scene) fn refuse<T>(&self, message: impl Into<String>, help: Option<&str>) -> Option<T> {
         self.document.tell(self.span.clone(), message, help.map(str::to_owned));
         None
+    }
+
+    /// Lets keys not be hinted at which make no sense in this place.
+    pub(in crate::scene) fn do_not_hint_at(&mut self, keys: impl Iterator<Item = &'static str>) {
+        self.unfit.extend(keys);
     }
 
     /// Tells of a key, if it is there, that it belongs elsewhere.
@@ -209,7 +223,7 @@ impl<R: Copy> Choice<R> {
         let word = stray.key();
         let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
         if is_part {
-            let outside = outside_of_material(word).filter(|_| self.knows("mask")).map(str::to_owned);
+            let outside = outside_of_material(kind, word).filter(|_| self.knows("mask")).map(str::to_owned);
             let help = outside.unwrap_or_else(|| {
                 format!("what belongs to `{kind}` stands inside of it: {kind} = {{ .., {word} = .. }}")
             });

@@ -10,6 +10,7 @@ use super::named_file::{Fault, FileKind, read_named};
 use super::texts::Texts;
 use super::tree::{Node, parsed, word};
 use super::utf8::utf8;
+use crate::scene::foreign::foreign;
 
 /// The key of the names of such files.
 pub(in crate::scene) const INCLUDE: &str = "include";
@@ -89,7 +90,12 @@ impl Included {
         if self.within.len() >= DEEPEST {
             return Err(Fault { message: format!("more than {DEEPEST} files include one another"), help: None });
         }
-        let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, as a scene is")?;
+        let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, as a scene is");
+        let is_toml = || text.as_ref().is_ok_and(|text| parsed(text, 0).is_ok());
+        if let Some((what, help)) = foreign(&path, name).filter(|_| !is_toml()) {
+            return Err(Fault::new(format!("{name} is {what}, not a part of a scene in TOML"), help));
+        }
+        let text = text?;
         self.files.push(file.clone());
         self.within.push(file);
         self.add(&path, &text);

@@ -3,6 +3,7 @@
 //! What a scene may hold is told in `compile`, once: by the functions that read it.
 
 mod document;
+mod elsewhere;
 mod fields;
 mod include;
 mod mistake;

@@ -99,7 +99,11 @@ fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
             let last = path.len() - 1;
             (Some(path), last)
         }
-        (Err(mistake), None) => return Err(mistake),
+        (Err(_), None) => {
+            let message = format!("`{}` is no path of a key", text[..equals].trim());
+            let help = Some("it is words with dots between, such as film.width".into());
+            return Err(Mistake { span: start..start + equals, message, help });
+        }
     };
     let Some(path) = path else { return refuse("a setting is one key, `=` and its value") };
     let (before, value) = text.split_at(equals + 1);

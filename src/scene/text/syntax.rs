@@ -43,6 +43,10 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
             let help = rest.trim_start().starts_with(':') || before.trim_end().ends_with(':');
             ("a key is followed by `=` and its value".into(), help.then(|| "write `=` instead of `:`".into()))
         }
+        "carriage return must be followed by newline" => {
+            let help = "save the file with the line ends of Unix or Windows";
+            ("a carriage return alone ends no line".into(), Some(help.into()))
+        }
         "duplicate key" => duplicate(written, before, line),
         _ => (said.to_owned(), None),
     };

@@ -106,7 +106,7 @@ impl<'d> Variables<'d> {
         let near = nearest(name, self.known.iter().map(String::as_str));
         let help = match near {
             Some(near) => format!("did you mean \"${near}\"?"),
-            None if name == FRAME => "give the number of the frame: --frame 1".into(),
+            None if name == FRAME => "give the number of the frame: --frame 1, or [set] frame = 1".into(),
             None => format!("give it a value: [set] {name} = .."),
         };
         self.tell(place, message, help);

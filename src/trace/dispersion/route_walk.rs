@@ -3,7 +3,7 @@
 use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
-use crate::math::{BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::math::{BranchKey, DVec3, Ray, Sampler, cosine_about};
 use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{Meeting, shading, straight};
 use crate::trace::{World, media};
@@ -242,7 +242,7 @@ impl<'a> Walker<'a> {
             self.aim(at, &next, flat, id);
         }
         if next.scattered < SCATTERED && self.world.method.diffuse_bounces > 0 {
-            let direction = unit(Frame::about(flat).to_world(cosine_hemisphere([at.u[0], at.u[1]])));
+            let direction = cosine_about(flat, [at.u[0], at.u[1]]);
             self.go_on(at, next, direction, 3);
         }
     }

@@ -233,7 +233,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Surfaces met by this camera sample or photon.
+    /// Surfaces met by this camera sample.
     pub fn surfaces(&self) -> u64 {
         self.stats.rays - self.started
     }
