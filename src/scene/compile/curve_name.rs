@@ -52,7 +52,24 @@ pub(super) fn temperature_called(text: &str) -> Option<String> {
 }
 
 pub(super) fn unknown_illuminant(name: &str) -> Refusal {
-    unknown(name, "illuminant", illuminants())
+    match of_cie(name) {
+        Some(light) => {
+            Refusal::new(format!("there is no illuminant named {name:?}")).help(format!("did you mean {light:?}?"))
+        }
+        None => unknown(name, "illuminant", illuminants()),
+    }
+}
+
+/// The illuminant that is called so elsewhere: F2 for FL2, or CIE D65 for D65.
+fn of_cie(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    let bare = lower.strip_prefix("cie ").unwrap_or(&lower);
+    let bare = bare.strip_prefix("illuminant ").unwrap_or(bare);
+    let fluorescent = bare.strip_prefix('f').map(|number| format!("fl{number}"));
+    let same = |known: &&str| {
+        known.eq_ignore_ascii_case(bare) || fluorescent.as_deref().is_some_and(|fl| known.eq_ignore_ascii_case(fl))
+    };
+    illuminants().find(same)
 }
 
 /// How to write the illuminant that a bare name is or nearly is.

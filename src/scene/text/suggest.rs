@@ -14,7 +14,7 @@ use crate::spectrum::ColorSpace;
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
 const ELSEWHERE: [(&str, &[&str]); 34] = [
     ("index", &["ior", "eta", "int_ior"]),
-    ("reflectance", &["albedo", "color"]),
+    ("reflectance", &["albedo", "color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
     ("image", &["texture", "map", "path", "filename"]),
     ("blackbody", &["temperature", "kelvin"]),
@@ -46,12 +46,12 @@ const ELSEWHERE: [(&str, &[&str]); 34] = [
     ("disc", &["circle"]),
     ("mesh", &["cylinder", "cone", "torus", "model", "obj"]),
     ("checker", &["checkerboard", "chessboard"]),
-    ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri"]),
+    ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri", "ambient", "background"]),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 40] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 42] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -182,6 +182,12 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 40] = [
         "angular_diameter",
         "write `toward`, from the scene to the sun: [0, 1, 1] is 45 degrees high",
     ),
+    (&["radians"], "degrees", "write `degrees`: a half turn is 180"),
+    (
+        &["cct", "daylight", "color_temperature"],
+        "blackbody",
+        "write blackbody = 3000 for what glows, or illuminant = \"D65\" for daylight",
+    ),
     (&["diameter"], "radius", "write `radius`, half of it"),
     (
         &["diffuse", "emissive", "dielectric", "conductor", "mirror", "plastic", "thin", "color", "roughness"],
@@ -280,8 +286,9 @@ fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
     let is_mistakable =
         MISTAKEN_SECTIONS.iter().any(|(section, own, _)| known.contains(own) || known.contains(section));
     let has_it = |own: &str, keys: &[&str]| !known.contains(&own) && (own == word || keys.contains(&word));
-    let (section, ..) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
-    let here = ELSEWHERE.iter().find(|(_, words)| words.contains(&word)).map_or(word, |(here, _)| here);
+    let (section, _, keys) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
+    let mut meant = ELSEWHERE.iter().filter(|(here, words)| keys.contains(here) && words.contains(&word));
+    let here = meant.next().map_or(word, |(here, _)| here);
     Some(format!("write {here} in [{section}]"))
 }
 
@@ -424,6 +431,13 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some(format!("write {{ image = {written}, .. }}"))
         }
         DeValue::String(text) if wanted == "a list of 3 numbers" => vector(key, text),
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 3 numbers" && key == "axis" => {
+            Some("it is a direction in space, such as [1, 0, 0]".into())
+        }
+        DeValue::Array(list) if wanted == TABLE && key == "abbe" && list.len() == 2 => {
+            let (nd, vd) = written.trim_matches(['[', ']']).split_once(',')?;
+            Some(format!("write {{ nd = {}, vd = {} }}", nd.trim(), vd.trim()))
+        }
         DeValue::Table(table) if wanted == "a list of 3 numbers" && table.contains_key("x") => {
             Some("write [x, y, z]".into())
         }
@@ -453,4 +467,14 @@ fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
     let is_pair = |entry: &Node| entry.get_ref().as_array().is_some_and(|pair| are_numbers(pair, 2));
     (!entries.is_empty() && entries.iter().all(is_pair))
         .then(|| "write { samples = [[wavelength in nm, value], ..] } for a spectrum".into())
+}
+
+/// How to write a list that has so many numbers if commas in them are points.
+pub(super) fn with_points(written: &str, count: usize) -> Option<String> {
+    let inner = written.strip_prefix('[')?.strip_suffix(']')?;
+    let parts: Vec<&str> = inner.split([' ', '\t', ';']).map(|part| part.trim_matches(',')).collect();
+    let parts: Vec<String> =
+        parts.into_iter().filter(|part| !part.is_empty()).map(|part| part.replace(',', ".")).collect();
+    let are_numbers = parts.iter().all(|part| part.parse::<f64>().is_ok());
+    (parts.len() == count && are_numbers).then(|| format!("a decimal point is written `.`: [{}]", parts.join(", ")))
 }
