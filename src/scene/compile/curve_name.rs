@@ -86,8 +86,10 @@ fn illuminants() -> impl Iterator<Item = &'static str> {
 }
 
 fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> Refusal {
+    let number = name.replace(',', ".").replace('\u{2212}', "-");
     let help = match (elsewhere(name), nearest(name, names)) {
         (Some(other), _) => format!("it is {other}"),
+        _ if number.parse().is_ok_and(f64::is_finite) => format!("write the number {number}"),
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
         (None, None) => {
             let colors = if what == "reflectance" { "; a color is { rgb = [red, green, blue] }" } else { "" };

@@ -59,7 +59,7 @@ fn without_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
     let start = span.start - line.len() + (line.len() - line.trim_start().len());
     let (span, help) = if key.starts_with("//") {
         (start..start + 2, Some("a comment starts with #"))
-    } else if let Some(help) = heading(key) {
+    } else if let Some(help) = heading(&whole_line(line, rest)) {
         let message = "a heading stands in brackets".into();
         return Mistake { span: start..start + key.len(), message, help: Some(help) };
     } else if let Some(key) = key.strip_suffix(':') {
@@ -72,13 +72,17 @@ fn without_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
     Mistake { span, message: "a key is followed by `=` and its value".into(), help: help.map(str::to_owned) }
 }
 
+/// The line whose start stands before a place, and with whose end the rest begins.
+fn whole_line(line: &str, rest: &str) -> String {
+    format!("{line}{}", rest.lines().next().unwrap_or_default())
+}
+
 /// What to do where a key is not followed by its `=`.
 fn before_sign(line: &str, rest: &str) -> Option<String> {
-    let rest = rest.lines().next().unwrap_or_default();
     if rest.trim_start().starts_with(':') || line.trim_end().ends_with(':') {
         return Some("write `=` instead of `:`".into());
     }
-    let whole = format!("{line}{rest}");
+    let whole = whole_line(line, rest);
     let of_heading = heading(&whole).map(|help| format!("a heading stands in brackets: {}", &help["write ".len()..]));
     of_heading.or_else(|| loose_list(&whole, line.len()))
 }
@@ -104,7 +108,7 @@ fn unclosed(before: &str, bracket: char) -> Mistake {
 fn of_inline_table(before: &str, rest: &str) -> Mistake {
     let before = before.trim_end();
     let line = before.rsplit('\n').next().unwrap_or_default();
-    let whole = format!("{line}{}", rest.lines().next().unwrap_or_default());
+    let whole = whole_line(line, rest);
     let list = loose_list(&whole, line.len());
     let is_digit = |c: char| c.is_ascii_digit();
     let are_digits = |text: &str| !text.is_empty() && text.chars().all(is_digit);
@@ -177,8 +181,7 @@ fn after_value(line: &str, rest: &str) -> Option<String> {
     if rest.trim_start().starts_with("//") {
         return Some("a comment starts with #".into());
     }
-    let rest = rest.lines().next().unwrap_or_default();
-    let whole = format!("{line}{rest}");
+    let whole = whole_line(line, rest);
     if let Some(help) = loose_list(&whole, line.len()) {
         return Some(help);
     }
