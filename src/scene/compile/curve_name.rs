@@ -52,7 +52,24 @@ pub(super) fn temperature_called(text: &str) -> Option<String> {
 }
 
 pub(super) fn unknown_illuminant(name: &str) -> Refusal {
-    unknown(name, "illuminant", illuminants())
+    match of_cie(name) {
+        Some(light) => {
+            Refusal::new(format!("there is no illuminant named {name:?}")).help(format!("did you mean {light:?}?"))
+        }
+        None => unknown(name, "illuminant", illuminants()),
+    }
+}
+
+/// The illuminant that is called so elsewhere: F2 for FL2, or CIE D65 for D65.
+fn of_cie(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    let bare = lower.strip_prefix("cie ").unwrap_or(&lower);
+    let bare = bare.strip_prefix("illuminant ").unwrap_or(bare);
+    let fluorescent = bare.strip_prefix('f').map(|number| format!("fl{number}"));
+    let same = |known: &&str| {
+        known.eq_ignore_ascii_case(bare) || fluorescent.as_deref().is_some_and(|fl| known.eq_ignore_ascii_case(fl))
+    };
+    illuminants().find(same)
 }
 
 /// How to write the illuminant that a bare name is or nearly is.
@@ -69,8 +86,10 @@ fn illuminants() -> impl Iterator<Item = &'static str> {
 }
 
 fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> Refusal {
+    let number = name.replace(',', ".").replace('\u{2212}', "-");
     let help = match (elsewhere(name), nearest(name, names)) {
         (Some(other), _) => format!("it is {other}"),
+        _ if number.parse().is_ok_and(f64::is_finite) => format!("write the number {number}"),
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
         (None, None) => {
             let colors = if what == "reflectance" { "; a color is { rgb = [red, green, blue] }" } else { "" };

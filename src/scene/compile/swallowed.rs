@@ -1,11 +1,13 @@
-//! Clear bodies of which nothing is seen, as another of the same priority is there in their place.
+//! Clear bodies of which nothing is seen, as another is there in their place.
+
+use std::cmp::Ordering;
 
 use super::inside_out::bodies_around;
 use super::place::Placed;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
-use crate::scene::Object;
 use crate::scene::checks::met_from_outside;
 use crate::scene::text::and_more;
+use crate::scene::{Object, Sight};
 use crate::shape::{Shape, SurfacePoint};
 
 /// Points of a body that all have to lie in the other.
@@ -13,20 +15,28 @@ const POINTS: u32 = 64;
 /// Most clear bodies that are compared with one another.
 const MOST: usize = 2048;
 
-/// What is wrong with each body that lies within another of the same priority whose material objects use later.
+/// What is wrong with each body that lies within another, of the same priority with a material that objects use later,
+/// or of a higher one. A mesh of a higher one may have a cavity, which a body fills that reaches into the walls.
 pub(super) fn swallowed(placed: &Placed) -> Option<String> {
     let priority = |object: &Object| Some(placed.material(object).material.medium()?.priority);
     let clear = placed.objects.iter().filter_map(|object| Some((object, priority(object)?)));
     let clear: Vec<(&Object, i32)> = clear.take(MOST).collect();
     let around = |(body, own): (&Object, i32)| {
-        let mut others = clear.iter().filter(|(other, priority)| other.material > body.material && *priority == own);
-        others.find(|(other, _)| lies_within(&body.shape, &other.shape)).map(|(other, _)| *other)
+        let is_there = |other: &Object, priority: i32| match priority.cmp(&own) {
+            Ordering::Less => false,
+            Ordering::Equal => other.material > body.material,
+            Ordering::Greater => {
+                other.sight == Sight::Shown && !matches!(&*other.shape, Shape::Mesh(_) | Shape::Instance(_))
+            }
+        };
+        let mut others = clear.iter().filter(|(other, priority)| is_there(other, *priority));
+        others.find(|(other, _)| lies_within(&body.shape, &other.shape)).copied()
     };
     let mut found = clear.iter().filter_map(|&body| Some((body, around(body)?)));
-    let ((body, priority), other) = found.next()?;
+    let ((body, own), (other, priority)) = found.next()?;
+    let why = if priority > own { "a higher priority" } else { "the same priority that is used later" };
     Some(format!(
-        "{}: nothing is seen of this body, as {} around it has a material of the same priority that is used later: \
-         give material {} priority = {}",
+        "{}: nothing is seen of this body, as {} around it has a material of {why}: give material {} priority = {}",
         and_more(&body.name, found.count()),
         other.name,
         placed.material(body).name,

@@ -10,7 +10,7 @@ use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
 const ELSEWHERE: [(&str, &[&str]); 40] = [
     ("index", &["ior", "eta", "int_ior"]),
-    ("reflectance", &["albedo", "color"]),
+    ("reflectance", &["albedo", "color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
     ("image", &["texture", "map", "path", "filename"]),
     ("blackbody", &["temperature", "kelvin"]),
@@ -48,12 +48,12 @@ const ELSEWHERE: [(&str, &[&str]); 40] = [
     ("disc", &["circle"]),
     ("mesh", &["cylinder", "cone", "torus", "model", "obj"]),
     ("checker", &["checkerboard", "chessboard"]),
-    ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri"]),
+    ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri", "ambient", "background"]),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 49] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -183,6 +183,12 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 49] = [
         &["elevation", "azimuth", "altitude"],
         "angular_diameter",
         "write `toward`, from the scene to the sun: [0, 1, 1] is 45 degrees high",
+    ),
+    (&["radians"], "degrees", "write `degrees`: a half turn is 180"),
+    (
+        &["cct", "daylight", "color_temperature"],
+        "blackbody",
+        "write blackbody = 3000 for what glows, or illuminant = \"D65\" for daylight",
     ),
     (&["diameter"], "radius", "write `radius`, half of it"),
     (
@@ -333,8 +339,8 @@ fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
     let is_mistakable =
         MISTAKEN_SECTIONS.iter().any(|(section, own, _)| known.contains(own) || known.contains(section));
     let has_it = |own: &str, keys: &[&str]| !known.contains(&own) && (own == word || keys.contains(&word));
-    let (section, ..) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
-    let here = called_here(word).next().unwrap_or(word);
+    let (section, _, keys) = MISTAKEN_SECTIONS.iter().find(|(_, own, keys)| is_mistakable && has_it(own, keys))?;
+    let here = called_here(word).find(|here| keys.contains(here)).unwrap_or(word);
     Some(format!("write {here} in [{section}]"))
 }
 /// How to write what a key of other programs says by its value.

@@ -10,6 +10,7 @@ mod mistake;
 mod named_file;
 mod rows;
 mod settings;
+mod slips;
 mod suggest;
 mod syntax;
 mod texts;

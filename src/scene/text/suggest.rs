@@ -127,6 +127,13 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some(format!("write {{ image = {written}, .. }}"))
         }
         DeValue::String(text) if wanted == "a list of 3 numbers" => vector(key, text),
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 3 numbers" && key == "axis" => {
+            Some("it is a direction in space, such as [1, 0, 0]".into())
+        }
+        DeValue::Array(list) if wanted == TABLE && key == "abbe" && list.len() == 2 => {
+            let (nd, vd) = written.trim_matches(['[', ']']).split_once(',')?;
+            Some(format!("write {{ nd = {}, vd = {} }}", nd.trim(), vd.trim()))
+        }
         DeValue::Table(table) if wanted == "a list of 3 numbers" && table.contains_key("x") => {
             Some("write [x, y, z]".into())
         }
@@ -156,4 +163,14 @@ fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
     let is_pair = |entry: &Node| entry.get_ref().as_array().is_some_and(|pair| are_numbers(pair, 2));
     (!entries.is_empty() && entries.iter().all(is_pair))
         .then(|| "write { samples = [[wavelength in nm, value], ..] } for a spectrum".into())
+}
+
+/// How to write a list that has so many numbers if commas in them are points.
+pub(super) fn with_points(written: &str, count: usize) -> Option<String> {
+    let inner = written.strip_prefix('[')?.strip_suffix(']')?;
+    let parts: Vec<&str> = inner.split([' ', '\t', ';']).map(|part| part.trim_matches(',')).collect();
+    let parts: Vec<String> =
+        parts.into_iter().filter(|part| !part.is_empty()).map(|part| part.replace(',', ".")).collect();
+    let are_numbers = parts.iter().all(|part| part.parse::<f64>().is_ok());
+    (parts.len() == count && are_numbers).then(|| format!("a decimal point is written `.`: [{}]", parts.join(", ")))
 }

@@ -3,17 +3,21 @@
 use std::ops::Range;
 
 use super::mistake::Mistake;
+use super::slips::{heading, loose_list, slip};
 use crate::error::nearest;
 
 /// What the error of reading a text as TOML means.
 pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake {
     let span = error.span().unwrap_or(0..0);
+    let said = error.message().lines().next().unwrap_or("this is not TOML");
+    if let Some(slip) = slip(text, &span, said) {
+        return slip;
+    }
     let (before, rest) = text.split_at_checked(span.start).unwrap_or((text, ""));
     let line = before.rsplit('\n').next().unwrap_or_default();
     let written = text.get(span.clone()).unwrap_or_default();
-    let said = error.message().lines().next().unwrap_or("this is not TOML");
     let (message, help) = match said.split(", expected").next().unwrap_or(said) {
-        "key with no value" => return without_value(span, line),
+        "key with no value" => return without_value(span, line, rest),
         "string values must be quoted" => unquoted(written),
         "invalid basic string" | "invalid literal string" if rest.is_empty() || rest.starts_with(['\r', '\n']) => {
             ("the closing quote is missing".into(), None)
@@ -27,7 +31,7 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
             return unclosed(before, '}');
         }
         "invalid literal string" | "extra comma in inline table" if !written.starts_with('\'') => {
-            return of_inline_table(before);
+            return of_inline_table(before, rest);
         }
         "unclosed array" | "unclosed table" => ("the closing `]` is missing".into(), None),
         "unclosed array table" => ("the closing `]]` is missing".into(), None),
@@ -40,30 +44,62 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid float" | "invalid integer number" | "invalid boolean" if is_word(written) => word(written),
         "invalid float" | "invalid integer number" => ("this is no number".into(), None),
         "missing assignment between key-value pairs" => {
-            let help = rest.trim_start().starts_with(':') || before.trim_end().ends_with(':');
-            ("a key is followed by `=` and its value".into(), help.then(|| "write `=` instead of `:`".into()))
+            ("a key is followed by `=` and its value".into(), before_sign(line, rest))
         }
         "carriage return must be followed by newline" => {
             let help = "save the file with the line ends of Unix or Windows";
             ("a carriage return alone ends no line".into(), Some(help.into()))
         }
+        "missing opening quote" => ("quotes are straight in TOML".into(), Some("write \"..\"".into())),
+        "invalid unquoted key" => unquoted_key(said, line, rest),
         "duplicate key" => duplicate(written, before, line),
         _ => (said.to_owned(), None),
     };
     Mistake { span, message, help }
 }
 
-fn without_value(span: Range<usize>, line: &str) -> Mistake {
+fn without_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
     let key = line.trim();
     let start = span.start - line.len() + (line.len() - line.trim_start().len());
     let (span, help) = if key.starts_with("//") {
         (start..start + 2, Some("a comment starts with #"))
+    } else if let Some(help) = heading(&whole_line(line, rest)) {
+        let message = "a heading stands in brackets".into();
+        return Mistake { span: start..start + key.len(), message, help: Some(help) };
     } else if let Some(key) = key.strip_suffix(':') {
         (start + key.len()..start + key.len() + 1, Some("write `=` instead of `:`"))
+    } else if rest.starts_with(|c: char| "{[\"'-".contains(c) || c.is_ascii_digit()) {
+        (span, Some("write `=` between the two"))
     } else {
-        (span, None)
+        (span, rest.starts_with(":=").then_some("write `=` alone"))
     };
     Mistake { span, message: "a key is followed by `=` and its value".into(), help: help.map(str::to_owned) }
+}
+
+/// The line whose start stands before a place, and with whose end the rest begins.
+fn whole_line(line: &str, rest: &str) -> String {
+    format!("{line}{}", rest.lines().next().unwrap_or_default())
+}
+
+/// What to do where a key is not followed by its `=`.
+fn before_sign(line: &str, rest: &str) -> Option<String> {
+    if rest.trim_start().starts_with(':') || line.trim_end().ends_with(':') {
+        return Some("write `=` instead of `:`".into());
+    }
+    let whole = whole_line(line, rest);
+    let of_heading = heading(&whole).map(|help| format!("a heading stands in brackets: {}", &help["write ".len()..]));
+    of_heading.or_else(|| loose_list(&whole, line.len()))
+}
+
+/// What is said of a key with letters that TOML wants in quotes.
+fn unquoted_key(said: &str, line: &str, rest: &str) -> (String, Option<String>) {
+    let is_end = |c: char| c.is_whitespace() || ".,=:[](){}<>\"'#".contains(c);
+    let first = line.rsplit(is_end).next().unwrap_or_default();
+    let word = format!("{first}{}", rest.split(is_end).next().unwrap_or_default());
+    match word.chars().all(|c| c.is_alphanumeric() || "-_".contains(c)) && !word.is_ascii() {
+        true => ("a name with letters beyond a to z stands in quotes".into(), Some(format!("write \"{word}\""))),
+        false => (said.to_owned(), None),
+    }
 }
 
 /// The reader notices only at the next word, which may stand lines below.
@@ -73,8 +109,11 @@ fn unclosed(before: &str, bracket: char) -> Mistake {
 }
 
 /// A table in braces has a key without a value, or a number with a comma in it.
-fn of_inline_table(before: &str) -> Mistake {
+fn of_inline_table(before: &str, rest: &str) -> Mistake {
     let before = before.trim_end();
+    let line = before.rsplit('\n').next().unwrap_or_default();
+    let whole = whole_line(line, rest);
+    let list = loose_list(&whole, line.len());
     let is_digit = |c: char| c.is_ascii_digit();
     let are_digits = |text: &str| !text.is_empty() && text.chars().all(is_digit);
     let (start, message, help) = match before.rsplit_once(',') {
@@ -85,7 +124,7 @@ fn of_inline_table(before: &str) -> Mistake {
         Some((_, last)) if !last.contains(['=', '{']) => (before.len(), "a key is followed by `=` and its value", None),
         _ => (before.len(), "a value is missing here", None),
     };
-    Mistake { span: start..before.len().min(start + 1), message: message.into(), help }
+    Mistake { span: start..before.len().min(start + 1), message: message.into(), help: list.or(help) }
 }
 
 /// Whether letters stand for no number that is spelt in some way.
@@ -111,30 +150,60 @@ fn unquoted(written: &str) -> (String, Option<String>) {
     let parts: Vec<&str> = written.split_whitespace().collect();
     if parts.is_empty() {
         ("a value is missing here".into(), None)
-    } else if written.contains(['“', '”', '„', '‘', '’']) {
+    } else if written.contains(['“', '”', '„', '‘', '’', '‚', '«', '»', '`', '´']) {
         ("quotes are straight in TOML".into(), Some("write \"..\"".into()))
     } else if parts.iter().all(|part| part.parse::<f64>().is_ok()) {
         ("numbers in a list are separated by commas".into(), Some(format!("write {}", parts.join(", "))))
+    } else if let Some(number) = after_minus(written) {
+        ("this is no number".into(), Some(format!("a minus is the one of the keyboard: write -{number}")))
+    } else if let Some(number) = written.strip_suffix(';').filter(|number| number.parse::<f64>().is_ok()) {
+        ("this is no number".into(), Some(format!("write {number}, without `;`")))
+    } else if written.contains(" /*") {
+        ("a comment starts with #".into(), Some("write # in place of /*".into()))
     } else if written.contains(" //") {
         ("a comment starts with #".into(), Some("write # in place of //".into()))
-    } else if written.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) {
+    } else if written.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) || is_call(written) {
         ("this is no number".into(), Some("a number stands alone, without a unit or a calculation".into()))
     } else {
         word(written)
     }
 }
 
+/// The number behind a minus that is not the one of a keyboard.
+fn after_minus(written: &str) -> Option<&str> {
+    let number = written.strip_prefix(['\u{2212}', '\u{2013}', '\u{2014}'])?;
+    number.parse::<f64>().is_ok().then_some(number)
+}
+
+/// Whether a calculation begins as one of a pocket calculator.
+fn is_call(written: &str) -> bool {
+    let name = written.split_once('(').map(|(name, _)| name.trim());
+    name.is_some_and(|name| ["sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "radians", "degrees"].contains(&name))
+}
+
 fn after_value(line: &str, rest: &str) -> Option<String> {
     if rest.trim_start().starts_with("//") {
         return Some("a comment starts with #".into());
     }
-    if line.split_once('=').is_some_and(|(_, value)| value.trim_start().starts_with('(')) {
-        return Some("a list stands in brackets: [0, 1, 6]".into());
+    let whole = whole_line(line, rest);
+    if let Some(help) = loose_list(&whole, line.len()) {
+        return Some(help);
+    }
+    let value = line.split_once('=').map_or("", |(_, value)| value.trim());
+    if rest.starts_with('=') {
+        let is_one = value.starts_with('(') || value.split_whitespace().count() < 2;
+        let help = if is_one { "keys within a value stand in braces: { .. }" } else { OWN_LINE };
+        return Some(help.into());
+    }
+    if let Some(help) = heading(&whole) {
+        return Some(help);
     }
     let digits = rest.strip_prefix(',')?;
     let decimal = line.ends_with(|c: char| c.is_ascii_digit()) && digits.starts_with(|c: char| c.is_ascii_digit());
-    Some(if decimal { "a decimal point is written `.`" } else { "each key stands on a line of its own" }.to_owned())
+    Some(if decimal { "a decimal point is written `.`" } else { OWN_LINE }.to_owned())
 }
+
+const OWN_LINE: &str = "each key stands on a line of its own";
 
 fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     if line.starts_with('[') && matches!(key, "object" | "light") {

@@ -8,7 +8,7 @@ use toml::de::{DeInteger, DeValue};
 use super::document::Document;
 use super::named_file::{Fault, FileKind, missing, read_named};
 use super::rows::Rows;
-use super::suggest::{remedy, suggestion};
+use super::suggest::{remedy, suggestion, with_points};
 use super::tree::{Key, Node};
 
 /// A value, where it stands.
@@ -262,6 +262,8 @@ impl<'d> Value<'d> {
                 let name = self.list.map(|list| list.0).filter(|name| !name.is_empty());
                 let name = name.map_or_else(|| self.name(), str::to_owned);
                 let help = self.list.map(|list| list.1.to_owned()).filter(|help| !help.is_empty());
+                let written = self.document.texts.whole().get(self.span()).unwrap_or_default();
+                let help = with_points(written, N).filter(|_| count > N).or(help);
                 self.tell(format!("{name} is a list of {N} numbers, not one of {count}"), help)
             }
             Some(_) => self.list(read)?.try_into().ok(),
