@@ -179,6 +179,10 @@ impl Plastic<Table> {
         };
         let cos = arrival.wo.dot(arrival.normal);
         if incoming.single {
+            // A rough coat sends nothing in the single direction of what it is mixed with.
+            if !self.coat.roughness().is_smooth() {
+                return *mueller = Mueller::NONE;
+            }
             let axis = arrival.wo.cross(arrival.normal);
             return mueller.set_lanes(axis, incoming.lanes, |lane| reflected(lane, cos));
         }

@@ -71,3 +71,22 @@ fn white_plastic_in_light_from_all_around_leaves_it_unpolarized() {
         }
     }
 }
+
+/// A rough coat has no part in what a mirror beside it sends one way.
+#[test]
+fn a_mirror_mixed_with_rough_white_plastic_leaves_even_light_unpolarized() {
+    for materials in [["bare", "coated"], ["coated", "bare"]] {
+        let mix = format!(
+            "mix = {{ materials = {materials:?}, amount = 0.5 }}\n[material.bare]\nmirror = {{}}\n\
+             [material.coated]\nplastic = {{ reflectance = 1, roughness = 0.4 }}"
+        );
+        let found = in_an_even_sky(&mix, 60.0);
+        let limit = 1.4 * standard_errors(2 * 4);
+        for (part, (mean, variance)) in found.into_iter().enumerate() {
+            let expected = if part == 0 { 1.0 } else { 0.0 };
+            let error = (variance / SEEDS as f64).sqrt();
+            assert!((mean - expected).abs() < limit * error + TABLES, "{materials:?}, S{part}: {mean} +- {error}");
+            assert!(error < 2e-3, "{materials:?}, S{part}: +- {error}");
+        }
+    }
+}
