@@ -278,11 +278,9 @@ pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
     let asked = error.asked.map_or(String::new(), |asked| format!("; {} is asked for", percent(asked)));
     let more =
         more.map_or(String::new(), |(samples, left)| format!("; about {samples} samples will be taken, {left} left"));
-    let off = match error.noise.outlier {
-        None => format!("at most {}", percent(error.at_most())),
-        Some(_) => format!("{} or more, as some light is too rare to tell", percent(error.noise.expected)),
-    };
-    format!("{} samples per pixel: the image is off by {off}{asked}{more}", error.noise.samples)
+    let off = percent(error.at_most());
+    let rare = error.noise.outlier.map_or("", |_| ", as some light is rare");
+    format!("{} samples per pixel: the image is off by at most {off}{rare}{asked}{more}", error.noise.samples)
 }
 
 /// How far it is off in the end, and whether that was asked for.
@@ -294,10 +292,9 @@ fn print_error_of_image(error: &ImageError) {
         at_most => format!(", blur of photons {}", percent(at_most)),
     };
     let alpha = error.alpha.map_or(String::new(), |alpha| format!(", alpha {}", percent(alpha.at_most)));
-    let off = match noise.outlier {
-        None => format!("at most {at_most} in 95 of 100 renders (color {of_color}{blur}{alpha}, the rest noise)"),
-        Some(_) => format!("{expected} or more"),
-    };
+    let rest = noise.outlier.map_or("noise", |_| "noise and rare light");
+    let parts = format!("color {of_color}{blur}{alpha}, the rest {rest}");
+    let off = format!("at most {at_most} in 95 of 100 renders ({parts})");
     say(&format!("{} samples per pixel: the image is off by {off}", noise.samples));
     let ([x, y], worst) = (noise.worst_tile.corner, percent(noise.worst_tile.expected));
     let alpha = error.alpha.map_or(String::new(), |alpha| format!("; that of alpha is {}", percent(alpha.expected)));

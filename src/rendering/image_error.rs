@@ -24,7 +24,7 @@ pub struct ImageError {
 
 impl ImageError {
     /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, and for
-    /// light that is too rare to have been met. Where the error that was asked for is reached at a later look than the
+    /// light so rare that none of it was met. Where the error that was asked for is reached at a later look than the
     /// first, it is that: a render that ends as soon as it measures so little ends rather where it measures too little.
     pub fn at_most(&self) -> f64 {
         let of_alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);

@@ -57,9 +57,9 @@ pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     })
 }
 
-/// Light that is too rare to know how much there is.
+/// Light that is too rare to know how much there is, unless an error was asked for that is reached all the same.
 fn outlier(error: &ImageError) -> Option<String> {
-    let outlier = error.noise.outlier?;
+    let outlier = error.noise.outlier.filter(|_| error.asked.is_none() || !error.is_reached())?;
     let ([x, y], share) = (outlier.pixel, percent(outlier.share));
     let light = error.rare_light.as_ref().map_or("light".into(), told);
     Some(format!(

@@ -80,7 +80,7 @@ impl Clock {
 
 /// Whether noise and blur are small enough, and known well enough to say so.
 fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
-    let is_known = |Measured { noise, .. }: &&Measured| noise.samples >= stop.least && noise.outlier.is_none();
+    let is_known = |measured: &&Measured| measured.noise.samples >= stop.least;
     matches!((stop.noise, measured.filter(is_known)), (Some(wanted), Some(error)) if error.at_most() <= wanted)
 }
 
