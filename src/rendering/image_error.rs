@@ -26,10 +26,12 @@ impl ImageError {
     /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, and for
     /// light so rare that none of it was met. Where the error that was asked for is reached at a later look than the
     /// first, it is that: a render that ends as soon as it measures so little ends rather where it measures too little.
+    /// So it is where rare light was met, as there may be some that is rarer still.
     pub fn at_most(&self) -> f64 {
         let of_alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
         let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(of_alpha);
-        let is_chosen = self.stopped_by == Some(Stopped::Noise) && self.noise.samples > FIRST_LOOK;
+        let is_doubtful = self.noise.samples > FIRST_LOOK || self.noise.outlier.is_some();
+        let is_chosen = self.stopped_by == Some(Stopped::Noise) && is_doubtful;
         self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))
     }
 
