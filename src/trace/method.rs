@@ -115,6 +115,13 @@ pub struct LightPass {
     pub map: Option<MapPasses>,
 }
 
+impl LightPass {
+    /// This pass with another map, where it has one.
+    pub(super) fn with_map(&self, other: impl FnOnce(MapPasses) -> MapPasses) -> Self {
+        Self { map: self.map.map(other), ..self.clone() }
+    }
+}
+
 /// Caustics in mirrors, behind glass and lit surfaces: each pass keeps where its photons land, and the camera's paths
 /// gather them.
 ///

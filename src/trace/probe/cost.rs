@@ -14,7 +14,7 @@ use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::width::{in_lanes, in_lanes_of};
-use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
+use crate::trace::{MapPasses, RAYS_OF_A_LOOK, World};
 
 /// What a probe found, per camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,7 +139,7 @@ pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World,
         MapPasses { photons, radius: map.radius * (map.photons as f64 / photons as f64).sqrt(), ..map }
     };
     let pass = world.method.light_pass.as_ref();
-    let world = world.with_light_pass(pass.map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() }));
+    let world = world.with_light_pass(pass.map(|pass| pass.with_map(fewer)));
     let photons = photons::<N, P>(&world, &Pass::of_photons_alone(&world, 0));
     (world, photons)
 }

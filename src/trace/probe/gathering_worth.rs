@@ -12,7 +12,7 @@ use crate::trace::pass::Pass;
 use crate::trace::photon::{PhotonMap, photons};
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
-use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
+use crate::trace::{MapPasses, RAYS_OF_A_LOOK, World};
 
 /// What a map's photons add to the noise, and the camera samples that gather them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl<const N: usize> First<N> {
         }
         let enough = photons.sent as f64 * (ENOUGH / looked_through(world, reached, &photons));
         let fewer = |map: MapPasses| MapPasses { photons: map.photons.min(enough.ceil() as u64), ..map };
-        let pass = world.method.light_pass.as_ref().map(|pass| LightPass { map: pass.map.map(fewer), ..pass.clone() });
+        let pass = world.method.light_pass.as_ref().map(|pass| pass.with_map(fewer));
         let is_enough = photons.sent as f64 <= enough;
         Some(Self { enough, world: world.with_light_pass(pass), photons: is_enough.then_some(photons) })
     }

@@ -51,11 +51,8 @@ pub fn seen_light(world: &World) -> SeenLight {
 /// The world with fewer photons than its method asks for.
 pub fn with_fewer_photons(world: &World) -> World {
     let most = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(FEWEST, MOST);
-    let fewer = |pass: &LightPass| LightPass {
-        photons: pass.photons.min(most),
-        map: pass.map.map(|map| MapPasses { photons: map.photons.min(most), ..map }),
-        ..pass.clone()
-    };
+    let of_map = |map: MapPasses| MapPasses { photons: map.photons.min(most), ..map };
+    let fewer = |pass: &LightPass| LightPass { photons: pass.photons.min(most), ..pass.with_map(of_map) };
     world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
 }
 
