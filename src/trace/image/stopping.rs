@@ -80,8 +80,8 @@ impl Clock {
 
 /// Whether noise and blur are small enough, and known well enough to say so.
 fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
-    let is_known = |measured: &&Measured| measured.noise.samples >= stop.least;
-    matches!((stop.noise, measured.filter(is_known)), (Some(wanted), Some(error)) if error.at_most() <= wanted)
+    let is_small = |wanted: f64, error: &Measured| error.noise.samples >= stop.least && error.at_most() <= wanted;
+    stop.noise.zip(measured).is_some_and(|(wanted, error)| is_small(wanted, error))
 }
 
 /// Most samples of each replicate.

@@ -148,11 +148,6 @@ impl<L> Landed<(), L> {
 }
 
 impl<const N: usize, P: Polarization<N>> PhotonMap<N, P> {
-    /// Whether any photon lies within a radius of a place.
-    pub fn any_near(&self, place: DVec3, radius: f64) -> bool {
-        self.count_near(place, radius) > 0
-    }
-
     /// How many photons lie within a radius of a place.
     pub fn count_near(&self, place: DVec3, radius: f64) -> u64 {
         let mut count = 0;

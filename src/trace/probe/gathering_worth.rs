@@ -21,7 +21,7 @@ pub struct GatheredWorth {
     pub variance: f64,
     /// Rays that a photon follows.
     pub rays: f64,
-    /// Photons of a pass of which enough are looked through at a place, on average, and more would cost time alone.
+    /// How many photons a pass needs: more would only cost time.
     pub enough: f64,
     /// Second moment of what a camera sample gathers, scaled as the variance of camera samples is.
     pub second_moment: f64,

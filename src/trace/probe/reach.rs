@@ -25,7 +25,7 @@ pub fn reached_places(world: &World) -> Vec<DVec3> {
 /// Whether any photon lies within a pixel of such places, where all of `SIDE` times `SIDE` fill the image.
 pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
-    places.iter().any(|&place| photons.any_near(place, coarse * pixel_at(world, place)))
+    places.iter().any(|&place| photons.count_near(place, coarse * pixel_at(world, place)) > 0)
 }
 
 /// How many photons are looked through around such a place, on average.
