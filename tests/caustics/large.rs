@@ -27,7 +27,7 @@ fn a_sea_in_the_sun() {
             + "[material.stone]\ndiffuse = { reflectance = 0.5 }\n"
             + &object("stone", "sphere = { center = [0.3, 0.9, 0.2], radius = 0.6 }")
             + SUN;
-        agree_with(water, &text, 128, Some(map));
+        agree_with(water, &text, [128; 2], Some(map));
     }
 }
 

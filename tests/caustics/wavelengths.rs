@@ -54,6 +54,6 @@ fn k2_lines_and_smooth_spectra_thrown_by_a_prism_and_a_mirror_are_seen_through_a
             + &object("mirror", "quad = { center = [0.2, 0.7, -1.1], u = [0.8, 0, 0], v = [0, 0.6, 0.1] }")
             + &object("frost", "cube = { center = [0.7, 0.15, 0.6], size = [0.8, 0.3, 0.5] }")
             + &object("lamp", "disc = { center = [-2, 2.5, 0], normal = [2, -2, 0], radius = 0.6 }");
-        agree_with(what, &text, 4, Some(MapPasses { count: 4, photons: 4096, radius: 0.15, chance: 1.0 }));
+        agree_with(what, &text, [4; 2], Some(MapPasses { count: 4, photons: 4096, radius: 0.15, chance: 1.0 }));
     }
 }
