@@ -13,7 +13,7 @@ use crate::meshes::files::file;
 use crate::support::bodies::ball_faces;
 use crate::support::random::Random;
 use crate::support::run::Folder;
-use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, view};
+use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, scene, view};
 
 /// A ball of radius 1 cut by `around` meridians and `rings` - 1 circles of latitude.
 fn ball(around: u32, rings: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -190,6 +190,16 @@ fn normals_computed_from_faces_are_those_of_a_ball() {
     let faces: Vec<[u32; 3]> = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     for (point, normal) in cube.iter().zip(vertex_normals(&Vertices::Double(cube.to_vec()), &faces)) {
         assert!((DVec3::from(normal.map(f64::from)) - point.normalize()).length() < 1e-6, "{normal:?}");
+    }
+}
+
+#[test]
+fn normals_that_a_scene_writes_out_are_seen_unless_it_says_that_the_mesh_is_not_smooth() {
+    let text = view([0.0, 0.0, 5.0], [0.0; 3], 22.0, 4) + &object("diffuse.reflectance = 0.5");
+    for (smooth, expected) in [("", true), ("smooth = true, ", true), ("smooth = false, ", false)] {
+        let text = text.replace("mesh = { ", &format!("mesh = {{ {smooth}"));
+        let Shape::Mesh(mesh) = &*scene(&text).objects[0].shape else { panic!("{smooth}") };
+        assert_eq!(mesh.is_smooth(), expected, "{smooth}");
     }
 }
 

@@ -35,12 +35,14 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let faces = mesh.maybe("faces", at(faces));
         let normals = mesh.maybe("normals", at(normals));
         let uv = mesh.maybe("uv", at(coordinates));
-        let smooth = mesh.or("smooth", false, Value::yes_or_no);
+        let smooth = mesh.maybe("smooth", Value::yes_or_no);
         let is_vague = mesh.has_unknown();
         let (file, smooth) = (file?, smooth?);
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
+        // Normals that the scene file writes out are meant to be seen, unless it says that they are not.
+        let (flat, smooth) = (smooth == Some(false), smooth.unwrap_or(false));
         let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file, edges: None };
-        let parts = match (&file, &inline) {
+        let mut parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
                 if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
                     return Some(written(mesh, Some(file.it)));
@@ -51,6 +53,9 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
             _ if is_vague => return None,
             _ => return value.refuse("a mesh has either a `file`, or `points` and `faces`"),
         };
+        if flat {
+            parts.attributes.normals.clear();
+        }
         let mesh = built(context, name, value, parts, smooth)?;
         let written = written(&mesh, file.map(|file| file.it));
         if let Some(At { place, it: file }) = file {
