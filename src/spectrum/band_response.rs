@@ -22,7 +22,7 @@ pub struct BandResponse {
 
 impl BandResponse {
     pub(super) fn new(bands: WavelengthBands, columns: Vec<f64>, fine: Vec<f64>, lines_nm: &[f64]) -> Self {
-        debug_assert!(columns.len().is_multiple_of(bands.count()));
+        assert!(columns.len().is_multiple_of(bands.count()));
         Self { bands, columns: columns.into(), fine: fine.into(), lines_nm: lines_nm.into() }
     }
 

@@ -23,7 +23,7 @@ impl Child {
 
     /// The leaf of some groups.
     pub fn leaf(first: usize, groups: usize) -> Self {
-        debug_assert!((1..=Self::MAX_GROUPS).contains(&groups) && first < 1 << Self::FIRST_BITS);
+        assert!((1..=Self::MAX_GROUPS).contains(&groups) && first < 1 << Self::FIRST_BITS);
         Self(Self::LEAF | (groups as u32 - 1) << Self::FIRST_BITS | first as u32)
     }
 
