@@ -122,6 +122,20 @@ fn one_scene_is_asked_for() {
 }
 
 #[test]
+fn words_that_stand_apart_and_belong_together_are_told() {
+    let setting = "error: a setting is one word: a key, `=` and a value\nhelp: for instance: --set film.width=320\n";
+    assert_refuses(&["--set", "film.width", "64", "ball.toml"], 2, setting);
+    assert_refuses(&["ball.toml", "--set", "film.width", "=", "64"], 2, setting);
+    let second = "error: film.height=9 stands without --set\nhelp: write --set film.height=9\n";
+    assert_refuses(&["ball.toml", "--set", "film.width=16", "film.height=9"], 2, second);
+    let crop = "error: the numbers of a crop are joined by commas, without spaces\nhelp: write --crop 0,0,8,8\n";
+    assert_refuses(&["ball.toml", "--crop", "0", "0", "8", "8"], 2, crop);
+    let overscan =
+        "error: the numbers of an overscan are joined by commas, without spaces\nhelp: write --overscan 4,2,4,2\n";
+    assert_refuses(&["--overscan", "4", "2", "4", "2", "ball.toml"], 2, overscan);
+}
+
+#[test]
 fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here() {
     let refusal = |said: &str, help: &str| format!("error: there is no {said}\nhelp: {help}\n");
     let flag = |flag: &str, help: &str| {
@@ -220,6 +234,9 @@ fn numbers_on_the_command_line_are_checked() {
     let frames = "frames are whole numbers from 0 to 4294967295, such as 7, 1-24, 1-24x2 or 3,17,40-50";
     (["-3", "1.5", "1-24x0", "3,,17"]).iter().for_each(|wrong| is_refused("--frame", wrong, frames));
     is_refused("--frame", "24-1", "24-1 ends before it begins: write 1-24");
+    [("1..24x2", "1-24x2"), ("1:24", "1-24")]
+        .iter()
+        .for_each(|(there, here)| is_refused("--frame", there, &format!("write {here} for {there}")));
     is_refused("--time", "soon", "a time is a number with a unit, such as 60s, 5m or 1h");
     is_refused("--time", "-3s", "a time is a number with a unit, such as 60s, 5m or 1h");
     for (flag, value, message) in [

@@ -92,3 +92,23 @@ fn w10_a_merge_holds_as_much_for_any_number_of_parts_and_rows() {
     assert!(few.peak < image + 2 * part && few.peak < image / 2, "{few:?}, an image of {image}, a part of {part}");
     assert!(many.peak < few.peak * 3 / 2 && tall.peak < few.peak * 3 / 2, "{few:?}, {many:?} and {tall:?}");
 }
+
+/// What photons show is kept as they are sent, and not for each of the pixels that a filter reaches.
+#[test]
+fn photons_hold_as_much_under_a_wide_filter() {
+    let _alone = ALONE.lock();
+    let held = |radius: u32| {
+        let scene = scene(&format!(
+            "[camera]\nposition = [0, 1.2, 6]\nlook_at = [0, 1, 0]\nvertical_fov = 35\n\
+             [film]\nwidth = 32\nheight = 18\nfilter = {{ tent = {{ radius = {radius} }} }}\n[render]\nsamples = 1\n\
+             [material.white]\ndiffuse = {{ reflectance = 0.7 }}\n[material.glass]\ndielectric = {{ index = 1.5 }}\n\
+             [[object]]\nmaterial = \"white\"\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\n\
+             [[object]]\nmaterial = \"glass\"\nshape.sphere = {{ center = [0, 1, 0], radius = 1 }}\n\
+             [[light]]\nsun = {{ toward = [1, 2, 1], irradiance = 3 }}\n"
+        ));
+        let mut rendering = Rendering::new(&scene, &Options::default()).expect("it can be rendered");
+        memory_of(|| while rendering.advance(&|_| ()) {}).1
+    };
+    let [narrow, wide] = [1, 4].map(held);
+    assert!(wide.peak <= 2 * narrow.peak, "{narrow:?} and {wide:?}");
+}

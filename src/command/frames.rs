@@ -69,11 +69,14 @@ impl FromStr for Run {
         let number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
         let (range, step) = text.split_once('x').map_or((text, Some(1)), |(range, step)| (range, number(step)));
         let (first, last) = range.split_once('-').unwrap_or((range, range));
+        // As other programs write it.
+        let dashed = text.replace("..", "-").replace(':', "-");
         match (number(first), number(last), step) {
             (Some(first), Some(last), Some(_)) if last < first => {
                 Err(format!("{text} ends before it begins: write {last}-{first}"))
             }
             (Some(first), Some(last), Some(step)) if step > 0 => Ok(Self { first, last, step }),
+            _ if dashed != text && dashed.parse::<Self>().is_ok() => Err(format!("write {dashed} for {text}")),
             _ => Err(format!("frames are whole numbers from 0 to {}, such as 7, 1-24, 1-24x2 or 3,17,40-50", u32::MAX)),
         }
     }

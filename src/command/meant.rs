@@ -9,7 +9,7 @@ use clap::error::{ContextKind, ErrorKind};
 const FLAGS: [(&str, &str); 4] = [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("render", "--exr")];
 
 /// Arguments of other renderers, and what does the same here.
-const ELSEWHERE: [(&[&str], &str); 9] = [
+const ELSEWHERE: [(&[&str], &str); 10] = [
     (&["--spp"], "--samples 64"),
     (&["--output", "-o"], "--exr frame.exr"),
     (&["--width"], "--set film.width=640"),
@@ -18,6 +18,7 @@ const ELSEWHERE: [(&[&str], &str); 9] = [
     (&["--noise"], "--error 0.01"),
     (&["--aov", "--aovs"], "--layers albedo,N"),
     (&["--frames"], "--frame 1-24"),
+    (&["--start", "--end", "--frame-start", "--frame-end"], "--frame 1-24"),
     (&["--denoise"], "--layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr"),
 ];
 
@@ -34,9 +35,8 @@ pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Optio
     if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| there.contains(&given.as_str())) {
         return Some((format!("there is no argument {given}"), format!("write {here}")));
     }
-    if let Some(layers) = apart(&given, words) {
-        let message = "names of layers are joined by commas, without spaces".to_owned();
-        return Some((message, format!("write --layers {layers}")));
+    if let Some(said) = apart(&given, words).or_else(|| unset(&given, words)) {
+        return Some(said);
     }
     let first = words.get(1)?.to_str()?;
     if first.starts_with('-') || first.contains('.') {
@@ -55,14 +55,39 @@ pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Optio
     Some((format!("there is no command `{first}`"), format!("did you mean render {here}?")))
 }
 
-/// The names of layers behind `--layers`, if each stands alone: joined as they are to be.
-fn apart(given: &str, words: &[OsString]) -> Option<String> {
-    let from = words.iter().position(|word| word == "--layers")? + 1;
-    let names: Vec<&str> = words[from..].iter().map_while(|word| word.to_str()).collect();
-    let count = names.iter().take_while(|name| !name.starts_with('-') && !name.contains('.')).count();
-    let names: Vec<&str> = names[..count].iter().map(|name| name.trim_matches(',')).collect();
-    let (given, known) = (given.trim_matches(','), Layer::NAMES.map(|(name, _)| name));
-    (names.len() > 1 && names.contains(&given) && known.contains(&given)).then(|| names.join(","))
+/// Flags that take a list, and what is in it.
+const LISTS: [(&str, &str); 3] = [
+    ("--layers", "names of layers"),
+    ("--crop", "the numbers of a crop"),
+    ("--overscan", "the numbers of an overscan"),
+];
+
+/// What is told of a list whose entries stand alone: how they are joined.
+fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
+    let (from, (flag, what)) = words.iter().enumerate().find_map(|(place, word)| {
+        let list = LISTS.iter().find(|(flag, _)| word == flag)?;
+        Some((place + 1, list))
+    })?;
+    let entries: Vec<&str> = words[from..].iter().map_while(|word| word.to_str()).collect();
+    let count = entries.iter().take_while(|name| !name.starts_with('-') && !name.contains('.')).count();
+    let entries: Vec<&str> = entries[..count].iter().map(|entry| entry.trim_matches(',')).collect();
+    let given = given.trim_matches(',');
+    let is_entry = given.parse::<u32>().is_ok() || Layer::NAMES.iter().any(|(name, _)| *name == given);
+    (entries.len() > 1 && entries.contains(&given) && is_entry).then(|| {
+        (format!("{what} are joined by commas, without spaces"), format!("write {flag} {}", entries.join(",")))
+    })
+}
+
+/// What is told of a setting that is not one word behind a `--set` of its own.
+fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
+    let is_setting = |word: &OsString| word.to_str().is_some_and(|word| word.contains('='));
+    if words.windows(2).any(|pair| pair[0] == "--set" && !is_setting(&pair[1])) {
+        let message = "a setting is one word: a key, `=` and a value".to_owned();
+        return Some((message, "for instance: --set film.width=320".into()));
+    }
+    let follows = |pair: &[OsString]| pair[1] == given && is_setting(&pair[0]) && is_setting(&pair[1]);
+    let said = || (format!("{given} stands without --set"), format!("write --set {given}"));
+    words.windows(2).any(follows).then(said)
 }
 
 /// The same of the arguments of a command, whose name is the first word.

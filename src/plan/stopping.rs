@@ -50,8 +50,9 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
             alone if alone > error => format!("; color alone may be off by {}", percent(alone)),
             _ => String::new(),
         };
+        let hint = if error == 1.0 { ", where 0.01 asks for 1 %," } else { "" };
         let parts = if noise == all { color } else { format!(" (noise {noise}, the rest color{color})") };
-        format!("when the error is at most {all} in 95 of 100 renders{parts}")
+        format!("when the error is at most {all}{hint} in 95 of 100 renders{parts}")
     };
     let after = |time: std::time::Duration| {
         format!("after {} and at least {FEWEST} samples per pixel", spoken(time.as_secs_f64()))

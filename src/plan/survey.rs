@@ -55,7 +55,7 @@ pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Tra
 /// The method by which a plan looks where colors go: no path splits, and none is ended at random.
 pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
-    Method { max_bounces: u32::MAX, ..method_of_paths(scene, basis, transport) }
+    method_of_paths(scene, basis, transport)
 }
 
 /// The colors of a scene: what shines and what tints.

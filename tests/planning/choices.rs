@@ -2,7 +2,7 @@
 
 use abbe::plan::{Plan, plan};
 use abbe::spectrum::Basis;
-use abbe::trace::{Method, ROUTES_NM, Transport, World, routes};
+use abbe::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
 
 use crate::support::scenes::{scene, view};
 
@@ -199,6 +199,38 @@ fn lamps_and_skies_that_the_camera_does_not_see_are_not_seen_through_holes_and_p
             let [straight, lit] = [0, 1].map(|least| found.iter().any(|route| route.scattered.min(1) == least));
             assert_eq!([straight, lit], [!is_hidden, shines == lamp], "{sheet} before {shines}{hidden}");
         }
+    }
+}
+
+#[test]
+fn an_error_of_one_is_told_to_be_all_there_is() {
+    for (error, is_told) in [("1", true), ("0.01", false)] {
+        let plan = behind("1.5", BALL, RGB, "10", &format!("error = {error}"));
+        let hints = plan.because.concat().contains("at most 100 %, where 0.01 asks for 1 %, in 95 of 100 renders");
+        assert_eq!(hints, is_told, "{:?}", plan.because);
+    }
+}
+
+#[test]
+fn routes_are_no_longer_than_paths() {
+    let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 30.0, 64);
+    let scene = scene(&format!(
+        "{view}\n[material]\ngray.diffuse.reflectance = 0.5\nlamp.emissive.radiance = 1\npane.thin.index = 1.5\n\
+         glass.dielectric.index = 1.5\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, 4], u = [9, 0, 0], v = [0, 9, 0] }}\nmaterial = \"pane\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 0, 1], radius = 1 }}\nmaterial = \"glass\"\n\
+         [[object]]\nshape.quad = {{ center = [0, 0, -2], u = [9, 0, 0], v = [0, 9, 0] }}\nmaterial = \"gray\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 1, 2], radius = 0.3 }}\nmaterial = \"lamp\"\n"
+    ));
+    for max_bounces in [0, 1, 2, 3, 4] {
+        let basis = Basis::wavelengths(scene.film.color_space, ROUTES_NM.into(), &[]);
+        let method = Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, 1);
+        let found = routes(&World::new(&scene, Method { max_bounces, ..method })).concat();
+        let of_pane = |step: &Step| scene.materials[step.material as usize].name == "pane";
+        let counts = |step: &&Step| !(matches!(step.way, Way::Inside(_)) || of_pane(step) && step.way == Way::Crossed);
+        let surfaces = |route: &Route| route.steps.iter().filter(counts).count();
+        let longest = found.iter().map(surfaces).max();
+        assert_eq!(longest, Some(max_bounces as usize), "{} routes", found.len());
     }
 }
 

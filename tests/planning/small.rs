@@ -1,6 +1,8 @@
 //! Dispersion is noticed however small it is in the picture, and wherever it is seen.
 
 use abbe::plan::{Plan, plan};
+use abbe::scene::Scene;
+use abbe::spectrum::Curve;
 
 use crate::support::scenes::{GROUND, object, quad, scene};
 
@@ -22,13 +24,17 @@ const MATERIALS: &str = "[material.flint]\ndielectric = { index = \"N-SF11\", pr
 /// A camera at the origin that looks along -z, a striped wall, a lamp behind the camera. Photons, which have no say in
 /// whether wavelengths part, are not weighed.
 fn plan_of(things: &str, width: f64) -> Plan {
-    plan(&scene(&format!(
+    plan(&scene_of(things, width))
+}
+
+fn scene_of(things: &str, width: f64) -> Scene<Curve> {
+    scene(&format!(
         "[render]\ncaustics = \"off\"\n[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, -1]\nvertical_fov = 40\n[film]\nwidth = {width}\nheight = {width}\n{MATERIALS}\
          [[object]]\nshape.quad = {{ center = [0, 0, -20], u = [30, 0, 0], v = [0, 30, 0] }}\nmaterial = \"wall\"\n\
          [[object]]\nshape.quad = {{ center = [0, 0, -19.9], u = [0.4, 0, 0], v = [0, 30, 0] }}\nmaterial = \"stripe\"\n\
          [[object]]\nshape.quad = {{ center = [0, 0, 20], u = [30, 0, 0], v = [0, 30, 0] }}\nmaterial = \"wall\"\n\
          [[object]]\nshape.sphere = {{ center = [0, 8, 5], radius = 1 }}\nmaterial = \"lamp\"\n{things}"
-    )))
+    ))
 }
 
 /// A wedge of three sides, or an eight-sided gem, of a width around a place.
@@ -184,6 +190,40 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
     let block = object("stripe", "cube = { center = [0, 0, -9], size = [9, 0.4, 0.4] }");
     let behind = plan(&scene(&(text("[[light]]\nenvironment = { radiance = 1 }\n") + &block)));
     assert!(parts(&behind), "{:?}", behind.because);
+}
+
+#[test]
+fn glass_that_no_path_comes_through_keeps_lanes_together() {
+    let body = |place| placed(place, false, "flint", 30.0);
+    let floor = body("in the open") + &object("wall", "plane = { point = [0, -8, 0], normal = [0, 1, 0] }");
+    // Two surfaces of the glass, the wall, and the mirror.
+    for (things, fewest) in [(body("in the open"), 3), (body("in a flat mirror"), 4), (floor, 3)] {
+        for most in [0, 1, fewest - 1, fewest] {
+            let mut scene = scene_of(&things, SIDE);
+            scene.render.max_bounces = Some(most);
+            let plan = plan(&scene);
+            assert_eq!(parts(&plan), most == fewest, "max_bounces = {most}: {:?}", plan.because);
+        }
+    }
+}
+
+#[test]
+fn light_through_a_gem_counts_where_paths_are_long_enough_to_show_it() {
+    let gem = body(true, "flint", 0.05, [0.1, 2.7, -6.0]);
+    let mirror = object("mirror", &quad([0.0, 0.0, 3.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]));
+    // Three surfaces of the gem and the floor, which the camera sees straight or in a mirror.
+    for (looks, fewest) in [("0, 0, -6", 4), ("0, 0, 15", 5)] {
+        for most in [fewest - 1, fewest] {
+            let mut scene = scene(&format!(
+                "[camera]\nposition = [0, 1, 0]\nlook_at = [{looks}]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n\
+                 {MATERIALS}{}{gem}{mirror}[[light]]\nsun = {{ toward = [0, 1, 0.2], irradiance = 3 }}\n",
+                object("wall", GROUND)
+            ));
+            scene.render.max_bounces = Some(most);
+            let plan = plan(&scene);
+            assert_eq!(parts(&plan), most == fewest, "max_bounces = {most} toward {looks}: {:?}", plan.because);
+        }
+    }
 }
 
 #[test]

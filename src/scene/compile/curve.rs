@@ -8,7 +8,7 @@ use super::curve_name::{
     unknown_metal, unknown_reflectance,
 };
 use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, told};
-use super::curve_text::{CurveText, KindText, finite, not_finite};
+use super::curve_text::{CurveText, KindText, ONE_OF_EACH, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
 use crate::scene::text::{At, FileKind, Value, shown, utf8};
@@ -125,7 +125,8 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
         KindText::Samples(samples) => match samples_fit(samples, quantity, text.scale.it) {
             Ok(()) => Some(CurveKind::Samples(samples.clone())),
             Err(refusal) => {
-                refusal.entry.map_or(text.value, |entry| place.entry(entry)).tell(refusal.message, refusal.help)
+                let help = if is_transposed(samples) { Some(ONE_OF_EACH.into()) } else { refusal.help };
+                refusal.entry.map_or(text.value, |entry| place.entry(entry)).tell(refusal.message, help)
             }
         },
         KindText::File(file) => file_of_samples(context, text, file, quantity),
@@ -176,6 +177,12 @@ fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>)
 /// What is told of a scale that a value was multiplied by.
 fn with_scale(scale: f64) -> String {
     if scale == 1.0 { String::new() } else { format!(" with its scale of {}", shown(scale)) }
+}
+
+/// Whether two pairs are two wavelengths and two values.
+fn is_transposed(pairs: &[[f64; 2]]) -> bool {
+    let is_wavelength = |x: &f64| (100.0..=830.0).contains(x);
+    matches!(pairs, [first, second] if first.iter().all(is_wavelength) && !second.iter().any(is_wavelength))
 }
 
 /// That samples are a spectrum of a quantity.
@@ -337,7 +344,10 @@ fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
     match lines.iter().position(|[nm, _]| !(360.0..=830.0).contains(nm)) {
         Some(entry) => {
             let nm = lines[entry][0];
-            let help = unit_of_wavelength(nm, 360.0).unwrap_or("leave it out: it cannot be seen".into());
+            let help = match is_transposed(lines) {
+                true => ONE_OF_EACH.into(),
+                false => unit_of_wavelength(nm, 360.0).unwrap_or("leave it out: it cannot be seen".into()),
+            };
             let message = format!("a line lies within 360 to 830 nm, not at {}", shown(nm));
             text.place.entry(entry).advise(message, help)
         }

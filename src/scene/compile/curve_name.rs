@@ -65,6 +65,12 @@ fn of_cie(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     let bare = lower.strip_prefix("cie ").unwrap_or(&lower);
     let bare = bare.strip_prefix("illuminant ").unwrap_or(bare);
+    let bare = match bare {
+        "daylight" => "d65",
+        "tungsten" | "incandescent" => "a",
+        "equal energy" => "e",
+        _ => bare,
+    };
     let fluorescent = bare.strip_prefix('f').map(|number| format!("fl{number}"));
     let same = |known: &&str| {
         known.eq_ignore_ascii_case(bare) || fluorescent.as_deref().is_some_and(|fl| known.eq_ignore_ascii_case(fl))

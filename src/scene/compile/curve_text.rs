@@ -82,8 +82,14 @@ const KINDS: [(&str, Reader); 11] = [
 ];
 
 fn pairs(value: Value, help: &'static str) -> Option<Vec<[f64; 2]>> {
+    let lists = value.node().as_array().map(|lists| lists.iter().map(|list| list.get_ref().as_array()));
+    let lengths: Vec<Option<usize>> = lists.into_iter().flatten().map(|list| list.map(|list| list.len())).collect();
+    let help = if matches!(lengths[..], [Some(a), Some(b)] if a == b) { ONE_OF_EACH } else { help };
     value.list(|entry| entry.as_list("", help).array(real))
 }
+
+/// What one list of all wavelengths and one of all values are told.
+pub(super) const ONE_OF_EACH: &str = "write a pair for each wavelength, as in [[400, 0.2], [700, 0.9]]";
 
 /// A number that a spectrum can be made of.
 fn real(value: Value) -> Option<f64> {

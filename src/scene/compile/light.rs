@@ -104,6 +104,8 @@ fn point_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curv
 const OF_A_POINT: [&str; 2] = ["name", "group"];
 /// Keys of the entry of one that is seen.
 const OF_AN_INFINITE_LIGHT: [&str; 3] = ["name", "group", "visible_to_camera"];
+/// What the last of those is called elsewhere.
+const OF_SIGHT: [&str; 2] = ["visible", "camera_visible"];
 
 /// Tells of keys that stand within the kind of a light, but belong to its entry.
 fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
@@ -116,6 +118,15 @@ fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
     }
 }
 
+/// The same of an infinite light.
+fn of_an_infinite_light(light: &mut Fields, kind: &str) {
+    of_the_entry(light, kind, &OF_AN_INFINITE_LIGHT);
+    for key in OF_SIGHT {
+        let help = format!("write `visible_to_camera` beside `{kind}`, in its [[light]]");
+        light.stray(key, format!("unknown key `{key}`"), help);
+    }
+}
+
 fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let toward = light.need("toward", direction);
@@ -125,7 +136,7 @@ fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
         light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());
-        of_the_entry(light, "sun", &OF_AN_INFINITE_LIGHT);
+        of_an_infinite_light(light, "sun");
         Some(Light::Sun(Sun::new(toward?.to_array(), angular_diameter?, irradiance?)))
     })
 }
@@ -174,7 +185,7 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let radiance = light.need("radiance", |value| CurveText::read(value, Quantity::Emission));
         let turn = light.maybe("transform", at(steps));
         let polarization = light.maybe("polarization", sky_polarization);
-        of_the_entry(light, "environment", &OF_AN_INFINITE_LIGHT);
+        of_an_infinite_light(light, "environment");
         let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
             if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {

@@ -8,7 +8,7 @@ use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 40] = [
+const ELSEWHERE: [(&str, &[&str]); 43] = [
     ("index", &["ior", "eta", "int_ior"]),
     ("reflectance", &["albedo", "color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
@@ -26,8 +26,10 @@ const ELSEWHERE: [(&str, &[&str]); 40] = [
     ("center", &["position"]),
     ("point", &["position", "center"]),
     ("degrees", &["angle"]),
+    ("axis", &["angle"]),
     ("angular_diameter", &["angle", "angular_size"]),
     ("blend", &["penumbra"]),
+    ("visible_to_camera", &["camera_visible", "camera_visibility", "primary_visibility"]),
     ("sides", &["two_sided", "twosided", "double_sided"]),
     ("repeat", &["tiling", "tile", "tiles", "uv_scale"]),
     ("points", &["vertices", "positions"]),
@@ -41,7 +43,8 @@ const ELSEWHERE: [(&str, &[&str]); 40] = [
     ("max_bounces", &["max_depth"]),
     ("error", &["noise_threshold"]),
     ("scale", &["strength", "multiplier", "intensity"]),
-    ("amount", &["factor"]),
+    ("amount", &["factor", "weight", "weights", "ratio"]),
+    ("frames_per_second", &["fps", "frame_rate"]),
     ("quad", &["rectangle", "rect"]),
     ("sphere", &["ball"]),
     ("plane", &["floor", "ground"]),
@@ -53,7 +56,7 @@ const ELSEWHERE: [(&str, &[&str]); 40] = [
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 63] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -68,7 +71,12 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
     (&["type", "kind"], "environment", "the kind is a key itself: point = { position = [0, 3, 0], intensity = 10 }"),
     (&["type", "kind"], "shape", "the kind of a shape is a key: shape.sphere = { center = [0, 1, 0], radius = 1 }"),
     (
-        &["center", "radius", "size", "normal", "points", "faces", "file", "u", "v"],
+        &["file", "mesh", "points", "faces"],
+        "shape",
+        "write it into the braces of a mesh: shape.mesh = { file = \"cup.obj\" }",
+    ),
+    (
+        &["center", "radius", "size", "normal", "u", "v"],
         "shape",
         "write it into the braces of a shape: shape.sphere = { center = [0, 1, 0], radius = 1 }",
     ),
@@ -78,7 +86,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
         "write a kind around it, such as diffuse = { reflectance = { rgb = [0.7, 0.6, 0.5] } }",
     ),
     (
-        &["roughness"],
+        &["roughness", "coating", "index", "specular", "gloss"],
         "fluorescence",
         "what is `diffuse` is matte; under a coat it is plastic = { reflectance = 0.7, roughness = 0.3 }",
     ),
@@ -89,7 +97,11 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
     ),
     (&["color", "tint"], "intensity", "write intensity = { rgb = [10, 8, 6] } for a light of a color"),
     (&["min", "max", "corner", "corners"], "size", "write its middle as `center`, and size = [2, 1, 3]"),
-    (&["resolution", "size"], "color_space", "write width = 640 and height = 360"),
+    (&["width", "height", "depth"], "size", "write size = [2, 1, 3]: along x, y and z"),
+    (&["radius", "half_size"], "size", "write `size`, twice it"),
+    (&["resolution", "size", "aspect", "aspect_ratio"], "color_space", "write width = 640 and height = 360"),
+    (&["bit_depth", "bits"], "color_space", "write precision = \"half\" for 16 bits; it is 32 if absent"),
+    (&["wavelengths", "bands"], "diffuse_bounces", "write model = { bands = 16 }"),
     (
         &["horizontal_fov", "fov_x", "focal_length"],
         "vertical_fov",
@@ -148,6 +160,8 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
         "write transmittance = { rgb = [0.9, 0.5, 0.5] } for the color of its surface, or `absorption` for that of its depth",
     ),
     (&["a", "b", "first", "second"], "amount", "write materials = [\"one\", \"other\"]"),
+    (&["a", "b", "c"], "points", "write points = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"),
+    (&["hidden", "invisible"], "visible_to_camera", "write visible_to_camera = false"),
     (&["alpha"], "roughness", "write `roughness`, the square root of alpha"),
     (&["roughness"], "reflectance", "a rough mirror is of metal: conductor = { metal = \"Al\", roughness = 0.2 }"),
     (
@@ -185,12 +199,33 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 51] = [
         "write `toward`, from the scene to the sun: [0, 1, 1] is 45 degrees high",
     ),
     (&["radians"], "degrees", "write `degrees`: a half turn is 180"),
+    (&["x", "y", "z"], "degrees", "write { axis = [0, 1, 0], degrees = 30 } for a turn about y"),
+    (
+        &["scale", "multiplier"],
+        "radiance",
+        "write it into the braces of a spectrum: radiance = { image = \"sky.exr\", scale = 2 }",
+    ),
     (
         &["cct", "daylight", "color_temperature"],
         "blackbody",
         "write blackbody = 3000 for what glows, or illuminant = \"D65\" for daylight",
     ),
-    (&["diameter"], "radius", "write `radius`, half of it"),
+    (&["diameter", "size"], "radius", "write `radius`, half of it"),
+    (
+        &["falloff", "softness", "inner_angle", "inner_cone_angle", "inner_cone", "beam_width", "hotspot"],
+        "blend",
+        "write `blend`, the outer share of `cone_angle` over which light falls to nothing, such as 0.15",
+    ),
+    (
+        &["falloff", "attenuation", "decay"],
+        "intensity",
+        "light falls by the square of the distance from where it starts: leave it out",
+    ),
+    (
+        &["radius", "shape"],
+        "intensity",
+        "it is as small as a point: a lamp of a size is an [[object]] whose material is `emissive`",
+    ),
     (
         &["size", "width", "height", "normal", "corner", "corners", "points"],
         "v",
@@ -240,7 +275,7 @@ pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str
 
 /// Keys that no section has, and where what they ask for is said. What camera, film and render know holds one of
 /// [`OF_SECTIONS`].
-const OF_NO_SECTION: [(&[&str], &str); 9] = [
+const OF_NO_SECTION: [(&[&str], &str); 11] = [
     (
         &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "brightness"],
         "the EXR holds the light itself; --exposure 2 brightens the picture of --png",
@@ -251,7 +286,12 @@ const OF_NO_SECTION: [(&[&str], &str); 9] = [
     ),
     (&["denoise", "denoiser"], "render the layers albedo and N, and then: python tools/denoise.py out.exr"),
     (&["threads"], "it is an argument of the command: --threads 4"),
-    (&["output", "file", "filename"], "it is an argument of the command: --exr out.exr"),
+    (
+        &["clamp", "clamping", "max_radiance", "firefly_filter"],
+        "no light is cut off, which would make the image too dark: leave it out",
+    ),
+    (&["integrator", "renderer"], "light is followed as the scene needs it: leave it out"),
+    (&["output", "format", "file", "filename"], "it is an argument of the command: --exr out.exr"),
     (&["frame", "frames"], "it is an argument of the command: --frame 1-24"),
     (&["fps", "frame_rate", "frames_per_second"], "write metadata = { frames_per_second = 24 } in [film]"),
     (&["motion_blur", "shutter", "shutter_speed"], "an image shows one moment: there is no motion blur"),
@@ -269,7 +309,11 @@ const BESIDE_SHAPE: [&[&str]; 2] =
 /// Sections whose keys are looked for in others: a key that this one alone has, and those that are mistaken.
 const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
     ("camera", "look_at", &["position", "up", "vertical_fov", "lens", "projection", "shift", "polarizer", "near"]),
-    ("film", "color_space", &["width", "filter", "crop", "overscan", "layers", "precision", "compression", "stokes"]),
+    (
+        "film",
+        "color_space",
+        &["width", "height", "filter", "crop", "overscan", "layers", "precision", "compression", "stokes"],
+    ),
     (
         "render",
         "diffuse_bounces",
@@ -345,7 +389,22 @@ fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
 }
 /// How to write what a key of other programs says by its value.
 pub(super) fn value_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
-    color_elsewhere(word, value, known).or_else(|| file_elsewhere(word, value.as_str()?, known))
+    let of_file = || file_elsewhere(word, value.as_str()?, known);
+    color_elsewhere(word, value, known).or_else(of_file).or_else(|| entry_elsewhere(word, value, known))
+}
+
+/// Entries of lists, one of their keys, and keys of which such an entry has one.
+const ENTRIES: [(&str, &str, &[&str]); 2] =
+    [("object", "instances", &["shape"]), ("light", "environment", &["environment", "point", "spot", "sun"])];
+
+/// How to write an object or a light that stands as a table of its name, as materials do.
+fn entry_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
+    let table = value.as_table()?;
+    let is_meant = |(_, own, keys): &&(&str, &str, &[&str])| {
+        known.contains(own) && keys.iter().any(|key| table.contains_key(*key))
+    };
+    let (entry, ..) = ENTRIES.iter().find(is_meant)?;
+    Some(format!("write [[{entry}]], and name = \"{word}\" below it"))
 }
 
 /// How to write the file of an image or a table of which a spectrum is made.

@@ -91,6 +91,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::String(text) if number => match share(text) {
             Some(share) => Some(format!("write {share}")),
             _ if key == "column" => Some("columns are counted from 1".into()),
+            _ if text.starts_with('$') => Some("a variable stands alone, and there is no arithmetic".into()),
+            _ if key == "retardance" => Some("it is in degrees: a quarter of a wave is 90".into()),
+            _ if text == "inf" && key == "focus_distance" => Some("write it without quotes: inf".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
                 Some("a number stands alone, without quotes and unit".into())
             }
@@ -99,7 +102,8 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         },
         DeValue::String(_) | DeValue::Integer(_) if key == "rgb" && wanted == "a list of 3 numbers" => {
             let color = web_color(value.as_str().unwrap_or(written));
-            color.map(|color| format!("write {color}, in linear light")).or_else(|| vector(key, value.as_str()?))
+            let listed = || value.as_str().map_or_else(|| Some(without_braces(written)), |text| vector(key, text));
+            color.map(|color| format!("write {color}, in linear light")).or_else(listed)
         }
         DeValue::Integer(_) | DeValue::Float(_) if key == "illuminant" => {
             Some(format!("write {{ blackbody = {written} }} for a temperature"))
@@ -110,6 +114,15 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 2 numbers" => match key {
             "samples" => Some("write [[wavelength in nm, value], ..]".into()),
             "lines" => Some("write [[wavelength in nm, power], ..]".into()),
+            "uv" => Some("write [[u, v], ..]".into()),
+            "shift" => Some("write [to the right, up]".into()),
+            _ => None,
+        },
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 3 numbers" => match key {
+            "points" | "normals" => Some("write [[x, y, z], ..]".into()),
+            "faces" => Some("write [[0, 1, 2], ..]".into()),
+            "axis" => Some("it is a direction in space, such as [1, 0, 0]".into()),
+            "rgb" => Some(without_braces(written)),
             _ => None,
         },
         DeValue::Float(float) if number => {
@@ -127,9 +140,6 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some(format!("write {{ image = {written}, .. }}"))
         }
         DeValue::String(text) if wanted == "a list of 3 numbers" => vector(key, text),
-        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 3 numbers" && key == "axis" => {
-            Some("it is a direction in space, such as [1, 0, 0]".into())
-        }
         DeValue::Array(list) if wanted == TABLE && key == "abbe" && list.len() == 2 => {
             let (nd, vd) = written.trim_matches(['[', ']']).split_once(',')?;
             Some(format!("write {{ nd = {}, vd = {} }}", nd.trim(), vd.trim()))
@@ -148,9 +158,15 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         }
         DeValue::Array(entries) if wanted.starts_with("a number, a catalog name") => spectrum_of(entries, written),
         DeValue::Table(_) if key == "material" => Some("define it as [material.NAME] and write \"NAME\" here".into()),
+        DeValue::Table(_) if key == "checker" => Some("write checker = [0.1, 0.8], and `repeat` beside it".into()),
         DeValue::Table(_) if wanted == "a list" => Some("put it in brackets: [{ .. }]".into()),
         _ => None,
     }
+}
+
+/// How to write one number in place of three.
+fn without_braces(written: &str) -> String {
+    format!("one number for all three stands without braces: {written}")
 }
 
 /// How to write what a list seems to mean that stands in place of a spectrum.

@@ -36,6 +36,8 @@ pub struct Walk {
     pub legs: Vec<(Ray, f64)>,
     /// The objects it went by.
     pub met: Vec<u32>,
+    /// Surfaces among them that sent it on another way, or through a body: `max_bounces` limits them.
+    pub surfaces: u32,
     /// The surface at which it ends, and its object; none if it leaves the scene or is lost.
     pub end: Option<(SurfacePoint, u32)>,
     /// Whether that surface scatters widely.
@@ -145,7 +147,7 @@ impl Colors<'_> {
             let meeting = Meeting::new(self.world, &ray, met);
             key = key.child(0);
             let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, choice };
-            match self.beyond(&mut walk, &at) {
+            match self.next(&mut walk, &at) {
                 Next::Straight => ray = meeting.point.leave(ray.direction),
                 Next::Toward(direction) => (ray, is_from_camera) = (meeting.point.leave(direction), false),
                 Next::End => {
@@ -160,7 +162,21 @@ impl Colors<'_> {
         walk
     }
 
-    /// The way on from a surface.
+    /// The way on from a surface; beyond as many as paths may have, one shows no more than its own light.
+    fn next(&self, walk: &mut Walk, at: &Surface) -> Next {
+        let next = self.beyond(walk, at);
+        if !matches!(next, Next::Toward(_) | Next::End) {
+            return next;
+        }
+        if walk.surfaces < self.world.method.max_bounces {
+            walk.surfaces += u32::from(matches!(next, Next::Toward(_)));
+            return next;
+        }
+        let shines = self.world.scene.objects[at.meeting.hit.object as usize].light.is_some();
+        if shines { Next::End } else { Next::Lost }
+    }
+
+    /// The way on from a surface, however many paths may have.
     fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
         let Surface { ray, meeting, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);

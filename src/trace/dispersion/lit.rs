@@ -209,7 +209,9 @@ impl Pair<'_> {
 
     /// Pixels per length where a ray lands, if the camera sees it: straight, through clear things or by way of others.
     fn scale(&self, point: &SurfacePoint, walk: &Walk) -> Option<f64> {
-        let by_way = |place: &&Reached| (place.position - point.position).length() <= place.of_cell;
+        let left = self.colors.world.method.max_bounces - walk.surfaces;
+        let is_near = |place: &&Reached| (place.position - point.position).length() <= place.of_cell;
+        let by_way = |place: &&Reached| place.surfaces < left && is_near(place);
         let straight = self.straight(point, walk);
         straight.or_else(|| self.reached.iter().find(by_way).map(|place| 1.0 / place.of_pixel))
     }

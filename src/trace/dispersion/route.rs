@@ -63,6 +63,8 @@ pub struct Walk {
     /// What is left of the light, with the steps.
     pub left: Lanes<4>,
     pub scattered: u32,
+    /// Surfaces met but for those that it goes straight through: `max_bounces` limits them.
+    pub surfaces: u32,
 }
 
 impl Walk {

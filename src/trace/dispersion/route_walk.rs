@@ -36,8 +36,8 @@ impl<'a> Walker<'a> {
     pub fn walk(&mut self, ray: Ray) -> usize {
         let media = self.world.media_at_camera(&ray);
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
-        let (weight, left) = (1.0, Lanes::ONE);
-        self.pending.push(Walk { ray, is_from_camera: true, media, key, steps, weight, left, scattered: 0 });
+        let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
+        self.pending.push(Walk { ray, is_from_camera, media, key, steps, weight, left, scattered: 0, surfaces: 0 });
         let mut best = 0.0_f32;
         for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
@@ -186,7 +186,14 @@ impl<'a> Walker<'a> {
 
     /// Goes on from a surface in a direction, where it is turned or scattered, or light crosses a body's surface.
     fn go_on(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
-        self.follow(at, Walk { is_from_camera: false, ..next }, direction, number);
+        if let Some(surfaces) = self.one_more(at.walk) {
+            self.follow(at, Walk { is_from_camera: false, surfaces, ..next }, direction, number);
+        }
+    }
+
+    /// Surfaces of a way with one more; none if paths may not have so many.
+    fn one_more(&self, walk: &Walk) -> Option<u32> {
+        (walk.surfaces < self.world.method.max_bounces).then_some(walk.surfaces + 1)
     }
 
     /// Goes straight on as if nothing were there.
@@ -236,8 +243,9 @@ impl<'a> Walker<'a> {
 
     /// Light that a surface scatters: straight from the lights, and from anywhere.
     fn scattered(&mut self, at: &At, flat: DVec3, tint: Lanes<4>, factor: f64) {
-        let mut next = at.walk.after(Some(at.step(Way::Scattered)), tint, factor);
-        next.scattered += 1;
+        let Some(surfaces) = self.one_more(at.walk) else { return };
+        let next = at.walk.after(Some(at.step(Way::Scattered)), tint, factor);
+        let next = Walk { scattered: next.scattered + 1, surfaces, ..next };
         for id in 0..self.world.scene.lights.len().min(LIGHTS) {
             self.aim(at, &next, flat, id);
         }
@@ -276,7 +284,11 @@ impl<'a> Walker<'a> {
                 let tint = transmittance.map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
                 let (boundary, _) = walk.media.at_surface(&world.scene, object.material, point, walk.ray.direction);
                 let media = walk.media.beyond(&boundary);
-                walk = Walk { media, ..walk.after(Some(step), tint, 1.0) };
+                let surfaces = walk.surfaces + u32::from(boundary.here != boundary.beyond);
+                if surfaces > world.method.max_bounces {
+                    return;
+                }
+                walk = Walk { media, surfaces, ..walk.after(Some(step), tint, 1.0) };
             }
             walk.ray = point.leave(walk.ray.direction);
         }

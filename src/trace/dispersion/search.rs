@@ -32,6 +32,8 @@ pub struct Reached {
     /// How far a pixel goes there, and how far the cell.
     pub of_pixel: f64,
     pub of_cell: f64,
+    /// Surfaces between it and the camera.
+    pub surfaces: u32,
 }
 
 /// What was found.
@@ -162,7 +164,8 @@ fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
     let position = of(&walks[0]).filter(|_| !walks[0].met.is_empty())?;
     let beside = walks[1..].iter().filter(|walk| walk.met == walks[0].met).filter_map(of);
     let of_cell = beside.map(|other| (other - position).length()).fold(0.0, f64::max);
-    (of_cell > 0.0).then(|| Reached { position, of_pixel: of_cell / (0.5 * size.length()), of_cell })
+    let (of_pixel, surfaces) = (of_cell / (0.5 * size.length()), walks[0].surfaces);
+    (of_cell > 0.0).then_some(Reached { position, of_pixel, of_cell, surfaces })
 }
 
 impl Cell {

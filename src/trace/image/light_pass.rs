@@ -146,13 +146,11 @@ fn send_on<const N: usize, P: Polarization<N>>(
             (watch.progress)(batch.count);
             (sending.batches, sending.photons) = (sending.batches + 1, sending.photons + batch.count);
             sending.stats += sent.stats;
-            for splat in sent.kept {
-                if splat.rgb.iter().all(|x| x.is_finite()) {
-                    take(splat);
-                } else {
-                    sending.stats.non_finite += 1;
-                }
-            }
+            let mut take_finite = |splat: Splat| match splat.rgb.iter().all(|x| x.is_finite()) {
+                true => take(splat),
+                false => sending.stats.non_finite += 1,
+            };
+            sent.kept.iter().for_each(|splat| splat.spread(world.scene.film, &mut take_finite));
         }
     }
     true

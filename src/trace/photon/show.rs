@@ -20,9 +20,12 @@ use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhot
 /// Use of the random numbers where a photon is seen: the point of the lens.
 const LENS: u32 = 3;
 
-/// What a photon adds to a pixel of the window.
+/// What a photon adds to the film around a place, or to one pixel of it.
 #[derive(Clone, Debug)]
 pub struct Splat {
+    /// Where on the film.
+    place: DVec2,
+    /// The pixel of the window, once it is [spread](Self::spread).
     pub pixel: u32,
     /// By what share polarization may change it.
     pub change: f32,
@@ -46,6 +49,33 @@ pub struct Splat {
 }
 
 impl Splat {
+    /// Hands over what each pixel around it gets, as the filter weighs them. What is kept of photons is not yet spread:
+    /// a wide filter reaches a thousand pixels.
+    pub fn spread(&self, film: FilmSettings, take: &mut dyn FnMut(Self)) {
+        for (pixel, weight) in self.pixels(film) {
+            take(Self { pixel, rgb: self.rgb.map(|channel| channel * weight), weight, ..self.clone() });
+        }
+    }
+
+    /// The pixels around it, each with the filter's weight.
+    fn pixels(&self, film: FilmSettings) -> impl Iterator<Item = (u32, f64)> {
+        let (place, window, reach) = (self.place, film.window(), film.filter.reach());
+        let [first, end] = window.ends();
+        let first = |x: f64, axis: usize| (x - reach - 0.5).floor().max(first[axis] as f64) as i32;
+        let last = |x: f64, axis: usize| (x + reach).floor().min((end[axis] - 1) as f64) as i32;
+        let columns = first(place.x, 0)..=last(place.x, 0);
+        let rows = first(place.y, 1)..=last(place.y, 1);
+        // Shadow catchers show no light, but the share of it that is missing.
+        let is_caught = self.caught;
+        let weighed = move |[x, y]: [i32; 2]| {
+            let offset = place - DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let weight = if is_caught { film.filter.positive_value(offset) } else { film.filter.value(offset) };
+            let pixel = (y - window.top) as u32 * window.width + (x - window.left) as u32;
+            (weight != 0.0).then_some((pixel, weight))
+        };
+        rows.flat_map(move |y| columns.clone().map(move |x| [x, y])).filter_map(weighed)
+    }
+
     /// So many times as bright.
     pub fn times(self, factor: f64) -> Self {
         Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
@@ -88,10 +118,10 @@ pub fn show<const N: usize, P: Polarization<N>>(
     splats: &mut Vec<Splat>,
 ) {
     let Some(view) = View::new(walker, landing) else { return };
-    view.spread(view.scattered(), splats);
+    view.keep(view.scattered(), splats);
     if let Some(dyes) = &walker.world.dyes {
         for (number, dye) in dyes.of(&walker.world.scene, landing.at.object).enumerate() {
-            view.spread(view.shone_by(dyes, dye, number), splats);
+            view.keep(view.shone_by(dyes, dye, number), splats);
         }
     }
 }
@@ -229,38 +259,29 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
         let (bounces, caught) = (self.landing.path.surfaces(), self.sight == Sight::ShadowCatcher);
-        Splat { pixel: 0, change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
+        let place = DVec2::ZERO;
+        Splat {
+            place,
+            pixel: 0,
+            change,
+            rgb,
+            stokes,
+            bands,
+            weight: 1.0,
+            light,
+            bounces,
+            dispersed,
+            early,
+            caught,
+            first,
+        }
     }
 
-    /// Adds a splat to all pixels that it reaches.
-    fn spread(&self, splat: Option<Splat>, splats: &mut Vec<Splat>) {
+    /// Keeps a splat at each place where it reaches a pixel.
+    fn keep(&self, splat: Option<Splat>, splats: &mut Vec<Splat>) {
         let film = self.walker.world.scene.film;
-        if let Some(splat) = splat {
-            self.places.iter().for_each(|&place| spread_over_pixels(film, place, &splat, splats));
-        }
-    }
-}
-
-/// Spreads a splat over the pixels around a place of the film, as the filter weighs them.
-fn spread_over_pixels(film: FilmSettings, place: DVec2, splat: &Splat, splats: &mut Vec<Splat>) {
-    let (window, reach) = (film.window(), film.filter.reach());
-    let [first, end] = window.ends();
-    let first = |x: f64, axis: usize| (x - reach - 0.5).floor().max(first[axis] as f64) as i32;
-    let last = |x: f64, axis: usize| (x + reach).floor().min((end[axis] - 1) as f64) as i32;
-    for y in first(place.y, 1)..=last(place.y, 1) {
-        for x in first(place.x, 0)..=last(place.x, 0) {
-            let middle = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            // Shadow catchers show no light, but the share of it that is missing.
-            let filter = |offset| match splat.caught {
-                true => film.filter.positive_value(offset),
-                false => film.filter.value(offset),
-            };
-            let weight = filter(place - middle);
-            if weight != 0.0 {
-                let pixel = (y - window.top) as u32 * window.width + (x - window.left) as u32;
-                let rgb = splat.rgb.map(|channel| channel * weight);
-                splats.push(Splat { pixel, rgb, weight, ..splat.clone() });
-            }
-        }
+        let Some(splat) = splat else { return };
+        let at_places = self.places.iter().map(|&place| Splat { place, ..splat.clone() });
+        splats.extend(at_places.filter(|splat| splat.pixels(film).next().is_some()));
     }
 }

@@ -162,7 +162,13 @@ type Follow<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
 /// What is found by the photons of the light pass, and by those of a map, where there are any.
 fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T) -> [T; 2] {
     in_lanes!(&world.method.basis, N => {
-        let shown = |to: &PhotonTargets| find(to, &|batch| send_shown::<N, Polarized>(world, to, batch).stats);
+        let film = world.scene.film;
+        let spread = |batch: Batch, to: &PhotonTargets| {
+            let sent = send_shown::<N, Polarized>(world, to, batch);
+            sent.kept.iter().for_each(|splat| splat.spread(film, &mut |_| ()));
+            sent.stats
+        };
+        let shown = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));
         let kept = |to: &PhotonTargets| find(to, &|batch| send_kept::<N, Polarized>(world, to, batch).stats);
         [world.photon_targets.as_ref().map(shown), world.map_targets.as_ref().map(kept)].map(Option::unwrap_or_default)
     })
