@@ -1,4 +1,4 @@
-//! Faces of mesh files, with any number of corners, as triangles.
+//! Faces of meshes, with any number of corners, as triangles.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::math::{DVec2, DVec3};
 
 /// The triangles of faces, which share the first corner of their face until they are cut.
 #[derive(Default)]
-pub(super) struct Faces {
+pub struct Faces {
     fans: Vec<[u32; 3]>,
     /// Where the triangles stand of each face that has several.
     several: Vec<Range<usize>>,
@@ -16,7 +16,7 @@ pub(super) struct Faces {
 
 impl Faces {
     /// One more face; with fewer than 3 corners it has no triangle.
-    pub(super) fn push(&mut self, corners: &[u32]) {
+    pub fn push(&mut self, corners: &[u32]) {
         let first = self.fans.len();
         let rest = corners.get(1..).unwrap_or_default();
         self.fans.extend(rest.windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
@@ -32,7 +32,7 @@ impl Faces {
     ///
     /// # Errors
     /// A sentence on a face that has too many corners.
-    pub(super) fn triangles(mut self, vertices: &Vertices) -> Result<Vec<[u32; 3]>, String> {
+    pub fn triangles(mut self, vertices: &Vertices) -> Result<Vec<[u32; 3]>, String> {
         for place in self.several {
             let fan = &mut self.fans[place];
             if fan.iter().flatten().any(|&corner| corner as usize >= vertices.count()) {

@@ -50,6 +50,7 @@ pub use crossing::{Crossing, SurfacePoint};
 pub use cube::Cube;
 pub use disc::Disc;
 pub use ellipsoid::Ellipsoid;
+pub use faces::Faces;
 pub use instance::Instance;
 pub use kinds::{Shape, is_before};
 pub use mesh::{Mesh, MeshReport};

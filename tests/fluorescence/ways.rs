@@ -94,7 +94,7 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
     let blue = ("{ lines = [[436, 1]] }", Some(436.0));
     let green = ("{ lines = [[546, 1]] }", Some(546.0));
     for (dye, (light, line), times) in
-        [(YELLOW, day, 1), (RED, day, 1), (BRIGHTENER, day, 1), (YELLOW, blue, 8), (RED, green, 2)]
+        [(YELLOW, day, 1), (RED, day, 1), (BRIGHTENER, day, 1), (YELLOW, blue, 8), (RED, green, 8)]
     {
         let text = view([0.8, 0.0, 3.0], [0.0, 0.0, 0.0], 8.0, 8)
             + &format!("[render]\nmax_bounces = 12\n[[light]]\nenvironment = {{ radiance = {light} }}\n")

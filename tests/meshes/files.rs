@@ -7,7 +7,7 @@ use abbe::shape::{Mesh, Shape, Vertices, read_mesh, read_smooth_mesh};
 
 use crate::support::random::Random;
 use crate::support::run::Folder;
-use crate::support::scenes::scene_in;
+use crate::support::scenes::{rendered, scene, scene_in};
 
 /// A pyramid over a square, its base cut into two triangles. No coordinate is exact in 32 bits.
 pub const POINTS: [[f64; 3]; 5] =
@@ -285,6 +285,28 @@ fn faces_that_are_not_convex_cover_their_area_once() {
         let triangles = read(name, text.as_bytes()).0;
         assert_eq!((triangles.len(), doubled_area(&triangles)), (4, 6.0), "{text}");
     }
+}
+
+/// A scene that writes an L as one face has the mesh of a file that does.
+#[test]
+fn faces_of_many_corners_that_a_scene_writes_are_cut_as_those_of_a_file() {
+    let obj = CORNERS.map(|[x, y]| format!("v {x} {y} 0\n")).concat() + "f 1 2 3 4 5 6\n";
+    let (_folder, path) = file("l.obj", &obj);
+    let points = CORNERS.map(|[x, y]| [x, y, 0]);
+    let of = |mesh: &str| {
+        let text = format!(
+            "camera = {{ position = [1, 1, 5], look_at = [1, 1, 0], vertical_fov = 40 }}\n\
+             film = {{ width = 16, height = 16 }}\n[[object]]\nmaterial = \"stuff\"\nshape.mesh = {{ {mesh} }}\n\
+             [material.stuff]\nemissive.radiance = 1\n"
+        );
+        let Shape::Mesh(mesh) = &*scene(&text).objects[0].shape else { panic!("{text}") };
+        (mesh.count(), rendered(&text).rgb())
+    };
+    let (count, image) = of(&format!("points = {points:?}, faces = [[0, 1, 2, 3, 4, 5]]"));
+    assert!((count, &image) == (4, &of(&format!("file = {path:?}")).1), "{count} triangles");
+    // The face fills 3 of the (10 tan 20 degrees)^2 that are seen.
+    let share = image.iter().map(|rgb| f64::from(rgb[1])).sum::<f64>() / 256.0;
+    assert!((share - 0.2264).abs() < 0.01, "{share}");
 }
 
 /// The warnings of a scene that holds nothing but a mesh file of some material.

@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::context::Context;
 use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, point};
 use super::written::Written;
 use crate::math::DVec3;
 use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
-use crate::shape::{Attributes, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
+use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
 /// How the names of mesh files end.
 const MESHES: [&str; 4] = ["ply", "obj", "gltf", "glb"];
@@ -19,10 +21,13 @@ struct Parts {
     attributes: Attributes,
 }
 
+/// The points at the corners of a face, 3 or more.
+type Face = SmallVec<[u32; 4]>;
+
 /// What the scene file says of the points of a mesh.
 struct Inline<'d> {
     points: Option<At<'d, Vec<DVec3>>>,
-    faces: Option<At<'d, Vec<[u32; 3]>>>,
+    faces: Option<At<'d, Vec<Face>>>,
     normals: Option<At<'d, Vec<DVec3>>>,
     uv: Option<At<'d, Vec<[f64; 2]>>>,
 }
@@ -72,10 +77,12 @@ fn points(value: Value) -> Option<Vec<DVec3>> {
     }
 }
 
-fn faces(value: Value) -> Option<Vec<[u32; 3]>> {
+fn faces(value: Value) -> Option<Vec<Face>> {
     match value.rows() {
-        Some(Rows { width: 3, numbers: Numbers::Whole(numbers) }) => Some(numbers.as_chunks().0.to_vec()),
-        Some(_) => value.advise("`faces` has rows of 3 whole numbers", "cut faces with more corners into triangles"),
+        Some(Rows { width: width @ 3.., numbers: Numbers::Whole(numbers) }) => {
+            Some(numbers.chunks_exact(*width).map(Face::from_slice).collect())
+        }
+        Some(_) => value.refuse("`faces` has rows of 3 whole numbers or more"),
         None => value.list(face),
     }
 }
@@ -108,8 +115,12 @@ fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
     }
 }
 
-fn face(value: Value) -> Option<[u32; 3]> {
-    value.as_list("a face", "cut faces with more corners into triangles").array(Value::count)
+fn face(value: Value) -> Option<Face> {
+    let corners = value.list(Value::count)?;
+    match corners.len() {
+        count @ ..3 => value.refuse(format!("a face is a list of 3 numbers or more, not one of {count}")),
+        _ => Some(Face::from_vec(corners)),
+    }
 }
 
 fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: bool) -> Option<Arc<Mesh>> {
@@ -164,7 +175,13 @@ impl Inline<'_> {
             fits(uv.place, "entries of `uv`", uv.it.len())?;
             attributes.coordinates = uv.it.into_iter().map(|pair| pair.map(|x| x as f32)).collect();
         }
-        right.then_some(Parts { vertices: Vertices::Double(points.it), faces: faces.it, attributes })
+        let vertices = Vertices::Double(points.it);
+        let mut cut = Faces::default();
+        faces.it.iter().filter(|_| right).for_each(|face| cut.push(face));
+        match cut.triangles(&vertices) {
+            Ok(faces) => right.then_some(Parts { vertices, faces, attributes }),
+            Err(message) => faces.place.refuse(message),
+        }
     }
 }
 

@@ -88,7 +88,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 63] = [
     (
         &["roughness", "coating", "index", "specular", "gloss"],
         "fluorescence",
-        "what is `diffuse` is matte; under a coat it is plastic = { reflectance = 0.7, roughness = 0.3 }",
+        "a diffuse surface is matte; under a coat it is plastic = { reflectance = 0.7, roughness = 0.3 }",
     ),
     (
         &["emission", "emissive", "radiance"],

@@ -118,9 +118,11 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             "shift" => Some("write [to the right, up]".into()),
             _ => None,
         },
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list" && key == "faces" => {
+            Some("write [[0, 1, 2], ..]".into())
+        }
         DeValue::Integer(_) | DeValue::Float(_) if wanted == "a list of 3 numbers" => match key {
             "points" | "normals" => Some("write [[x, y, z], ..]".into()),
-            "faces" => Some("write [[0, 1, 2], ..]".into()),
             "axis" => Some("it is a direction in space, such as [1, 0, 0]".into()),
             "rgb" => Some(without_braces(written)),
             _ => None,
