@@ -93,9 +93,7 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
     // Under a line alone, no light of the lamp is where the dye shines.
     let blue = ("{ lines = [[436, 1]] }", Some(436.0));
     let green = ("{ lines = [[546, 1]] }", Some(546.0));
-    for (dye, (light, line), times) in
-        [(YELLOW, day, 1), (RED, day, 1), (BRIGHTENER, day, 1), (YELLOW, blue, 8), (RED, green, 8)]
-    {
+    for (dye, (light, line)) in [(YELLOW, day), (RED, day), (BRIGHTENER, day), (YELLOW, blue), (RED, green)] {
         let text = view([0.8, 0.0, 3.0], [0.0, 0.0, 0.0], 8.0, 8)
             + &format!("[render]\nmax_bounces = 12\n[[light]]\nenvironment = {{ radiance = {light} }}\n")
             + &body("paper", &dye.material(), &["quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }"])
@@ -114,6 +112,7 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
             mean(&films_of(&scene, &method, 0..SEEDS))
         };
         // A sample of heroes has a tenth of the variance, or less.
+        let times = if lines.is_empty() { 1 } else { 8 };
         let (found, expected) = (of(heroes, times * 128), of(lanes, times * 256));
         for c in 0..3 {
             let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
