@@ -13,7 +13,7 @@ use crate::support::arrivals::{self, LOSSLESS, arrival, material, toward};
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
 const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
-const DRAWS: u32 = 1 << 13;
+const DRAWS: u32 = 1 << 14;
 
 /// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere; and, for glass, how
 /// far chance may put it off.

@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "tools/requirements.txt"
 ENVIRONMENT = ROOT / ".venv"
 PYTHON = ENVIRONMENT / "bin/python"
-# Everything is tested in the profile that keeps overflow checks; its pictures have the bits of a release.
+# Everything is tested in the profile that keeps overflow and debug checks; its pictures have the bits of a release.
 RENDER = ROOT / "target/debug/render"
 WHEELS = ROOT / "target/wheels"
 

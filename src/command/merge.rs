@@ -28,7 +28,7 @@ pub struct Query {
     #[arg(value_name = "OUT.exr")]
     image: PathBuf,
 
-    /// All parts of it, in any order: what --shard makes, no images of a --crop
+    /// All parts of it, in any order: files that --shard makes, not images of a --crop
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
 

@@ -50,7 +50,7 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
             alone if alone > error => format!("; color alone may be off by {}", percent(alone)),
             _ => String::new(),
         };
-        let hint = if error == 1.0 { ", where 0.01 asks for 1 %," } else { "" };
+        let hint = if error == 1.0 { " (0.01 asks for 1 %)" } else { "" };
         let parts = if noise == all { color } else { format!(" (noise {noise}, the rest color{color})") };
         format!("when the error is at most {all}{hint} in 95 of 100 renders{parts}")
     };

@@ -7,7 +7,7 @@ use super::reference::shares;
 use crate::support::arrivals::{self, arrival, material, toward};
 
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
-const DRAWS: u32 = 1 << 11;
+const DRAWS: u32 = 1 << 12;
 const ROUGHNESSES: [f64; 5] = [0.0, 0.2, 0.45, 0.7, 1.0];
 /// Where three bands read, in nm.
 const BANDS_NM: [f64; 3] = [656.27, 546.07, 486.13];

@@ -9,7 +9,7 @@ use super::allocator::{Memory, memory_of};
 use super::readers::{Kind, Outcome, kinds};
 
 /// Cases over all kinds of files, unless ABBE_FUZZ_CASES says otherwise.
-const CASES: usize = 20_000;
+const CASES: usize = 40_000;
 /// A case that takes longer hangs. Most take a thousandth of a second.
 const LONGEST: Duration = Duration::from_secs(10);
 /// The most that a file of some kilobytes may ask for.

@@ -206,7 +206,7 @@ fn lamps_and_skies_that_the_camera_does_not_see_are_not_seen_through_holes_and_p
 fn an_error_of_one_is_told_to_be_all_there_is() {
     for (error, is_told) in [("1", true), ("0.01", false)] {
         let plan = behind("1.5", BALL, RGB, "10", &format!("error = {error}"));
-        let hints = plan.because.concat().contains("at most 100 %, where 0.01 asks for 1 %, in 95 of 100 renders");
+        let hints = plan.because.concat().contains("at most 100 % (0.01 asks for 1 %) in 95 of 100 renders");
         assert_eq!(hints, is_told, "{:?}", plan.because);
     }
 }

@@ -175,11 +175,14 @@ impl Inline<'_> {
             fits(uv.place, "entries of `uv`", uv.it.len())?;
             attributes.coordinates = uv.it.into_iter().map(|pair| pair.map(|x| x as f32)).collect();
         }
+        if !right {
+            return None;
+        }
         let vertices = Vertices::Double(points.it);
         let mut cut = Faces::default();
-        faces.it.iter().filter(|_| right).for_each(|face| cut.push(face));
+        faces.it.iter().for_each(|face| cut.push(face));
         match cut.triangles(&vertices) {
-            Ok(faces) => right.then_some(Parts { vertices, faces, attributes }),
+            Ok(faces) => Some(Parts { vertices, faces, attributes }),
             Err(message) => faces.place.refuse(message),
         }
     }

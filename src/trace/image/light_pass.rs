@@ -77,9 +77,9 @@ pub fn show<const N: usize, P: Polarization<N>>(
         let pixels = tile.sums.len();
         tile.shown = Shown { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
     }
-    let add = &mut |splat: Splat| {
+    let add = &mut |pixel: u32, splat: Splat| {
         let splat = splat.times(weight).of_half(pass.is_of_first_half());
-        let Splat { pixel, change, rgb, .. } = splat;
+        let Splat { change, rgb, .. } = splat;
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
         let Tile { shown, replicates, .. } = &mut tiles[tile];
         if !world.layers.is_empty() {
@@ -118,8 +118,8 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
 }
 
-/// Sends all of them and hands over what they show, in an order that never changes; holds no image.
-pub fn splats<const N: usize, P: Polarization<N>>(world: &World, take: &mut dyn FnMut(Splat)) -> Sending {
+/// Sends all of them and hands over what they show, pixel by pixel, in an order that never changes; holds no image.
+pub fn splats<const N: usize, P: Polarization<N>>(world: &World, take: &mut dyn FnMut(u32, Splat)) -> Sending {
     let (mut sending, watch) = (Sending::default(), Watch { progress: &|_| (), is_due: &|| false });
     if let Some(targets) = &world.photon_targets {
         send_on::<N, P>(world, targets, world.method.seed, &mut sending, &watch, take);
@@ -134,7 +134,7 @@ fn send_on<const N: usize, P: Polarization<N>>(
     seed: u64,
     sending: &mut Sending,
     watch: &Watch,
-    take: &mut dyn FnMut(Splat),
+    take: &mut dyn FnMut(u32, Splat),
 ) -> bool {
     let batches = batches_of_pass(targets, 0, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
@@ -146,11 +146,11 @@ fn send_on<const N: usize, P: Polarization<N>>(
             (watch.progress)(batch.count);
             (sending.batches, sending.photons) = (sending.batches + 1, sending.photons + batch.count);
             sending.stats += sent.stats;
-            let mut take_finite = |splat: Splat| match splat.rgb.iter().all(|x| x.is_finite()) {
-                true => take(splat),
+            let mut take_finite = |pixel, splat: Splat| match splat.rgb.iter().all(|x| x.is_finite()) {
+                true => take(pixel, splat),
                 false => sending.stats.non_finite += 1,
             };
-            sent.kept.iter().for_each(|splat| splat.spread(world.scene.film, &mut take_finite));
+            sent.kept.iter().for_each(|placed| placed.spread(world.scene.film, &mut take_finite));
         }
     }
     true

@@ -20,13 +20,9 @@ use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhot
 /// Use of the random numbers where a photon is seen: the point of the lens.
 const LENS: u32 = 3;
 
-/// What a photon adds to the film around a place, or to one pixel of it.
+/// What a photon adds to a pixel of the film.
 #[derive(Clone, Debug)]
 pub struct Splat {
-    /// Where on the film.
-    place: DVec2,
-    /// The pixel of the window, once it is [spread](Self::spread).
-    pub pixel: u32,
     /// By what share polarization may change it.
     pub change: f32,
     pub rgb: [f64; 3],
@@ -34,6 +30,7 @@ pub struct Splat {
     pub stokes: Option<Arc<[[f64; 3]; 3]>>,
     /// What it adds to the numbers of a spectral image if one is asked for, times a factor.
     pub bands: Option<Arc<[f32]>>,
+    /// That factor.
     pub weight: f64,
     pub light: LightId,
     /// How often surfaces scattered, mirrored or refracted it on its way.
@@ -49,11 +46,31 @@ pub struct Splat {
 }
 
 impl Splat {
-    /// Hands over what each pixel around it gets, as the filter weighs them. What is kept of photons is not yet spread:
-    /// a wide filter reaches a thousand pixels.
-    pub fn spread(&self, film: FilmSettings, take: &mut dyn FnMut(Self)) {
+    /// So many times as bright.
+    pub fn times(self, factor: f64) -> Self {
+        Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
+    }
+
+    /// The same of a photon of the first half or not, if that is said.
+    pub fn of_half(self, early: Option<bool>) -> Self {
+        Self { early: early.unwrap_or(self.early), ..self }
+    }
+}
+
+/// What a photon adds to the film around a place. It is kept whole: a wide filter spreads it over a thousand pixels.
+#[derive(Clone, Debug)]
+pub struct PlacedSplat {
+    /// In pixels of the film.
+    place: DVec2,
+    /// As a filter of value 1 would have it.
+    splat: Splat,
+}
+
+impl PlacedSplat {
+    /// Hands over what each pixel of the window gets, as the filter weighs them.
+    pub fn spread(&self, film: FilmSettings, take: &mut dyn FnMut(u32, Splat)) {
         for (pixel, weight) in self.pixels(film) {
-            take(Self { pixel, rgb: self.rgb.map(|channel| channel * weight), weight, ..self.clone() });
+            take(pixel, self.splat.clone().times(weight));
         }
     }
 
@@ -66,7 +83,7 @@ impl Splat {
         let columns = first(place.x, 0)..=last(place.x, 0);
         let rows = first(place.y, 1)..=last(place.y, 1);
         // Shadow catchers show no light, but the share of it that is missing.
-        let is_caught = self.caught;
+        let is_caught = self.splat.caught;
         let weighed = move |[x, y]: [i32; 2]| {
             let offset = place - DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let weight = if is_caught { film.filter.positive_value(offset) } else { film.filter.value(offset) };
@@ -75,16 +92,6 @@ impl Splat {
         };
         rows.flat_map(move |y| columns.clone().map(move |x| [x, y])).filter_map(weighed)
     }
-
-    /// So many times as bright.
-    pub fn times(self, factor: f64) -> Self {
-        Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
-    }
-
-    /// The same of a photon of the first half or not, if that is said.
-    pub fn of_half(self, early: Option<bool>) -> Self {
-        Self { early: early.unwrap_or(self.early), ..self }
-    }
 }
 
 /// Sends one batch of photons that are shown.
@@ -92,7 +99,7 @@ pub fn send_shown<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     batch: Batch,
-) -> Sent<Splat> {
+) -> Sent<PlacedSplat> {
     send(world, targets, batch, false, &show::<N, P>)
 }
 
@@ -115,7 +122,7 @@ struct View<'v, 'a, const N: usize, P: Polarization<N>> {
 pub fn show<const N: usize, P: Polarization<N>>(
     walker: &Walker<N, P>,
     landing: &Landing<N, P>,
-    splats: &mut Vec<Splat>,
+    splats: &mut Vec<PlacedSplat>,
 ) {
     let Some(view) = View::new(walker, landing) else { return };
     view.keep(view.scattered(), splats);
@@ -259,29 +266,14 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
         let (bounces, caught) = (self.landing.path.surfaces(), self.sight == Sight::ShadowCatcher);
-        let place = DVec2::ZERO;
-        Splat {
-            place,
-            pixel: 0,
-            change,
-            rgb,
-            stokes,
-            bands,
-            weight: 1.0,
-            light,
-            bounces,
-            dispersed,
-            early,
-            caught,
-            first,
-        }
+        Splat { change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
     }
 
     /// Keeps a splat at each place where it reaches a pixel.
-    fn keep(&self, splat: Option<Splat>, splats: &mut Vec<Splat>) {
+    fn keep(&self, splat: Option<Splat>, splats: &mut Vec<PlacedSplat>) {
         let film = self.walker.world.scene.film;
         let Some(splat) = splat else { return };
-        let at_places = self.places.iter().map(|&place| Splat { place, ..splat.clone() });
-        splats.extend(at_places.filter(|splat| splat.pixels(film).next().is_some()));
+        let placed = self.places.iter().map(|&place| PlacedSplat { place, splat: splat.clone() });
+        splats.extend(placed.filter(|placed| placed.pixels(film).next().is_some()));
     }
 }

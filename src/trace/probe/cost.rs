@@ -165,7 +165,7 @@ fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T
         let film = world.scene.film;
         let spread = |batch: Batch, to: &PhotonTargets| {
             let sent = send_shown::<N, Polarized>(world, to, batch);
-            sent.kept.iter().for_each(|splat| splat.spread(film, &mut |_| ()));
+            sent.kept.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
             sent.stats
         };
         let shown = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));

@@ -86,7 +86,7 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
     for image in 0..IMAGES {
         world.method.seed = (whole.method.seed ^ SEED).wrapping_add(image);
         let mut seen = Vec::new();
-        let shown = splats::<N, Polarized>(world, &mut |splat| seen.push((splat.pixel, splat.rgb)));
+        let shown = splats::<N, Polarized>(world, &mut |pixel, splat| seen.push((pixel, splat.rgb)));
         (photons, rays) = (photons + shown.photons, rays + shown.stats.rays);
         values.extend(summed(seen).into_iter().map(|(pixel, rgb)| {
             let [x, y, z] = apply(&to_xyz, rgb);

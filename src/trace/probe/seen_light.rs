@@ -110,9 +110,9 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
     }
     // Photons light all pixels, of which so many were looked at.
     let looked_at = f64::from(samples) / window.pixels() as f64;
-    splats::<N, P>(world, &mut |splat| {
+    splats::<N, P>(world, &mut |pixel, splat| {
         let light = looked_at * world.amount(splat.rgb);
-        let pixel = [splat.pixel % window.width, splat.pixel / window.width];
+        let pixel = [pixel % window.width, pixel / window.width];
         let copy = if splat.early { 0 } else { copies - 1 };
         take(pixel, copy, Amount { light, change: light * f64::from(splat.change) });
     });
