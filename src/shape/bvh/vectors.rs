@@ -162,9 +162,9 @@ impl Instructions {
 impl Number for f32 {
     #[inline(always)]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
-        use std::arch::x86_64::{_mm_loadu_ps, _mm256_cvtps_pd};
-        // SAFETY: an `Avx2` exists only where its instructions do; the load reads the four numbers of the array.
-        unsafe { _mm256_cvtps_pd(_mm_loadu_ps(numbers.as_ptr())) }
+        use std::arch::x86_64::{__m128, _mm256_cvtps_pd};
+        // SAFETY: an `Avx2` exists only where its instructions do; four numbers are a vector of as many.
+        unsafe { _mm256_cvtps_pd(std::mem::transmute::<[Self; GROUP], __m128>(*numbers)) }
     }
 }
 
@@ -172,8 +172,8 @@ impl Number for f32 {
 impl Number for f64 {
     #[inline(always)]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
-        // SAFETY: an `Avx2` exists only where its instructions do; the load reads the four numbers of the array.
-        unsafe { std::arch::x86_64::_mm256_loadu_pd(numbers.as_ptr()) }
+        // SAFETY: four numbers are a vector of as many.
+        unsafe { std::mem::transmute::<[Self; GROUP], std::arch::x86_64::__m256d>(*numbers) }
     }
 }
 
@@ -186,6 +186,7 @@ impl Number for f64 {}
 #[cfg(target_arch = "x86_64")]
 pub mod avx2 {
     use std::arch::x86_64::*;
+    use std::mem::transmute;
 
     use super::{Child, Computation, Crossings, GROUP, Keys, Line, Number, Sides, Slabs, Vectors, WIDTH};
 
@@ -227,13 +228,12 @@ pub mod avx2 {
     #[inline]
     #[target_feature(enable = "avx2")]
     fn enter(first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
-        // SAFETY: a child is a u32; the load reads all eight.
-        let children = unsafe { _mm256_loadu_si256(children.as_ptr().cast()) };
+        // SAFETY: a child is a u32; eight are a vector of as many.
+        let children = unsafe { transmute::<[Child; WIDTH], __m256i>(*children) };
         let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(reach));
         for axis in 0..3 {
-            // SAFETY: the loads read the eight numbers of an array each.
-            let (first, last) =
-                unsafe { (_mm256_loadu_ps(first[axis].as_ptr()), _mm256_loadu_ps(last[axis].as_ptr())) };
+            // SAFETY: eight numbers are a vector of as many.
+            let [first, last] = [first, last].map(|side| unsafe { transmute::<[f32; WIDTH], __m256>(*side[axis]) });
             let enter = _mm256_sub_ps(first, _mm256_set1_ps(slabs.entry[axis]));
             // Of a NaN and a number, both keep the second.
             near = _mm256_max_ps(_mm256_mul_ps(enter, _mm256_set1_ps(slabs.entry_inverse[axis])), near);
@@ -243,14 +243,9 @@ pub mod avx2 {
         let entered = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
         let near = _mm256_castps_si256(near);
         let (even, odd) = (_mm256_unpacklo_epi32(children, near), _mm256_unpackhi_epi32(children, near));
-        let mut keys = [0; WIDTH];
-        let (low, high) = keys.split_at_mut(WIDTH / 2);
-        // SAFETY: each store writes the four keys of a half.
-        unsafe {
-            _mm256_storeu_si256(low.as_mut_ptr().cast(), _mm256_permute2x128_si256::<0x20>(even, odd));
-            _mm256_storeu_si256(high.as_mut_ptr().cast(), _mm256_permute2x128_si256::<0x31>(even, odd));
-        }
-        (entered as u32, keys)
+        let halves = [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)];
+        // SAFETY: each half is a vector of four keys.
+        (entered as u32, unsafe { transmute::<[__m256i; 2], Keys>(halves) })
     }
 
     #[inline]
@@ -290,12 +285,8 @@ pub mod avx2 {
         let ahead = _mm256_and_pd(ahead, _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(t_max)));
         let met = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
         let bits = |lanes: __m256d| _mm256_movemask_pd(lanes) as u32;
-        let numbers = |lanes: __m256d| {
-            let mut numbers = [0.0; GROUP];
-            // SAFETY: the store writes the four numbers of the array.
-            unsafe { _mm256_storeu_pd(numbers.as_mut_ptr(), lanes) };
-            numbers
-        };
+        // SAFETY: a vector of four numbers is as many.
+        let numbers = |lanes: __m256d| unsafe { transmute::<__m256d, [f64; GROUP]>(lanes) };
         Some(Crossings {
             met: bits(met),
             unsure: bits(_mm256_and_pd(inside, unsure)),
