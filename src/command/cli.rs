@@ -320,9 +320,7 @@ pub fn parse() -> Result<Request> {
         Err(_) if asks_for_farm(&words) => Listener::Farm,
         _ => Listener::Person,
     });
-    if let Err(said) = &parsed
-        && let Some((message, help)) = meant(said, &words, &BELOW.map(|(name, ..)| name))
-    {
+    if let Some((message, help)) = meant(parsed.as_ref().err(), &words, &BELOW.map(|(name, ..)| name)) {
         return Error::refuse(message, help);
     }
     parsed.map_or_else(told, |arguments| {

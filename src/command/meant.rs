@@ -1,12 +1,14 @@
 //! What people meant who gave arguments that there are not.
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use abbe::film::Layer;
 use clap::error::{ContextKind, ErrorKind};
 
 /// What may be taken for a command, and the flag that is meant.
-const FLAGS: [(&str, &str); 4] = [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("render", "--exr")];
+const FLAGS: [(&str, &str); 5] =
+    [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("version", "--version"), ("render", "--exr")];
 
 /// Arguments of other renderers, and what does the same here.
 const ELSEWHERE: [(&[&str], &str); 10] = [
@@ -26,8 +28,14 @@ const ELSEWHERE: [(&[&str], &str); 10] = [
 const WRONG: usize = 2;
 
 /// A message on an argument that there is not, and what to write in place of it; none where that is not known. The
-/// `commands` are those that there are.
-pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
+/// `commands` are those that there are. Where nothing is `said`, the scene may still be a command.
+pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
+    let first = || words.get(1)?.to_str().filter(|first| !first.starts_with('-'));
+    let Some(said) = said else {
+        // A scene of three letters is near half of all commands.
+        let is_file = |name: &str| [name.into(), format!("{name}.toml")].iter().any(|name| Path::new(name).exists());
+        return first().filter(|name| !is_file(name)).and_then(|name| near_command(name, commands, name.len() / 4));
+    };
     let given = match said.kind() {
         ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),
         _ => return None,
@@ -38,8 +46,7 @@ pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Optio
     if let Some(said) = apart(&given, words).or_else(|| unset(&given, words)) {
         return Some(said);
     }
-    let first = words.get(1)?.to_str()?;
-    if first.starts_with('-') || first.contains('.') {
+    let Some(first) = first().filter(|first| !first.contains('.')) else {
         return match commands.iter().find(|command| words.iter().any(|word| word == *command)) {
             Some(command) => {
                 let whole = format!("render {command}");
@@ -48,11 +55,16 @@ pub fn meant(said: &clap::Error, words: &[OsString], commands: &[&str]) -> Optio
             }
             None => out_of_place(&given),
         };
-    }
-    let wrong = |command: &str| strsim::damerau_levenshtein(first, command);
+    };
+    near_command(first, commands, WRONG)
+}
+
+/// The command that was meant by a word of which at most so many letters are wrong.
+fn near_command(word: &str, commands: &[&str], most: usize) -> Option<(String, String)> {
+    let wrong = |command: &str| strsim::damerau_levenshtein(word, command);
     let known = commands.iter().map(|&command| (command, command)).chain(FLAGS);
-    let (_, here) = known.min_by_key(|(word, _)| wrong(word)).filter(|(near, _)| wrong(near) <= WRONG)?;
-    Some((format!("there is no command `{first}`"), format!("did you mean render {here}?")))
+    let (_, here) = known.min_by_key(|(near, _)| wrong(near)).filter(|(near, _)| wrong(near) <= most)?;
+    Some((format!("there is no command `{word}`"), format!("did you mean render {here}?")))
 }
 
 /// Flags that take a list, and what is in it.

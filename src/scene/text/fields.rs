@@ -7,7 +7,7 @@ use toml::de::DeTable;
 use super::document::Document;
 use super::elsewhere::{outside_of_material, value_elsewhere};
 use super::include::INCLUDE;
-use super::suggest::{TABLE, meant, suggestion};
+use super::suggest::{TABLE, meant, suggested_key, suggestion};
 use super::value::Value;
 use crate::error::nearest;
 
@@ -66,7 +66,7 @@ impl<'d> Fields<'d> {
                 word => {
                     let value = self.table.get(word);
                     let known_by_value = value.and_then(|node| value_elsewhere(word, node.get_ref(), &known));
-                    let help = known_by_value.unwrap_or_else(|| suggestion(word, word, &known));
+                    let help = known_by_value.unwrap_or_else(|| suggested_key(word, &known, self.table));
                     (format!("unknown key `{word}`"), help)
                 }
             };

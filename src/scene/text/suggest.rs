@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toml::de::{DeArray, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 use super::elsewhere::{IMAGES, called_here, in_other_words};
 use super::tree::Node;
@@ -21,6 +21,22 @@ pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
     match meant(key, word, known) {
         Some(near) => format!("did you mean `{near}`?"),
         None => format!("known here: {}", known.join(", ")),
+    }
+}
+
+/// What other programs call the brightness of a light beside its color.
+const BRIGHTNESS: [&str; 5] = ["intensity", "strength", "power", "brightness", "multiplier"];
+
+/// The known key that was meant by one beside those of a table, or all known ones.
+pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> String {
+    // A slip of the pen is none of another program.
+    let is_told = nearest(word, known.iter().copied()).is_some() || in_other_words(word, known).is_some();
+    let free: Vec<&str> = known.iter().copied().filter(|&key| !beside.contains_key(key)).collect();
+    let is_new = is_told || meant(word, word, &free).is_some();
+    match meant(word, word, known).filter(|_| !is_new) {
+        None => suggestion(word, word, known),
+        Some(near) if BRIGHTNESS.contains(&word) => format!("multiply `{near}` by it"),
+        Some(near) => format!("`{near}` stands here already: leave one of them out"),
     }
 }
 
