@@ -21,4 +21,3 @@ pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;
 pub use stopping::{FIRST_LOOK, Stopped};
 pub use tile::bytes_of_film;
-pub use values::Values;
