@@ -8,10 +8,9 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::blur::Blur;
 use super::layer_sums::{images, spectral_image};
 use super::light_pass::{self, Watch};
-use super::noise::{Measured, Noise, measure};
+use super::noise::{Estimate, Measured, Noise, measure};
 use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
 use super::saved::{self, Restored};
@@ -64,7 +63,7 @@ pub struct Report {
     /// How far the image is off by chance, where a stop rule has it measured.
     pub noise: Option<Noise>,
     /// By how much photons that were gathered blur it, where a stop rule has it measured.
-    pub blur: Option<Blur>,
+    pub blur: Option<Estimate>,
     /// What ended the render, if a stop rule could, and it is finished.
     pub stopped_by: Option<Stopped>,
 }
