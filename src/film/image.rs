@@ -35,6 +35,11 @@ pub struct Pixel {
     pub samples: f32,
 }
 
+impl Pixel {
+    /// One of which nothing is known.
+    pub(super) const BLANK: Self = Self { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
+}
+
 /// A finished image, with its overscan or a part of it, rows from the top.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
@@ -63,6 +68,17 @@ impl Film {
     pub fn window(&self) -> Window {
         let [left, top] = self.corner;
         Window { left, top, width: self.width, height: self.height }
+    }
+
+    /// Makes room for so many rows.
+    pub fn resize(&mut self, rows: u32) {
+        self.height = rows;
+        let pixels = self.width as usize * rows as usize;
+        self.pixels.resize(pixels, Pixel::BLANK);
+        self.layers.iter_mut().for_each(|layer| layer.values.resize(pixels * layer.numbers(), 0.0));
+        if let Some(spectral) = &mut self.spectral {
+            spectral.values.resize(pixels * spectral.numbers(), 0.0);
+        }
     }
 
     /// The pixel in column x, row y of the part that is there.

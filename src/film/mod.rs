@@ -24,6 +24,7 @@ mod sample_weights;
 mod shard;
 mod spectral;
 mod sum;
+mod tile_values;
 mod time;
 mod window;
 
@@ -46,6 +47,7 @@ pub use sample_weights::{SampleWeights, TELL_VARIANCE};
 pub use shard::{Shard, TILE, TilePlace};
 pub use spectral::SpectralImage;
 pub use sum::{PassSum, PixelSum, stored};
+pub use tile_values::TileValues;
 pub use window::{Overscan, Window};
 
 pub(crate) use blocks::{BlockReader, BlockWriter, Kind, write_blocks};

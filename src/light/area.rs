@@ -1,9 +1,8 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::emission_map::Cells;
 use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
-use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Ray, cosine_about};
+use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray, cosine_about};
 use crate::shape::{Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape};
 use crate::spectrum::Quantity;
 
@@ -96,7 +95,7 @@ impl<S> Area<S> {
     }
 
     /// The shape with its image, and the cells of a part by which that is sampled, if it has some.
-    fn cells(&self, part: u32) -> Option<(TexturedShape<'_>, Cells<'_>)> {
+    fn cells(&self, part: u32) -> Option<(TexturedShape<'_>, &Distribution2d)> {
         let image = self.image.as_ref()?;
         let surface = TexturedShape { shape: &self.shape, coordinates: &image.coordinates };
         Some((surface, image.map.as_ref()?.cells(part)?))
@@ -146,7 +145,7 @@ impl<S> Area<S> {
         };
         let Some((surface, cells)) = self.cells(part.unwrap_or(0)) else { return evenly(u) };
         let sample = if u < BY_IMAGE {
-            let place = cells.sample([u / BY_IMAGE, v]);
+            let place = cells.sample_place([u / BY_IMAGE, v]);
             let point = surface.point_at(part.unwrap_or(0), place)?;
             let is_behind = surface.is_behind(&point, from);
             let sample = ShapeSample::along(point.position - from).filter(|_| !is_behind)?;
@@ -317,7 +316,7 @@ impl<S> Area<S> {
             self.parts.as_ref().map_or(whole, |parts| parts.sample_by_flux(u));
         let (part, cells) = (index as u32, self.cells(index as u32));
         let at = match &cells {
-            Some((_, cells)) if u < BY_IMAGE => cells.sample([u / BY_IMAGE, v]),
+            Some((_, cells)) if u < BY_IMAGE => cells.sample_place([u / BY_IMAGE, v]),
             Some(_) => [(u - BY_IMAGE) / (1.0 - BY_IMAGE), v],
             None => [u, v],
         };

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::math::{BELOW_ONE, Distribution2d};
+use crate::math::Distribution2d;
 use crate::shape::{Coordinates, TexturedShape};
 use crate::spectrum::CurveKind;
 
@@ -92,28 +92,9 @@ impl EmissionMap {
         self.parts.iter().any(|part| part.cells.is_some())
     }
 
-    /// The cells of a part; none if it is nearly even.
-    pub(super) fn cells(&self, part: u32) -> Option<Cells<'_>> {
-        self.parts[part as usize].cells.as_deref().map(Cells)
-    }
-}
-
-/// The cells of a part, each drawn by its light.
-pub(super) struct Cells<'a>(&'a Distribution2d);
-
-impl Cells<'_> {
-    /// A place of the unit square, even within a cell.
-    pub fn sample(&self, u: [f64; 2]) -> [f64; 2] {
-        let size = self.0.size();
-        let drawn = self.0.sample(u);
-        [0, 1].map(|i| ((drawn[i].index as f64 + drawn[i].u) / size[i] as f64).min(BELOW_ONE))
-    }
-
-    /// How densely `sample` draws a place of the unit square.
-    pub fn density(&self, place: [f64; 2]) -> f64 {
-        let size = self.0.size();
-        let cell = [0, 1].map(|i| ((place[i] * size[i] as f64) as usize).min(size[i] - 1));
-        self.0.probability(cell) * (size[0] * size[1]) as f64
+    /// The cells of a part, each drawn by its light; none if it is nearly even.
+    pub(super) fn cells(&self, part: u32) -> Option<&Distribution2d> {
+        self.parts[part as usize].cells.as_deref()
     }
 }
 

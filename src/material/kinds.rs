@@ -102,35 +102,14 @@ impl<S> Material<S> {
         }
     }
 
-    /// Whether light leaves in every direction, so that lights can be sampled.
-    pub fn scatters_widely(&self) -> bool {
-        self.lobes().is_wide()
-    }
-
-    /// Whether light crosses the surface in some way.
-    pub fn lets_through(&self) -> bool {
-        self.lobes().is_transmissive()
-    }
-
-    /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
-    pub fn is_diffuse(&self) -> bool {
-        self.lobes().is_diffuse()
-    }
-
     /// Whether some of it is smooth, so that it mirrors or refracts. Rough glass is not, though between equal indices
     /// it lets light go straight on.
     pub fn is_smooth_somewhere(&self) -> bool {
         match self {
             Self::Dielectric(dielectric) => dielectric.roughness.is_smooth(),
             Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().is_smooth_somewhere()),
-            _ => self.has_single_directions(),
+            _ => self.lobes().has_delta(),
         }
-    }
-
-    /// Whether light leaves in single directions, all of it or some: the mirror images and refractions of smooth
-    /// surfaces.
-    pub fn has_single_directions(&self) -> bool {
-        self.lobes().has_delta()
     }
 
     /// How rough it is, where it can be.
@@ -326,7 +305,7 @@ impl Scatter for Material<Table> {
             Self::Mix(mix) => mix.degree_of_scattered(arrival, wi),
             Self::Mask(mask) => {
                 let material = mask.material.material();
-                if material.scatters_widely() { material.degree_of_scattered(arrival, wi) } else { 0.0 }
+                if material.lobes().is_wide() { material.degree_of_scattered(arrival, wi) } else { 0.0 }
             }
             Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => 0.0,
             Self::Polarizer(_) | Self::Retarder(_) => 0.0,

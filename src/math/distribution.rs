@@ -114,6 +114,19 @@ impl Distribution2d {
     pub fn probability(&self, [column, row]: [usize; 2]) -> f64 {
         self.rows.probability(row) * self.columns[row].probability(column)
     }
+
+    /// A place of the unit square, which the cells cut into even parts, for two random numbers: even within a cell.
+    pub fn sample_place(&self, u: [f64; 2]) -> [f64; 2] {
+        let (size, drawn) = (self.size(), self.sample(u));
+        [0, 1].map(|i| ((drawn[i].index as f64 + drawn[i].u) / size[i] as f64).min(BELOW_ONE))
+    }
+
+    /// How densely `sample_place` draws a place.
+    pub fn density(&self, place: [f64; 2]) -> f64 {
+        let size = self.size();
+        let cell = [0, 1].map(|i| ((place[i] * size[i] as f64) as usize).min(size[i] - 1));
+        self.probability(cell) * (size[0] * size[1]) as f64
+    }
 }
 
 #[cfg(test)]

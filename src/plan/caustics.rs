@@ -217,7 +217,7 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
         Some("no surface is smooth glass, a mirror or polished metal")
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
-    } else if scene.materials.iter().any(|named| named.material.is_diffuse()) {
+    } else if scene.materials.iter().any(|named| named.material.lobes().is_diffuse()) {
         Some("with diffuse_bounces 0, diffuse surfaces are lit straight from the lights alone")
     } else {
         Some("there is no diffuse or rough surface to show one")
@@ -236,7 +236,7 @@ fn sees_receivers(scene: &Scene<Curve>) -> bool {
 
 /// Whether caustics can be seen on a material.
 fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
-    material.scatters_widely() && !(material.is_diffuse() && scene.render.diffuse_bounces == Some(0))
+    material.lobes().is_wide() && !(material.lobes().is_diffuse() && scene.render.diffuse_bounces == Some(0))
 }
 
 /// Lights that photons can be sent from and that are seen from the places given under less than a solid angle.

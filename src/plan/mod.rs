@@ -143,8 +143,8 @@ fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String>
 /// What lights cannot do.
 fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
     let mut lines = Vec::new();
-    let wide =
-        |diffuse| scene.materials.iter().any(|m| m.material.scatters_widely() && m.material.is_diffuse() == diffuse);
+    let lobes = || scene.materials.iter().map(|named| named.material.lobes());
+    let wide = |diffuse| lobes().any(|lobes| lobes.is_wide() && lobes.is_diffuse() == diffuse);
     let lit = match [wide(true), wide(false)] {
         [false, false] => None,
         [true, false] => Some("diffuse"),

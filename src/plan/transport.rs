@@ -24,10 +24,9 @@ const AFFORDABLE: f64 = 2048.0;
 
 /// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
 pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
-    let material = |object: &&Object| &scene.materials[object.material as usize].material;
-    let rough =
-        scene.objects.iter().find(|object| material(object).scatters_widely() && !material(object).is_diffuse());
-    let scattering = scene.objects.iter().find(|object| material(object).scatters_widely());
+    let lobes = |object: &&Object| scene.materials[object.material as usize].material.lobes();
+    let rough = scene.objects.iter().find(|object| lobes(object).is_wide() && !lobes(object).is_diffuse());
+    let scattering = scene.objects.iter().find(|object| lobes(object).is_wide());
     let anywhere = || {
         let filter = scene.film.filter;
         let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
@@ -95,7 +94,7 @@ fn holes_beside_mattes(scene: &Scene<Curve>) -> Option<String> {
 
 /// Why not all ways of light can be followed, where they are too many.
 fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<String> {
-    if !scene.materials.iter().any(|named| named.material.has_single_directions()) {
+    if !scene.materials.iter().any(|named| named.material.lobes().has_delta()) {
         return None;
     }
     let method = Method { together, ..method_of_paths(scene, basis.clone(), DETERMINISTIC) };

@@ -7,17 +7,38 @@ use pyo3::prelude::*;
 
 use super::plane::Plane;
 
+/// What every entry tells, whatever it is of.
+#[derive(Clone)]
+#[pyclass(frozen, get_all, module = "abbe._abbe")]
+pub(super) struct Entry {
+    name: &'static str,
+    source: &'static str,
+    range_nm: (f64, f64),
+}
+
 /// A clear material.
 #[pyclass(frozen, module = "abbe._abbe")]
-pub(super) struct Glass(data::Glass);
+pub(super) struct Glass {
+    #[pyo3(get)]
+    entry: Entry,
+    glass: data::Glass,
+}
 
 /// A metal.
 #[pyclass(frozen, module = "abbe._abbe")]
-pub(super) struct Metal(data::Metal);
+pub(super) struct Metal {
+    #[pyo3(get)]
+    entry: Entry,
+    metal: data::Metal,
+}
 
 /// An illuminant or a reflectance.
 #[pyclass(frozen, module = "abbe._abbe")]
-pub(super) struct Tabulated(data::Grid);
+pub(super) struct Tabulated {
+    #[pyo3(get)]
+    entry: Entry,
+    grid: data::Grid,
+}
 
 /// A value for each wavelength in nm, given as the bytes of an array of 64-bit floats.
 fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
@@ -30,42 +51,29 @@ fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
 impl Glass {
     #[new]
     fn new(name: &str) -> PyResult<Self> {
-        data::glass(name).map(Self).ok_or_else(|| unknown("glass", name))
-    }
-
-    #[getter]
-    fn name(&self) -> &'static str {
-        self.0.key
-    }
-
-    #[getter]
-    fn source(&self) -> &'static str {
-        self.0.source
-    }
-
-    #[getter]
-    fn range_nm(&self) -> (f64, f64) {
-        self.0.range_nm
+        let glass = data::glass(name).ok_or_else(|| unknown("glass", name))?;
+        let entry = Entry { name: glass.key, source: glass.source, range_nm: glass.range_nm };
+        Ok(Self { entry, glass })
     }
 
     #[getter]
     fn n_d(&self) -> f64 {
-        self.0.n_d()
+        self.glass.n_d()
     }
 
     /// Not a number where it is not known.
     #[getter]
     fn v_d(&self) -> f64 {
-        self.0.v_d().unwrap_or(f64::NAN)
+        self.glass.v_d().unwrap_or(f64::NAN)
     }
 
     fn index(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.0.index(nm))
+        each(nm, |nm| self.glass.index(nm))
     }
 
     /// Not a number where it is not known.
     fn extinction(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.0.extinction(nm).unwrap_or(f64::NAN))
+        each(nm, |nm| self.glass.extinction(nm).unwrap_or(f64::NAN))
     }
 }
 
@@ -73,66 +81,38 @@ impl Glass {
 impl Metal {
     #[new]
     fn new(name: &str) -> PyResult<Self> {
-        data::metal(name).map(Self).ok_or_else(|| unknown("metal", name))
-    }
-
-    #[getter]
-    fn name(&self) -> &'static str {
-        self.0.name
-    }
-
-    #[getter]
-    fn source(&self) -> &'static str {
-        self.0.source
-    }
-
-    #[getter]
-    fn range_nm(&self) -> (f64, f64) {
-        let samples = &self.0.samples;
-        (samples.first().map_or(0.0, |first| first[0]), samples.last().map_or(0.0, |last| last[0]))
+        let metal = data::metal(name).ok_or_else(|| unknown("metal", name))?;
+        let [first, last] = [metal.samples.first(), metal.samples.last()].map(|end| end.map_or(0.0, |end| end[0]));
+        let entry = Entry { name: metal.name, source: metal.source, range_nm: (first, last) };
+        Ok(Self { entry, metal })
     }
 
     fn n(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.0.nk(nm)[0])
+        each(nm, |nm| self.metal.nk(nm)[0])
     }
 
     fn k(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.0.nk(nm)[1])
+        each(nm, |nm| self.metal.nk(nm)[1])
     }
 }
 
 #[pymethods]
 impl Tabulated {
-    #[getter]
-    fn name(&self) -> &'static str {
-        self.0.name
-    }
-
-    #[getter]
-    fn source(&self) -> &'static str {
-        self.0.source
-    }
-
-    #[getter]
-    fn range_nm(&self) -> (f64, f64) {
-        self.0.range_nm().into()
+    /// The illuminant or the reflectance of a name.
+    #[new]
+    fn new(kind: &str, name: &str) -> PyResult<Self> {
+        let grid = match kind {
+            "illuminant" => data::illuminant(name),
+            _ => data::reflectance(name),
+        };
+        let grid = grid.ok_or_else(|| unknown(kind, name))?;
+        let entry = Entry { name: grid.name, source: grid.source, range_nm: grid.range_nm().into() };
+        Ok(Self { entry, grid })
     }
 
     fn at(&self, nm: &[u8]) -> Plane {
-        each(nm, |nm| self.0.at(nm))
+        each(nm, |nm| self.grid.at(nm))
     }
-}
-
-/// The illuminant of a name.
-#[pyfunction]
-pub(super) fn illuminant(name: &str) -> PyResult<Tabulated> {
-    data::illuminant(name).map(Tabulated).ok_or_else(|| unknown("illuminant", name))
-}
-
-/// The reflectance of a name.
-#[pyfunction]
-pub(super) fn reflectance(name: &str) -> PyResult<Tabulated> {
-    data::reflectance(name).map(Tabulated).ok_or_else(|| unknown("reflectance", name))
 }
 
 /// The full names of all entries of a kind.
@@ -149,11 +129,8 @@ pub(super) fn names(kind: &str) -> Vec<&'static str> {
 
 /// The name of an entry of the catalog; none of anything else.
 pub(super) fn name_of(value: &Bound<'_, PyAny>) -> Option<&'static str> {
-    let core = value.getattr("_core").ok()?;
-    let glass = || core.cast::<Glass>().ok().map(|glass| glass.get().name());
-    let metal = || core.cast::<Metal>().ok().map(|metal| metal.get().name());
-    let tabulated = || core.cast::<Tabulated>().ok().map(|tabulated| tabulated.get().name());
-    glass().or_else(metal).or_else(tabulated)
+    let entry = value.getattr("_core").ok()?.getattr("entry").ok()?;
+    entry.cast::<Entry>().ok().map(|entry| entry.get().name)
 }
 
 fn unknown(kind: &str, name: &str) -> PyErr {

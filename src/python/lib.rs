@@ -24,6 +24,7 @@ use pyo3::types::PyTuple;
 fn _abbe(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("LAYERS", PyTuple::new(module.py(), Layer::NAMES.map(|(name, _)| name))?)?;
+    module.add_class::<catalog::Entry>()?;
     module.add_class::<catalog::Glass>()?;
     module.add_class::<catalog::Metal>()?;
     module.add_class::<catalog::Tabulated>()?;
@@ -31,8 +32,6 @@ fn _abbe(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<image::Image>()?;
     module.add_class::<plane::Plane>()?;
     module.add_class::<scene::Scene>()?;
-    module.add_function(wrap_pyfunction!(catalog::illuminant, module)?)?;
-    module.add_function(wrap_pyfunction!(catalog::reflectance, module)?)?;
     module.add_function(wrap_pyfunction!(catalog::names, module)?)?;
     module.add_function(wrap_pyfunction!(exr::diff, module)?)?;
     module.add_function(wrap_pyfunction!(render::plan, module)?)?;

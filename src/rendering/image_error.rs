@@ -1,4 +1,4 @@
-use crate::trace::{AlphaNoise, Blur, FIRST_LOOK, Noise, RareLight, Stopped};
+use crate::trace::{Estimate, FIRST_LOOK, Noise, RareLight, Stopped};
 
 /// How far an image is off, as a render with a stop rule has measured it.
 ///
@@ -10,10 +10,10 @@ pub struct ImageError {
     /// What chance makes of it.
     pub noise: Noise,
     /// What photons that are gathered make of it, which blur.
-    pub blur: Blur,
+    pub blur: Estimate,
     /// The noise of alpha, relative to alpha, where shadow catchers make some: the larger of it and of all that colors
     /// are off counts.
-    pub alpha: Option<AlphaNoise>,
+    pub alpha: Option<Estimate>,
     /// The light that makes an outlier of the noise, of a render that has ended.
     pub rare_light: Option<RareLight>,
     /// What the model of color may make of it, as the plan predicts: relative to the strongest channel of each color.

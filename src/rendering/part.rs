@@ -8,11 +8,9 @@ use super::identity::Identity;
 use super::image::Image;
 use super::origin::{NON_FINITE, SAMPLES};
 use crate::error::{Error, Result};
-use crate::film::{
-    BlockReader, Film, Format, Kind, Pixel, Provenance, Shard, SpectralImage, TilePlace, View, write_blocks,
-};
+use crate::film::{BlockReader, Film, Format, Kind, Provenance, Shard, View, write_blocks};
 use crate::scene::FilmSettings;
-use crate::trace::{self, Values};
+use crate::trace;
 
 /// The first bytes of a part.
 const PART: Kind = *b"AbbePrt1";
@@ -31,14 +29,6 @@ pub(super) struct Head {
     /// With what was left out of the light that all parts send alike; and what was left out beside that.
     pub(super) provenance: Provenance,
     pub(super) non_finite: u64,
-}
-
-/// A tile of the image: its pixels, and their numbers in each layer and in the spectral image.
-#[derive(Serialize, Deserialize)]
-pub(super) struct Tile {
-    pub(super) pixels: Vec<Pixel>,
-    pub(super) layers: Vec<Vec<f32>>,
-    pub(super) spectral: Vec<f32>,
 }
 
 /// Writes the finished tiles of an image, of which all else is known.
@@ -60,13 +50,7 @@ pub(super) fn write(
     write_blocks(path, PART, &|blocks| {
         blocks.block(&head.identity)?;
         blocks.block(&head)?;
-        passes.tiles().try_for_each(|Values { pixels, layers, spectral }| {
-            blocks.block(&Tile {
-                pixels,
-                layers: layers.into_iter().map(|layer| layer.values).collect(),
-                spectral: spectral.map_or(Vec::new(), |spectral| spectral.values),
-            })
-        })
+        passes.tiles().try_for_each(|tile| blocks.block(&tile))
     })
 }
 
@@ -115,15 +99,5 @@ impl Head {
     /// What was left out of the light that all parts send alike.
     pub(super) fn shared_non_finite(&self) -> u64 {
         self.provenance.count(NON_FINITE).unwrap_or_default()
-    }
-}
-
-impl Tile {
-    /// Whether it has all numbers of a place in a film.
-    pub(super) fn fits(&self, place: TilePlace, film: &Film) -> bool {
-        let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
-        self.pixels.len() == place.pixels()
-            && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * layer.numbers()))
-            && self.spectral.len() == place.pixels() * spectra
     }
 }

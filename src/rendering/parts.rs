@@ -6,11 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::image::Image;
 use super::origin::NON_FINITE;
-use super::part::{Head, Tile, open};
+use super::part::{Head, open};
 use crate::error::{Error, Result};
 use crate::film::{
-    BlockReader, DEPTH_OF_NOTHING, Film, Format, Pixel, Rows, Shard, TILE, TilePlace, Window, write_exr,
-    write_spectral_exr,
+    BlockReader, Film, Format, Rows, Shard, TILE, TilePlace, TileValues, Window, write_exr, write_spectral_exr,
 };
 use crate::trace::Report;
 
@@ -172,27 +171,15 @@ impl<'p> Strip<'p> {
         Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..film.clone() } }
     }
 
-    /// Makes room for so many rows.
-    fn resize(&mut self, rows: u32) {
-        let film = &mut self.film;
-        film.height = rows;
-        let pixels = film.width as usize * rows as usize;
-        film.pixels.resize(pixels, BLANK);
-        film.layers.iter_mut().for_each(|layer| layer.values.resize(pixels * layer.numbers(), 0.0));
-        if let Some(spectral) = &mut film.spectral {
-            spectral.values.resize(pixels * spectral.numbers(), 0.0);
-        }
-    }
-
     /// Reads the next tile of the part that has it, which is its last one perhaps.
-    fn read(&mut self, place: TilePlace) -> Result<Tile> {
+    fn read(&mut self, place: TilePlace) -> Result<TileValues> {
         let (number, count) = (place.number as usize, self.files.len());
         let part = number % count;
         let kept = self.readers.get_mut(part).and_then(Option::take);
         let file = &mut self.files[part];
         let mut blocks = kept.map_or_else(|| BlockReader::open_at(&file.path, file.start), Ok)?;
-        let tile: Tile = blocks.block()?;
-        if !tile.fits(place, &self.film) {
+        let tile: TileValues = blocks.block()?;
+        if !tile.fit(place, &self.film) {
             return Err(blocks.damaged());
         }
         if number + count >= self.tiles {
@@ -205,24 +192,7 @@ impl<'p> Strip<'p> {
         }
         Ok(tile)
     }
-
-    /// Puts a tile into the rows, of which the first one has a number.
-    fn paste(&mut self, tile: &Tile, place: TilePlace, first: u32) {
-        let film = &mut self.film;
-        let [left, top] = place.corner;
-        let place = TilePlace { corner: [left, top - first], ..place };
-        let window = film.window();
-        paste(&tile.pixels, 1, window, place, &mut film.pixels);
-        for (layer, values) in film.layers.iter_mut().zip(&tile.layers) {
-            paste(values, layer.numbers(), window, place, &mut layer.values);
-        }
-        if let Some(spectral) = &mut film.spectral {
-            paste(&tile.spectral, spectral.numbers(), window, place, &mut spectral.values);
-        }
-    }
 }
-
-const BLANK: Pixel = Pixel { rgb: [0.0; 3], alpha: 0.0, depth: DEPTH_OF_NOTHING, samples: 0.0 };
 
 /// Rows are asked for from the top down, whole tiles at once.
 impl Rows for Strip<'_> {
@@ -231,23 +201,15 @@ impl Rows for Strip<'_> {
     }
 
     fn rows(&mut self, rows: Range<u32>) -> Result<(&Film, usize)> {
-        self.resize(rows.end - rows.start);
+        self.film.resize(rows.end - rows.start);
         let window = self.parts.image.film.window();
         let per_row = window.width.div_ceil(TILE) as usize;
         let [first, end] = [rows.start, rows.end].map(|row| row.div_ceil(TILE) as usize * per_row);
         for place in Shard::WHOLE.tiles(window).skip(first).take(end - first) {
             let tile = self.read(place)?;
-            self.paste(&tile, place, rows.start);
+            let [left, top] = place.corner;
+            tile.put_into(&mut self.film, TilePlace { corner: [left, top - rows.start], ..place });
         }
         Ok((&self.film, 0))
-    }
-}
-
-/// Puts the values of a tile's pixels, so many of each, into the rows that a window is.
-fn paste<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
-    let length = place.width as usize * each;
-    for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {
-        let first = place.pixel(window, row * place.width) * each;
-        rows[first..first + length].copy_from_slice(values);
     }
 }

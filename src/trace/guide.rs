@@ -82,7 +82,7 @@ impl Guide {
 
     /// A place of the square for two random numbers.
     pub(super) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
-        self.cells.sample(u).map(|drawn| (drawn.index as f64 + drawn.u) / SIDE as f64)
+        self.cells.sample_place(u)
     }
 
     /// The part of the square in which most places are drawn, about: of n cells that are equally likely, n cells.
@@ -93,8 +93,7 @@ impl Guide {
 
     /// The density of places drawn.
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
-        let cell = cell_of(place);
-        self.cells.probability([cell % SIDE, cell / SIDE]) * (SIDE * SIDE) as f64
+        self.cells.density(place)
     }
 }
 

@@ -18,8 +18,8 @@ use crate::spectrum::{Basis, Curve, apply};
 pub(super) struct Layers {
     /// In the order in which they were asked for.
     pub(super) wanted: Vec<Layer>,
-    /// Where the numbers of each begin, if it is wanted.
-    places: Places,
+    /// Of each layer that there is, where its numbers begin, if it is wanted.
+    places: Vec<Option<usize>>,
     /// Numbers in a row.
     pub(super) numbers: usize,
     /// The group of each light, and the names of the groups' layers.
@@ -41,16 +41,6 @@ pub(super) struct Layers {
     luminance: [f64; 3],
     /// The color of the film's white: no albedo is above it.
     pub(super) film_white: [f64; 3],
-}
-
-/// A place for each layer that there is.
-#[derive(Clone, Debug)]
-struct Places([Option<usize>; Layer::NAMES.len()]);
-
-impl Default for Places {
-    fn default() -> Self {
-        Self([None; Layer::NAMES.len()])
-    }
 }
 
 /// The name that each object has in a matte.
@@ -110,7 +100,8 @@ impl Layers {
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
         let color_space = scene.film.color_space;
         let (luminance, film_white) = (color_space.to_xyz()[1], apply(&color_space.of_xyz(), color_space.white()));
-        let mut layers = Self { first: scene.format.first, luminance, film_white, ..Self::default() };
+        let (places, first) = (vec![None; Layer::NAMES.len()], scene.format.first);
+        let mut layers = Self { places, first, luminance, film_white, ..Self::default() };
         let mut known = HashMap::new();
         for group in &scene.light_groups {
             let name = light_layer_name(group);
@@ -120,7 +111,7 @@ impl Layers {
         }
         for &layer in &scene.format.layers {
             if layers.at(layer).is_none() {
-                layers.places.0[layer as usize] = Some(layers.numbers);
+                layers.places[layer as usize] = Some(layers.numbers);
                 layers.wanted.push(layer);
                 layers.numbers += match layer {
                     Layer::Lights => 3 * layers.groups.len(),
@@ -162,7 +153,7 @@ impl Layers {
     /// Where in a row the numbers of a layer begin; none if it is not wanted.
     #[inline]
     pub(super) fn at(&self, layer: Layer) -> Option<usize> {
-        self.places.0[layer as usize]
+        self.places[layer as usize]
     }
 
     /// Whether it matters of which light gathered photons are, whether they were dispersed, or what their spectra are.

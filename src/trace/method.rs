@@ -91,8 +91,7 @@ pub enum Polarizing {
 /// (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
-    /// The relative error of the image that is enough, of noise and blur: see [`Noise`](super::Noise) and
-    /// [`Blur`](super::Blur).
+    /// The relative error of the image that is enough, of noise and blur: see [`Measured`](super::Measured).
     pub noise: Option<f64>,
     /// How long it may render.
     pub time: Option<Duration>,

@@ -62,8 +62,8 @@ pub use bright::{BrightPlace, BrightPlaces};
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
 pub use image::{
-    Advance, AlphaNoise, Blur, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report,
-    Restored, Stopped, TileNoise, Values, bytes_of_film, render,
+    Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
+    Stopped, TileNoise, bytes_of_film, render,
 };
 pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;

@@ -50,7 +50,7 @@ pub(super) struct Part {
 /// Whether photons can be sent to an object: it is smooth where light goes on.
 pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
     let material = scene.material_of(object as u32);
-    !material.scatters_widely() && !matches!(material, Material::Emissive(_))
+    !material.lobes().is_wide() && !matches!(material, Material::Emissive(_))
 }
 
 /// Whether the camera may see a small part of what lies in a ball: it is wider than the image there.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use abbe::film::Film;
-use abbe::trace::{Blur, LightPass, MapPasses, Method, Report, Stop, Stopped, prepare, render};
+use abbe::trace::{Estimate, LightPass, MapPasses, Method, Report, Stop, Stopped, prepare, render};
 use rayon::prelude::*;
 
 use super::agreement::{glass, seen_by, with_method};
@@ -111,7 +111,7 @@ fn the_blur_that_is_told_is_that_of_a_closed_form_and_grows_with_the_area() {
     assert!(ratio > 3.5 && ratio < 4.5, "{ratio}");
 }
 
-fn blur(report: &Report) -> Blur {
+fn blur(report: &Report) -> Estimate {
     report.blur.expect("there are replicates")
 }
 

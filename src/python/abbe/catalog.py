@@ -47,17 +47,17 @@ class _Entry:
     @property
     def name(self) -> str:
         """Its full name."""
-        return self._core.name
+        return self._core.entry.name
 
     @property
     def source(self) -> str:
         """Who published it."""
-        return self._core.source
+        return self._core.entry.source
 
     @property
     def range_nm(self) -> tuple[float, float]:
         """The wavelengths in nm between which it is known."""
-        return self._core.range_nm
+        return self._core.entry.range_nm
 
     def __reduce__(self) -> tuple[type[_Entry], tuple[str]]:
         return type(self), (self.name,)
@@ -112,7 +112,7 @@ class Illuminant(_Entry):
     _core: _abbe.Tabulated
 
     def __init__(self, name: str) -> None:
-        self._core = _abbe.illuminant(_arguments.text("the name of an illuminant", name))
+        self._core = _abbe.Tabulated("illuminant", _arguments.text("the name of an illuminant", name))
 
     def power(self, nm: npt.ArrayLike) -> Any:
         """Its relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond their ends."""
@@ -125,7 +125,7 @@ class Reflectance(_Entry):
     _core: _abbe.Tabulated
 
     def __init__(self, name: str) -> None:
-        self._core = _abbe.reflectance(_arguments.text("the name of a reflectance", name))
+        self._core = _abbe.Tabulated("reflectance", _arguments.text("the name of a reflectance", name))
 
     def reflectance(self, nm: npt.ArrayLike) -> Any:
         """The share of light that it sends back, 0 to 1; linear between wavelengths of the table, flat beyond them."""

@@ -77,7 +77,7 @@ impl<'a> Sight<'a> {
             let material = self.scene.material_of(hit.object);
             let [u, v, pass, _] = sampler.four_plain(key, 0);
             key = key.child(0);
-            if !self.is_opaque(hit.object) && (!material.scatters_widely() || pass < 0.5) {
+            if !self.is_opaque(hit.object) && (!material.lobes().is_wide() || pass < 0.5) {
                 ray = point.leave(ray.direction);
                 continue;
             }
@@ -89,7 +89,7 @@ impl<'a> Sight<'a> {
             if turns == DEEP || matches!(material, Material::Emissive(_)) {
                 return false;
             }
-            let direction = match material.scatters_widely() {
+            let direction = match material.lobes().is_wide() {
                 true => cosine_about(normal, [u, v]),
                 false => reflect(-ray.direction, normal),
             };
@@ -131,7 +131,7 @@ impl<'a> Sight<'a> {
     /// Whether light never crosses an object.
     fn is_opaque(&self, object: u32) -> bool {
         let material = self.scene.material_of(object);
-        !material.lets_through() && !material.is_see_through()
+        !material.lobes().is_transmissive() && !material.is_see_through()
     }
 
     pub(super) fn is_occluded(&self, ray: &Ray, distance: f64, light: Option<u32>) -> bool {

@@ -1,7 +1,5 @@
 //! From a spectrum as written to one of which every value is known.
 
-use std::sync::Arc;
-
 use super::context::Context;
 use super::curve_name::{
     color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
@@ -14,8 +12,8 @@ use super::spectrum_file::read_columns;
 use crate::scene::text::{At, FileKind, Value, shown, utf8};
 use crate::scene::web_color::of_bytes;
 use crate::spectrum::{
-    ColorSpace, Curve, CurveKind, Emission, Named, Quantity, cauchy_through, data, imitation, reach,
-    reach_of_absorption, sellmeier_squared, visible::START_NM,
+    ColorSpace, Curve, CurveKind, Emission, Quantity, cauchy_through, data, imitation, reach, reach_of_absorption,
+    sellmeier_squared, visible::START_NM,
 };
 
 const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26, endings: &[] };
@@ -134,9 +132,9 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
         KindText::Sellmeier { b, c } if is_index => sellmeier(text, b, c),
         KindText::Abbe { nd, vd } if is_index => abbe(text, *nd, *vd),
         KindText::Illuminant(name) if shines => {
-            let Some(light) = data::illuminant(name) else { return unknown_illuminant(name).tell(place) };
+            let Some(light) = CurveKind::illuminant(name) else { return unknown_illuminant(name).tell(place) };
             told(text.scale.place, factor("a scale", text.scale.it))?;
-            Some(CurveKind::Illuminant(Arc::new(light)))
+            Some(light)
         }
         KindText::Blackbody(kelvin) if shines => {
             told(place, blackbody(*kelvin))?;
@@ -369,25 +367,17 @@ fn blackbody(kelvin: f64) -> Result<(), Refusal> {
 
 /// An entry of the catalog.
 fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) -> Option<CurveKind> {
-    match quantity {
-        Quantity::Index => match data::glass(name) {
-            Some(glass) => Some(CurveKind::Glass(Named::new(name, glass))),
-            None => unknown_glass(name).tell(place),
-        },
-        Quantity::MetalIndex | Quantity::MetalExtinction => match data::metal(name) {
-            Some(metal) => Some(CurveKind::Metal(Named::new(name, metal))),
-            None => unknown_metal(name).tell(place),
-        },
-        Quantity::Absorption => absorption(context, place, name),
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => None,
-        Quantity::Excitation | Quantity::Fluorescence => None,
+    let (found, unknown): (_, fn(&str) -> Refusal) = match quantity {
+        Quantity::Index => (CurveKind::glass(name), unknown_glass),
+        Quantity::MetalIndex | Quantity::MetalExtinction => (CurveKind::metal(name), unknown_metal),
+        Quantity::Absorption => return absorption(context, place, name),
+        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => return None,
+        Quantity::Excitation | Quantity::Fluorescence => return None,
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
-            match data::reflectance(name) {
-                Some(reflectance) => Some(CurveKind::Reflectance(Named::new(name, reflectance))),
-                None => unknown_reflectance(name).tell(place),
-            }
+            (CurveKind::reflectance(name), unknown_reflectance)
         }
-    }
+    };
+    found.or_else(|| unknown(name).tell(place))
 }
 
 /// The absorption of a glass of the catalog per scene unit.

@@ -200,11 +200,11 @@ impl Colors<'_> {
                 // The same facet for both colors, as if it were all there is.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
-            material if material.has_single_directions() && walk.takes(GLOSS, false, choice) => {
+            material if material.lobes().has_delta() && walk.takes(GLOSS, false, choice) => {
                 Next::Toward(reflect(wo, normal))
             }
             material => {
-                walk.diffuse = material.scatters_widely();
+                walk.diffuse = material.lobes().is_wide();
                 Next::End
             }
         }

@@ -153,7 +153,7 @@ impl Pair<'_> {
             (sample.ray.direction, sample.distance, sample.object)
         };
         let (own, from) = (direction.dot(end.normal), -first.last()?.direction.dot(end.normal));
-        let keeps_away = |object| !first.met.contains(&object) && !scene.material_of(object).lets_through();
+        let keeps_away = |object| !first.met.contains(&object) && !scene.material_of(object).lobes().is_transmissive();
         let ray = end.leave(direction);
         if own * from <= 0.0 || scene.is_occluded_by(&ray, distance, lamp, &Cell::new(None), &keeps_away) {
             return None;
@@ -227,7 +227,7 @@ impl Pair<'_> {
         }
         let ray = point.leave(seen.direction);
         let distance = (seen.start - ray.origin).length();
-        let hides = |object| !scene.material_of(object).lets_through();
+        let hides = |object| !scene.material_of(object).lobes().is_transmissive();
         let hidden = scene.is_occluded_by(&ray, distance, None, &Cell::new(None), &hides);
         (!hidden).then(|| (seen.importance * seen.direction.dot(point.normal).abs()).sqrt())
     }

@@ -2,6 +2,7 @@
 
 use super::route::Route;
 use super::route_walk::Walker;
+use crate::material::Lobes;
 use crate::math::{DVec2, Sampler};
 use crate::trace::World;
 use crate::trace::probe::pixels_of_objects;
@@ -16,7 +17,7 @@ const ALL_SURFACES: usize = 16_384;
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let film = world.scene.film.whole();
     let all_over = film.middles_of_cells(SIDE);
-    let objects = pixels_of_objects(world, |material| material.has_single_directions());
+    let objects = pixels_of_objects(world, Lobes::has_delta);
     let of_pixel = |(number, [x, y]): (u32, [i32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);

@@ -16,19 +16,7 @@
 //! light; 1.32 for edges, where a, with the mean over a pixel in it, is 4; and 1.93 for folds of caustics of a point,
 //! whose light falls like one over the root of the distance, where a is 3. The bound takes the largest.
 
-use serde::{Deserialize, Serialize};
-
 use crate::trace::replicates::{Products, REPLICATES};
-
-/// By how much photons that are gathered blur an image; 0 where none are. Relative to the image, as
-/// [`Noise`](super::noise::Noise) is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Blur {
-    /// What is expected.
-    pub expected: f64,
-    /// It is smaller than this in 95 of 100 renders.
-    pub at_most: f64,
-}
 
 /// How many times the square that is told the blur of folds is.
 const FOLDS: f64 = 1.93;

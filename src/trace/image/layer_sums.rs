@@ -134,12 +134,9 @@ pub struct Taken<'a> {
     pub place: usize,
 }
 
-/// The images of the layers, as yet without values, for so many pixels.
-pub fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
-    let image = |layer: Layer, name: String| {
-        let values = vec![0.0; pixels * layer.channels().len()];
-        LayerImage { layer, name, values }
-    };
+/// The images of the layers, as yet without values.
+pub fn images(layers: &Layers) -> Vec<LayerImage> {
+    let image = |layer: Layer, name: String| LayerImage { layer, name, values: Vec::new() };
     let of_layer = |&layer: &Layer| match layer {
         Layer::Lights => layers.groups.iter().map(|name| image(layer, name.clone())).collect(),
         _ if layer.is_matte() => (0..RANKS / 2).map(|i| image(layer, format!("{}{i:02}", layer.name()))).collect(),
@@ -148,57 +145,56 @@ pub fn images(layers: &Layers, pixels: usize) -> Vec<LayerImage> {
     layers.wanted.iter().flat_map(of_layer).collect()
 }
 
-/// The spectra of so many pixels, as yet without values; none if they are not asked for.
-pub fn spectral_image(layers: &Layers, pixels: usize) -> Option<SpectralImage> {
+/// The spectra, as yet without values; none if they are not asked for.
+pub fn spectral_image(layers: &Layers) -> Option<SpectralImage> {
     let spectrum = layers.spectrum.as_ref()?;
-    let values = vec![0.0; pixels * spectrum.numbers()];
-    Some(SpectralImage { bands: spectrum.bands, has_stokes: spectrum.has_stokes, values })
-}
-
-/// Writes a pixel's values into the images.
-pub fn write(layers: &Layers, taken: &Taken, pixel: usize, images: &mut [LayerImage]) {
-    let mut images = images.iter_mut();
-    for &layer in &layers.wanted {
-        if let Some((_, ids)) = layers.ids.iter().find(|(matte, _)| *matte == layer) {
-            let ranks = taken.covered.ranks(taken.place, ids);
-            for (two, image) in ranks.chunks_exact(2).zip(images.by_ref()) {
-                let coverage = |samples: u32| (f64::from(samples) / taken.weights.added()) as f32;
-                let [(a, of_a), (b, of_b)] = [two[0], two[1]];
-                let values = [f32::from_bits(a), coverage(of_a), f32::from_bits(b), coverage(of_b)];
-                image.values[4 * pixel..4 * pixel + 4].copy_from_slice(&values);
-            }
-            continue;
-        }
-        let at = layers.at(layer).unwrap_or_default();
-        let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
-        for (number, image) in images.by_ref().take(several).enumerate() {
-            let size = layer.channels().len();
-            let values = &mut image.values[pixel * size..][..size];
-            if layer == Layer::Shadow {
-                let caught = layers.caught(taken.sums[0], taken.shown, taken.weights.added());
-                let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
-                values.copy_from_slice(&shadow.map(stored));
-                continue;
-            }
-            if layer == Layer::Polarization {
-                let stokes = std::array::from_fn(|component| taken.light(at + component));
-                values.copy_from_slice(&polarization(stokes).map(stored));
-                continue;
-            }
-            for (channel, value) in values.iter_mut().enumerate() {
-                let told = taken.value(layer, at + 3 * number, channel);
-                *value =
-                    stored(if layer == Layer::Albedo { told.clamp(0.0, layers.film_white[channel]) } else { told });
-            }
-        }
-    }
+    Some(SpectralImage { bands: spectrum.bands, has_stokes: spectrum.has_stokes, values: Vec::new() })
 }
 
 impl Taken<'_> {
-    /// Writes the pixel's spectrum into the image.
-    pub fn write_spectrum(&self, spectrum: &Spectrum, pixel: usize, image: &mut SpectralImage) {
+    /// Writes the pixel's values into those that its tile has of each layer.
+    pub fn write(&self, layers: &Layers, images: &mut [Vec<f32>]) {
+        let mut images = images.iter_mut();
+        for &layer in &layers.wanted {
+            if let Some((_, ids)) = layers.ids.iter().find(|(matte, _)| *matte == layer) {
+                let ranks = self.covered.ranks(self.place, ids);
+                for (two, image) in ranks.chunks_exact(2).zip(images.by_ref()) {
+                    let coverage = |samples: u32| (f64::from(samples) / self.weights.added()) as f32;
+                    let [(a, of_a), (b, of_b)] = [two[0], two[1]];
+                    let values = [f32::from_bits(a), coverage(of_a), f32::from_bits(b), coverage(of_b)];
+                    image[4 * self.place..4 * self.place + 4].copy_from_slice(&values);
+                }
+                continue;
+            }
+            let at = layers.at(layer).unwrap_or_default();
+            let several = if layer == Layer::Lights { layers.groups.len() } else { 1 };
+            for (number, image) in images.by_ref().take(several).enumerate() {
+                let size = layer.channels().len();
+                let values = &mut image[self.place * size..][..size];
+                if layer == Layer::Shadow {
+                    let caught = layers.caught(self.sums[0], self.shown, self.weights.added());
+                    let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
+                    values.copy_from_slice(&shadow.map(stored));
+                    continue;
+                }
+                if layer == Layer::Polarization {
+                    let stokes = std::array::from_fn(|component| self.light(at + component));
+                    values.copy_from_slice(&polarization(stokes).map(stored));
+                    continue;
+                }
+                for (channel, value) in values.iter_mut().enumerate() {
+                    let told = self.value(layer, at + 3 * number, channel);
+                    *value =
+                        stored(if layer == Layer::Albedo { told.clamp(0.0, layers.film_white[channel]) } else { told });
+                }
+            }
+        }
+    }
+
+    /// Writes the pixel's spectrum into those of its tile.
+    pub fn write_spectrum(&self, spectrum: &Spectrum, spectra: &mut [f32]) {
         let numbers = spectrum.numbers();
-        for (number, value) in image.values[pixel * numbers..][..numbers].iter_mut().enumerate() {
+        for (number, value) in spectra[self.place * numbers..][..numbers].iter_mut().enumerate() {
             *value = stored(spectrum.unit * self.light(spectrum.at + number));
         }
     }

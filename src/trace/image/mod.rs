@@ -13,12 +13,10 @@ mod stopping;
 mod tile;
 mod values;
 
-pub use blur::Blur;
 pub use light_pass::splats;
-pub use noise::{AlphaNoise, Measured, Noise, Outlier, TileNoise};
+pub use noise::{Estimate, Measured, Noise, Outlier, TileNoise};
 pub use rare_light::RareLight;
 pub use rendering::{Advance, PhotonCost, Rendering, Report, render};
 pub use saved::Restored;
 pub use stopping::{FIRST_LOOK, Stopped};
 pub use tile::bytes_of_film;
-pub use values::Values;

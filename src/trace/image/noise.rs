@@ -18,7 +18,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::blur::{Blur, squares_of_blur};
+use super::blur::squares_of_blur;
 use crate::film::{Filter, TilePlace};
 use crate::trace::replicates::{Products, REPLICATES, Replicates};
 
@@ -46,16 +46,16 @@ pub struct Noise {
 pub struct Measured {
     /// How far the image is off by chance.
     pub noise: Noise,
-    /// By how much gathered photons blur it.
-    pub blur: Blur,
-    /// The noise of alpha, where shadow catchers make some.
-    pub alpha: Option<AlphaNoise>,
+    /// By how much gathered photons blur it; 0 where none are. Relative to the image, as noise is.
+    pub blur: Estimate,
+    /// The noise of alpha, where shadow catchers make some: the root of the mean square over all pixels, by that of
+    /// alpha itself. Alpha is never above 1, so no light is so rare that it could be far off unseen.
+    pub alpha: Option<Estimate>,
 }
 
-/// The noise of alpha, where shadow catchers make some: the root of the mean square over all pixels, by that of alpha
-/// itself. Alpha is never above 1, so no light is so rare that it could be far off unseen.
+/// An error as it is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct AlphaNoise {
+pub struct Estimate {
     /// What is expected.
     pub expected: f64,
     /// It is smaller than this in 95 of 100 renders.
@@ -235,9 +235,9 @@ pub fn measure<'t>(
     }
     let numbers = all.numbers.max(1.0);
     let [expected, at_most] = squares_of_blur(&blur, STUDENT).map(|squares| all.relative(squares / numbers));
-    let blur = Blur { expected, at_most };
+    let blur = Estimate { expected, at_most };
     let Noise { expected, at_most, .. } = alpha.noise(REPLICATES as u32 * each, None);
-    let alpha = (alpha.numbers > 0.0).then_some(AlphaNoise { expected, at_most });
+    let alpha = (alpha.numbers > 0.0).then_some(Estimate { expected, at_most });
     Measured { noise: all.noise(REPLICATES as u32 * each, worst), blur, alpha }
 }
 

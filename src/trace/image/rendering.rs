@@ -8,17 +8,17 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::blur::Blur;
+use super::layer_sums::{images, spectral_image};
 use super::light_pass::{self, Watch};
-use super::noise::{Measured, Noise, measure};
+use super::noise::{Estimate, Measured, Noise, measure};
 use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
 use super::saved::{self, Restored};
 use super::stopping::{Clock, FIRST_LOOK, Stopped, is_wanted_known, next_stage, samples_wanted};
 use super::tile::Tile;
-use super::values::Values;
+use super::values::values_of;
 use crate::error::Result;
-use crate::film::{BlockReader, BlockWriter, Film, Shard, TilePlace, Window};
+use crate::film::{BlockReader, BlockWriter, Film, Shard, TilePlace, TileValues, Window};
 use crate::trace::parallel::{for_each_in_parallel, in_parallel};
 use crate::trace::photon::PassLight;
 use crate::trace::photon_targets::PhotonTargets;
@@ -63,7 +63,7 @@ pub struct Report {
     /// How far the image is off by chance, where a stop rule has it measured.
     pub noise: Option<Noise>,
     /// By how much photons that were gathered blur it, where a stop rule has it measured.
-    pub blur: Option<Blur>,
+    pub blur: Option<Estimate>,
     /// What ended the render, if a stop rule could, and it is finished.
     pub stopped_by: Option<Stopped>,
 }
@@ -245,45 +245,37 @@ impl<'a> Rendering<'a> {
 
     /// The image of the samples so far.
     pub fn film(&self) -> Film {
-        let window = self.world().scene.film.window();
-        let mut values = Values::new(&self.world().layers, window.pixels() as usize);
-        let counts = self.progress.shown_counts(self.world());
+        let (mut film, counts) = (self.frame(), self.progress.shown_counts(self.world()));
+        film.resize(film.height);
         let places: Vec<(&Tile, TilePlace)> = self.places().collect();
         for some in places.chunks(TILES_AT_A_TIME) {
-            let made = in_parallel(some.len(), &|number| Values::of_tile(self.world(), some[number].0, counts));
-            for (of_tile, (_, at)) in made.iter().zip(some) {
-                values.put(of_tile, &|place| at.pixel(window, place as u32));
-            }
+            let made = in_parallel(some.len(), &|number| values_of(self.world(), &film, some[number].0, counts));
+            made.iter().zip(some).for_each(|(values, (_, place))| values.put_into(&mut film, *place));
         }
-        self.film_of(values)
+        film
     }
 
     /// All of it but its values.
     pub fn frame(&self) -> Film {
-        self.film_of(Values::new(&self.world().layers, 0))
-    }
-
-    /// The values of each tile that is made, row by row.
-    pub fn tiles(&self) -> impl Iterator<Item = Values> {
-        let counts = self.progress.shown_counts(self.world());
-        self.places().map(move |(tile, _)| Values::of_tile(self.world(), tile, counts))
-    }
-
-    fn film_of(&self, Values { pixels, layers, spectral }: Values) -> Film {
-        let world = self.world();
-        let film = world.scene.film;
-        let Window { left, top, width, height } = film.window();
+        let World { scene, layers, .. } = self.world();
+        let Window { left, top, width, height } = scene.film.window();
         Film {
             width,
             height,
             corner: [left, top],
-            full: [film.width, film.height],
-            color_space: film.color_space,
-            pixels,
-            layers,
-            spectral,
-            manifests: world.layers.manifests(&world.scene),
+            full: [scene.film.width, scene.film.height],
+            color_space: scene.film.color_space,
+            pixels: Vec::new(),
+            layers: images(layers),
+            spectral: spectral_image(layers),
+            manifests: layers.manifests(scene),
         }
+    }
+
+    /// The values of each tile that is made.
+    pub fn tiles(&self) -> impl Iterator<Item = TileValues> {
+        let (frame, counts) = (self.frame(), self.progress.shown_counts(self.world()));
+        self.places().map(move |(tile, _)| values_of(self.world(), &frame, tile, counts))
     }
 
     /// Camera samples taken so far.

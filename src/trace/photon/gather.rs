@@ -364,7 +364,7 @@ impl Place<'_> {
         let front = normal.dot(ray.direction) < 0.0;
         let flat = if front { normal } else { -normal };
         let goes_on = flat.dot(self.flat) > 0.0 && self.goes_on(position, flat, front);
-        Some(goes_on && scene.material_of(hit.object).scatters_widely())
+        Some(goes_on && scene.material_of(hit.object).lobes().is_wide())
     }
 }
 

@@ -1,8 +1,7 @@
 //! How many ways light has where all of them are followed.
 
-use crate::material::Material;
+use crate::material::Lobes;
 use crate::math::{DVec2, DVec3, Sampler};
-use crate::spectrum::Table;
 use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::width::in_lanes;
@@ -45,7 +44,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
             return Branching::Beyond(pixel);
         }
     }
-    match pixels_of_objects(world, Material::lets_through).into_iter().find(|&pixel| ask(pixel).1) {
+    match pixels_of_objects(world, Lobes::is_transmissive).into_iter().find(|&pixel| ask(pixel).1) {
         Some(pixel) => Branching::Beyond(pixel),
         None => Branching::Affordable(met as f64 / f64::from(SIDE * SIDE)),
     }
@@ -53,9 +52,9 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
 
 /// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and
 /// places toward their corners.
-pub fn pixels_of_objects(world: &World, counts: impl Fn(&Material<Table>) -> bool) -> Vec<[i32; 2]> {
+pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[i32; 2]> {
     let scene = &world.scene;
-    let wanted = |object: &u32| counts(scene.material_of(*object));
+    let wanted = |object: &u32| counts(scene.material_of(*object).lobes());
     let several: Vec<u32> = (0..scene.objects.len() as u32).filter(wanted).collect();
     let stride = several.len().div_ceil(OBJECTS).max(1);
     let mut pixels = Vec::new();

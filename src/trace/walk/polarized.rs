@@ -49,7 +49,7 @@ impl Polarized {
         }
         let degree = material.degree_of_scattered(arrival, wi);
         let after = self.after(degree);
-        if material.is_diffuse() { Self { degree, ..after } } else { after }
+        if material.lobes().is_diffuse() { Self { degree, ..after } } else { after }
     }
 
     /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.

@@ -1,0 +1,57 @@
+//! The values of a tile, before they are laid into an image.
+
+use serde::{Deserialize, Serialize};
+
+use super::image::{Film, Pixel};
+use super::shard::TilePlace;
+use super::spectral::SpectralImage;
+use super::window::Window;
+
+/// A tile's pixels, row by row, and their numbers in each layer and in the spectral image.
+#[derive(Serialize, Deserialize)]
+pub struct TileValues {
+    /// The image.
+    pub pixels: Vec<Pixel>,
+    /// The layers beside it.
+    pub layers: Vec<Vec<f32>>,
+    /// Spectra, if they are asked for.
+    pub spectral: Vec<f32>,
+}
+
+impl TileValues {
+    /// Of so many pixels of which nothing is known, with all that a film has.
+    pub fn blank(film: &Film, pixels: usize) -> Self {
+        let layers = film.layers.iter().map(|layer| vec![0.0; pixels * layer.numbers()]).collect();
+        let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
+        Self { pixels: vec![Pixel::BLANK; pixels], layers, spectral: vec![0.0; pixels * spectra] }
+    }
+
+    /// Whether they are all numbers of a place in a film.
+    pub fn fit(&self, place: TilePlace, film: &Film) -> bool {
+        let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
+        self.pixels.len() == place.pixels()
+            && self.layers.iter().map(Vec::len).eq(film.layers.iter().map(|layer| place.pixels() * layer.numbers()))
+            && self.spectral.len() == place.pixels() * spectra
+    }
+
+    /// Puts them into their place in a film.
+    pub fn put_into(&self, film: &mut Film, place: TilePlace) {
+        let window = film.window();
+        put(&self.pixels, 1, window, place, &mut film.pixels);
+        for (layer, values) in film.layers.iter_mut().zip(&self.layers) {
+            put(values, layer.numbers(), window, place, &mut layer.values);
+        }
+        if let Some(spectral) = &mut film.spectral {
+            put(&self.spectral, spectral.numbers(), window, place, &mut spectral.values);
+        }
+    }
+}
+
+/// Puts the values of a tile's pixels, so many of each, into the rows that a window is.
+fn put<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
+    let length = place.width as usize * each;
+    for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {
+        let first = place.pixel(window, row * place.width) * each;
+        rows[first..first + length].copy_from_slice(values);
+    }
+}
