@@ -174,7 +174,7 @@ def test_an_error_that_is_asked_for_is_reached_and_told():
     image = abbe.render(SCENE, error=0.05, samples=4096)
     error = image.stats["error"]
     assert error["is_reached"] and error["stopped_by"] == "error" and error["at_most"] <= 0.05
-    short = abbe.render(SCENE, error=1e-5, time=0.05)
+    short = abbe.render(SCENE, error=1e-6, time=1)
     assert short.stats["error"]["stopped_by"] == "time"
     assert any("is not reached" in warning for warning in short.stats["warnings"])
 
