@@ -9,7 +9,7 @@ use crate::material::Material;
 use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
+use crate::trace::{LightPass, Method, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
@@ -258,6 +258,25 @@ fn thinned(places: Vec<DVec3>, lights: usize) -> Vec<DVec3> {
 /// What cannot be met by chance at all.
 fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
+}
+
+/// What is left out of the light of points that smooth surfaces send to one that is so `lit`. Photons are sent to those
+/// that are nothing but smooth.
+pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
+    let materials = || scene.objects.iter().map(|object| &scene.materials[object.material as usize]);
+    let smooth = || materials().filter(|named| named.material.is_smooth_somewhere());
+    let [wholly, partly] = [false, true].map(|wide| smooth().find(|named| named.material.lobes().is_wide() == wide));
+    let line = |ways: &str, name: &str, but: &str| {
+        format!("left out: light of point lights that reaches a {lit} surface by way of {ways} ({name}){but}")
+    };
+    let sent_on = if method.light_vertices { "; some of what it sends on is found at light vertices" } else { "" };
+    let Some(pass) = &method.light_pass else {
+        return smooth().next().map(|named| line("smooth ones", &named.name, sent_on)).into_iter().collect();
+    };
+    let unseen = ", seen in a mirror or through glass or by way of another surface";
+    let of_wholly = wholly.filter(|_| pass.map.is_none()).map(|named| line("smooth ones", &named.name, unseen));
+    let of_partly = partly.map(|named| line("surfaces that are smooth only in part", &named.name, sent_on));
+    of_wholly.into_iter().chain(of_partly).collect()
 }
 
 /// Lights with the solid angle under which what is bright of them is seen.

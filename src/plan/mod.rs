@@ -23,12 +23,13 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::film::Window;
+use crate::light::Light;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    FIRST_LOOK, LightPass, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times,
-    prepare_unguided, probe,
+    FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
 };
+use caustics::left_of_points;
 use lit::Lit;
 use model::Model;
 use survey::method_of_paths;
@@ -91,8 +92,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     because.extend(stopping::reason(scene, method.stop.as_ref(), model_error));
     because.extend(memory(scene, &method));
     because.extend(missed);
-    let left_out: Vec<String> =
-        polarization.left_out.into_iter().chain(lights(scene, method.light_pass.as_ref())).collect();
+    let left_out: Vec<String> = polarization.left_out.into_iter().chain(lights(scene, &method)).collect();
     because.extend(left_out.iter().cloned());
     let summary_lines = because.len();
     because.extend(decisions);
@@ -141,7 +141,7 @@ fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String>
 }
 
 /// What lights cannot do.
-fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
+fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
     let mut lines = Vec::new();
     let lobes = || scene.materials.iter().map(|named| named.material.lobes());
     let wide = |diffuse| lobes().any(|lobes| lobes.is_wide() && lobes.is_diffuse() == diffuse);
@@ -151,16 +151,8 @@ fn lights(scene: &Scene<Curve>, light_pass: Option<&LightPass>) -> Vec<String> {
         [false, true] => Some("rough"),
         [true, true] => Some("diffuse or rough"),
     };
-    let points = scene.lights.iter().filter(|light| !light.is_extended()).count();
-    let bends = scene.materials.iter().find(|m| m.material.is_smooth_somewhere());
-    let all_found = light_pass.is_some_and(|pass| pass.map.is_some());
-    if let (Some(lit), true, Some(bends), false) = (lit, points > 0, bends, all_found) {
-        let where_seen =
-            if light_pass.is_some() { ", seen in a mirror or through glass or by way of another surface" } else { "" };
-        lines.push(format!(
-            "left out: light of point lights that reaches a {lit} surface by way of smooth ones ({}){where_seen}",
-            bends.name
-        ));
+    if let (Some(lit), false) = (lit, scene.lights.iter().all(Light::is_extended)) {
+        lines.extend(left_of_points(scene, method, lit));
     }
     if let Some(bounces) = scene.render.max_bounces {
         lines.push(format!("max_bounces {bounces}: light of longer paths is left out; the report says how much"));

@@ -278,6 +278,10 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     );
     asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics of bulb");
     leaves(point.into(), "no caustics: no surface is smooth");
+    let coated = "[material.coat]\nplastic = { reflectance = 0.5, index = 1.5 }\n[[object]]\nmaterial = \"coat\"\n\
+                  shape.cube = { center = [2, 0.5, 0], size = 1 }\n";
+    asks(format!("{ball}{coated}{point}"), "surface by way of surfaces that are smooth only in part (coat)");
+    leaves(format!("{coated}{point}"), "surface by way of smooth ones (coat)");
     let frosted = "[material.frosted]\ndielectric = { index = 1.5, roughness = 0.25 }\n".to_owned();
     let plan = room(&(frosted + &ball.replace("\"glass\"", "\"frosted\"") + point));
     let all = because(&plan);
