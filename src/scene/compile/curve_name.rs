@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::curve_range::Refusal;
-use super::image_file::IMAGES;
 use crate::error::{ends_in, nearest};
 use crate::scene::share;
+use crate::scene::text::{IMAGES, TABLES};
 use crate::scene::web_color::web_color;
 use crate::spectrum::data::{self, bare};
 
@@ -29,7 +29,7 @@ pub(super) fn unknown_reflectance(name: &str) -> Refusal {
 pub(super) fn in_quotes(text: &str) -> Option<String> {
     match share(text) {
         Some(share) => Some(format!("write {share}")),
-        None if ends_in(Path::new(text), &["csv", "txt", "tsv", "dat"]) => Some(format!("write {{ file = {text:?} }}")),
+        None if ends_in(Path::new(text), TABLES) => Some(format!("write {{ file = {text:?} }}")),
         None => image_called(text),
     }
 }

@@ -7,10 +7,10 @@ use super::context::Context;
 use super::curve::curve;
 use super::curve_range::{is_factor, possible_thickness, told};
 use super::curve_text::{CurveText, KindText, is_repeat};
-use super::image_file::{IMAGES, ImageFile, read_texture};
+use super::image_file::{ImageFile, read_texture};
 use super::image_numbers::Meaning;
 use super::radiometry::on_film;
-use crate::scene::text::{At, Fault, FileKind};
+use crate::scene::text::{At, Fault, FileKind, IMAGES};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
 const IMAGE: FileKind =

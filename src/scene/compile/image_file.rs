@@ -8,9 +8,6 @@ use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_
 use crate::scene::text::Fault;
 use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 
-/// How the names of images end.
-pub(super) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
-
 /// Reads an OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
 ///
 /// # Errors

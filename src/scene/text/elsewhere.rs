@@ -4,6 +4,7 @@ use std::path::Path;
 
 use toml::de::{DeArray, DeValue};
 
+use super::named_file::{IMAGES, TABLES};
 use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
@@ -325,9 +326,6 @@ const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
 const OF_IMAGES: [&str; 2] = ["reflectance", "radiance"];
 const OF_LIGHTS: [&str; 3] = ["radiance", "irradiance", "intensity"];
 const SPECTRA: [&str; 4] = ["reflectance", "radiance", "irradiance", "intensity"];
-/// How the names of images and of tables end.
-pub(super) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
-const TABLES: &[&str] = &["csv", "txt", "tsv", "dat"];
 
 /// Keys of planes in other programs, and what to do.
 const OF_PLANES: [(&[&str], &str); 2] = [

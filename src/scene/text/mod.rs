@@ -24,7 +24,7 @@ pub(super) use document::Document;
 pub(super) use fields::{Choice, Fields};
 pub(super) use include::{INCLUDE, Included, MOST_BYTES, merged};
 pub(super) use mistake::Mistake;
-pub(super) use named_file::{Fault, FileKind};
+pub(super) use named_file::{Fault, FileKind, IMAGES, TABLES};
 pub use rows::{Numbers, Rows};
 pub(super) use settings::set;
 pub(super) use texts::{Place, Texts};

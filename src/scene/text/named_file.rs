@@ -5,6 +5,10 @@ use std::path::Path;
 
 use crate::error::nearest_file;
 
+/// How the names of images end, and those of tables.
+pub(in crate::scene) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
+pub(in crate::scene) const TABLES: &[&str] = &["csv", "txt", "tsv", "dat"];
+
 /// A kind of file that a scene names.
 pub(in crate::scene) struct FileKind {
     /// What is told where its name is empty.

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::elsewhere::{IMAGES, called_here, in_other_words};
+use super::elsewhere::{called_here, in_other_words};
+use super::named_file::IMAGES;
 use super::tree::Node;
 use crate::error::{ends_in, nearest};
 use crate::film::layer_elsewhere;
