@@ -28,9 +28,10 @@ pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
 /// What other programs call the brightness of a light beside its color.
 const BRIGHTNESS: [&str; 5] = ["intensity", "strength", "power", "brightness", "multiplier"];
 
-/// The known key that was meant by one beside those of a table, or all known ones.
+/// What to write for a key that a table does not know: the one that was meant, or what to do where that stands beside
+/// it already.
 pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> String {
-    // A slip of the pen is none of another program.
+    // A misspelt key, and one that has an answer of its own, is told what it is told anywhere.
     let is_told = nearest(word, known.iter().copied()).is_some() || in_other_words(word, known).is_some();
     let free: Vec<&str> = known.iter().copied().filter(|&key| !beside.contains_key(key)).collect();
     let is_new = is_told || meant(word, word, &free).is_some();
