@@ -260,22 +260,23 @@ fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
 }
 
-/// What is left out of the light of points that smooth surfaces send to one that is so `lit`. Photons are sent to those
-/// that are nothing but smooth.
+/// What is left out of the light of points that reaches a surface by way of smooth ones. `lit` is what that surface is
+/// called, diffuse or rough. Photons are sent to what is nothing but smooth.
 pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
-    let materials = || scene.objects.iter().map(|object| &scene.materials[object.material as usize]);
-    let smooth = || materials().filter(|named| named.material.is_smooth_somewhere());
-    let [wholly, partly] = [false, true].map(|wide| smooth().find(|named| named.material.lobes().is_wide() == wide));
-    let line = |ways: &str, name: &str, but: &str| {
+    let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
+    let [wholly, partly] =
+        [true, false].map(|wholly| smooth().find(|&object| is_photon_target(scene, object) == wholly));
+    let line = |ways: &str, object: usize, but: &str| {
+        let name = &scene.materials[scene.objects[object].material as usize].name;
         format!("left out: light of point lights that reaches a {lit} surface by way of {ways} ({name}){but}")
     };
     let sent_on = if method.light_vertices { "; some of what it sends on is found at light vertices" } else { "" };
     let Some(pass) = &method.light_pass else {
-        return smooth().next().map(|named| line("smooth ones", &named.name, sent_on)).into_iter().collect();
+        return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
     let unseen = ", seen in a mirror or through glass or by way of another surface";
-    let of_wholly = wholly.filter(|_| pass.map.is_none()).map(|named| line("smooth ones", &named.name, unseen));
-    let of_partly = partly.map(|named| line("surfaces that are smooth only in part", &named.name, sent_on));
+    let of_wholly = wholly.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
+    let of_partly = partly.map(|object| line("surfaces that are smooth only in part", object, sent_on));
     of_wholly.into_iter().chain(of_partly).collect()
 }
 

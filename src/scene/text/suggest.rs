@@ -34,8 +34,8 @@ pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> Str
     // A misspelt key, and one that has an answer of its own, is told what it is told anywhere.
     let is_told = nearest(word, known.iter().copied()).is_some() || in_other_words(word, known).is_some();
     let free: Vec<&str> = known.iter().copied().filter(|&key| !beside.contains_key(key)).collect();
-    let is_new = is_told || meant(word, word, &free).is_some();
-    match meant(word, word, known).filter(|_| !is_new) {
+    let is_another = is_told || meant(word, word, &free).is_some();
+    match meant(word, word, known).filter(|_| !is_another) {
         None => suggestion(word, word, known),
         Some(near) if BRIGHTNESS.contains(&word) => format!("multiply `{near}` by it"),
         Some(near) => format!("`{near}` stands here already: leave one of them out"),

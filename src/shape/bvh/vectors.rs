@@ -163,7 +163,7 @@ impl Number for f32 {
     #[inline(always)]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
         use std::arch::x86_64::{__m128, _mm256_cvtps_pd};
-        // SAFETY: an `Avx2` exists only where its instructions do; four numbers are a vector of as many.
+        // SAFETY: an `Avx2` exists only where its instructions do; array and vector are four 32-bit numbers.
         unsafe { _mm256_cvtps_pd(std::mem::transmute::<[Self; GROUP], __m128>(*numbers)) }
     }
 }
@@ -172,7 +172,7 @@ impl Number for f32 {
 impl Number for f64 {
     #[inline(always)]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
-        // SAFETY: four numbers are a vector of as many.
+        // SAFETY: array and vector are four 64-bit numbers.
         unsafe { std::mem::transmute::<[Self; GROUP], std::arch::x86_64::__m256d>(*numbers) }
     }
 }
@@ -228,11 +228,11 @@ pub mod avx2 {
     #[inline]
     #[target_feature(enable = "avx2")]
     fn enter(first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
-        // SAFETY: a child is a u32; eight are a vector of as many.
+        // SAFETY: a child is a u32, and array and vector are eight of them.
         let children = unsafe { transmute::<[Child; WIDTH], __m256i>(*children) };
         let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(reach));
         for axis in 0..3 {
-            // SAFETY: eight numbers are a vector of as many.
+            // SAFETY: array and vector are eight 32-bit numbers.
             let [first, last] = [first, last].map(|side| unsafe { transmute::<[f32; WIDTH], __m256>(*side[axis]) });
             let enter = _mm256_sub_ps(first, _mm256_set1_ps(slabs.entry[axis]));
             // Of a NaN and a number, both keep the second.
@@ -244,7 +244,7 @@ pub mod avx2 {
         let near = _mm256_castps_si256(near);
         let (even, odd) = (_mm256_unpacklo_epi32(children, near), _mm256_unpackhi_epi32(children, near));
         let halves = [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)];
-        // SAFETY: each half is a vector of four keys.
+        // SAFETY: keys are 64-bit numbers, of which each vector holds four.
         (entered as u32, unsafe { transmute::<[__m256i; 2], Keys>(halves) })
     }
 
@@ -285,7 +285,7 @@ pub mod avx2 {
         let ahead = _mm256_and_pd(ahead, _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(t_max)));
         let met = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
         let bits = |lanes: __m256d| _mm256_movemask_pd(lanes) as u32;
-        // SAFETY: a vector of four numbers is as many.
+        // SAFETY: vector and array are four 64-bit numbers.
         let numbers = |lanes: __m256d| unsafe { transmute::<__m256d, [f64; GROUP]>(lanes) };
         Some(Crossings {
             met: bits(met),
