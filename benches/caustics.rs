@@ -41,7 +41,11 @@ fn main() {
         let plan = plan(&scene).method;
         let photons = |samples: u32, each: f64| {
             let photons = (f64::from(samples) * 576.0 * each) as u64;
-            Method { samples, light_pass: Some(LightPass { photons, lights: vec![0], map: None }), ..plan.clone() }
+            Method {
+                samples,
+                light_pass: Some(LightPass { photons, lights: vec![0], coats: false, map: None }),
+                ..plan.clone()
+            }
         };
         let way = if plan.light_pass.is_some() { "photons" } else { "chance" };
         measure(&name, &format!("the plan ({way})"), &scene, &Method { samples: 64, ..plan.clone() });

@@ -37,7 +37,7 @@ fn main() {
             .map_or(1.0, |pass| pass.photons as f64 / (f64::from(plan.samples) * pixels(&scene)));
         let method = |pass: bool, samples: u32, seed| {
             let photons = (wanted * f64::from(samples) * pixels(&scene)) as u64;
-            let light_pass = pass.then(|| LightPass { photons, lights: lights.clone(), map: None });
+            let light_pass = pass.then(|| LightPass { photons, lights: lights.clone(), coats: false, map: None });
             Method { samples, seed, light_pass, ..plan.clone() }
         };
         let image = |method| pool.install(|| render(&prepare(&scene, method), &|_| ())).0;

@@ -138,8 +138,10 @@ fn the_density_of_samples_changes_no_mean() {
     let vertices = |method| Method { light_vertices: true, ..method };
     let stop = |method| Method { stop: Some(Stop { noise: None, time: None, least: 32, most: 32 }), ..method };
     let plain: Change = |method| method;
-    let photons =
-        |method| Method { light_pass: Some(LightPass { photons: 4096, lights: vec![0, 1], map: None }), ..method };
+    let photons = |method| Method {
+        light_pass: Some(LightPass { photons: 4096, lights: vec![0, 1], coats: false, map: None }),
+        ..method
+    };
     let sharp = lit([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");
     let lit_around = lit([12, 12], 24, "").replace("diffuse_bounces = 0", "diffuse_bounces = 2")
         + &body(

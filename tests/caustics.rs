@@ -6,6 +6,7 @@
 
 mod agreement;
 mod blur;
+mod coats;
 mod edges;
 mod gathered;
 mod known;

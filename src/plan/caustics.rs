@@ -9,7 +9,7 @@ use crate::material::Material;
 use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Method, PhotonWorth, Transport, World, is_photon_target, piloted, seen_photons};
+use crate::trace::{LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons, smoothness};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
@@ -59,13 +59,21 @@ pub(super) struct Caustics {
 impl Caustics {
     /// The pass of so many photons for each camera sample.
     pub(super) fn pass(&self, world: &World, of_a_sample: f64) -> LightPass {
-        let lights = self.photons.iter().flat_map(|photons| photons.lights.clone()).collect();
+        let mut lights: Vec<LightId> = self.photons.iter().flat_map(|photons| photons.lights.clone()).collect();
+        lights.sort_unstable();
+        lights.dedup();
         let of_a_sample = rounded(of_a_sample.clamp(FEWEST_OF_A_SAMPLE, MOST_OF_A_SAMPLE));
         LightPass {
             photons: (of_a_sample * world.samples_of_the_format()).max(FEWEST).ceil() as u64,
             lights,
+            coats: self.reach_coats(),
             map: None,
         }
+    }
+
+    /// Whether they are sent to what is smooth only in part as well.
+    fn reach_coats(&self) -> bool {
+        self.photons.iter().any(|photons| photons.to == Smoothness::Partial)
     }
 
     /// What a person is told of them.
@@ -94,16 +102,14 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
-    let world = piloted(unguided, LightPass { photons: of_all, lights, map: None });
+    let coats = has_coats(scene);
+    let world = piloted(unguided, LightPass { photons: of_all, lights, coats, map: None });
     if let Some(why) = nowhere_to_aim(scene, &world) {
         return Shown::not(vec![why], true);
     }
     let share = seen_photons(&world);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
-    let to = match targets(scene).as_slice() {
-        [one] => scene.objects[*one].name.clone(),
-        many => format!("{} smooth objects", many.len()),
-    };
+    let to = aim(scene, coats);
     let mut lines = Vec::new();
     if !unseen.is_empty() {
         lines.push(format!(
@@ -129,13 +135,22 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     }
     let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
     let caustics = Caustics { photons, from: named(scene, &sending), to, seen, gain };
-    Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
+    let to = aim(scene, caustics.reach_coats());
+    Shown { caustics: Some(Caustics { to, ..caustics }), why: lines, settled: false, taught: Some(world) }
+}
+
+/// What photons are sent to, as a person is told.
+fn aim(scene: &Scene<Curve>, coats: bool) -> String {
+    match targets(scene, coats).as_slice() {
+        [one] => scene.objects[*one].name.clone(),
+        many => format!("{} smooth objects", many.len()),
+    }
 }
 
 /// Why the photons of a world are sent nowhere, if that is so.
 fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let has_end = |&object: &usize| scene.objects[object].shape.is_bounded();
-    let targets = targets(scene);
+    let targets = targets(scene, true);
     let name = &scene.objects[*targets.first()?].name;
     (!world.reaches_without_end() && !targets.iter().any(has_end)).then(|| {
         let why = format!("{name} has no end and is not seen, so photons cannot be aimed at it");
@@ -145,8 +160,8 @@ fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
 
 /// What the photons of a world leave to chance of surfaces that have no end.
 pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String> {
-    world.method().light_pass.as_ref()?;
-    let endless = targets(scene).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
+    let pass = world.method().light_pass.as_ref()?;
+    let endless = targets(scene, pass.coats).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
     let where_left = if world.reaches_without_end() { ", far beyond where it is seen" } else { " and is not seen" };
     let name = &scene.objects[endless].name;
     Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
@@ -180,10 +195,6 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     if scene.render.caustics == AutoText::Off {
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
-    if targets(scene).is_empty() {
-        let why = "caustics of surfaces that are smooth only in part, such as clear coats, are left to chance";
-        return Err(Some(format!("no photon tracing: {why}{}", missing(scene))));
-    }
     let places = thinned(lit_places(scene), scene.lights.len());
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
@@ -212,8 +223,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
 
 /// Why a scene has no caustics, if it has none.
 fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
-    let mut materials = (0..scene.objects.len()).map(|object| scene.material_of(object as u32));
-    if targets(scene).is_empty() && !materials.any(Material::is_smooth_somewhere) {
+    if targets(scene, true).is_empty() {
         Some("no surface is smooth glass, a mirror or polished metal")
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
@@ -224,9 +234,15 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     }
 }
 
-/// Objects that photons can be sent to: they only mirror or refract light.
-pub(super) fn targets(scene: &Scene<Curve>) -> Vec<usize> {
-    (0..scene.objects.len()).filter(|&object| is_photon_target(scene, object)).collect()
+/// Objects that photons can be sent to: they only mirror or refract light, or with `coats`, do so with a part of it.
+pub(super) fn targets(scene: &Scene<Curve>, coats: bool) -> Vec<usize> {
+    let is_target = |&object: &usize| smoothness(scene, object).is_some_and(|smooth| smooth.is_aimed_at(coats));
+    (0..scene.objects.len()).filter(is_target).collect()
+}
+
+/// Whether any of them is smooth only in part.
+pub(super) fn has_coats(scene: &Scene<Curve>) -> bool {
+    (0..scene.objects.len()).any(|object| smoothness(scene, object) == Some(Smoothness::Partial))
 }
 
 /// Whether the camera sees any surface straight on which a caustic may lie.
@@ -261,11 +277,9 @@ fn missing(scene: &Scene<Curve>) -> &'static str {
 }
 
 /// What is left out of the light of points that reaches a surface by way of smooth ones. `lit` is what that surface is
-/// called, diffuse or rough. Photons are sent to what is nothing but smooth.
+/// called, diffuse or rough.
 pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
-    let [wholly, partly] =
-        [true, false].map(|wholly| smooth().find(|&object| is_photon_target(scene, object) == wholly));
     let line = |ways: &str, object: usize, but: &str| {
         let name = &scene.materials[scene.objects[object].material as usize].name;
         format!("left out: light of point lights that reaches a {lit} surface by way of {ways} ({name}){but}")
@@ -275,9 +289,11 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
     let unseen = ", seen in a mirror or through glass or by way of another surface";
-    let of_wholly = wholly.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
-    let of_partly = partly.map(|object| line("surfaces that are smooth only in part", object, sent_on));
-    of_wholly.into_iter().chain(of_partly).collect()
+    let aimed_at = targets(scene, pass.coats);
+    let of_aimed = aimed_at.first().filter(|_| pass.map.is_none()).map(|&object| line("smooth ones", object, unseen));
+    let left = smooth().find(|object| !aimed_at.contains(object));
+    let of_left = left.map(|object| line("surfaces that are smooth only in part", object, sent_on));
+    of_aimed.into_iter().chain(of_left).collect()
 }
 
 /// Lights with the solid angle under which what is bright of them is seen.

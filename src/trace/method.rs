@@ -101,7 +101,7 @@ pub struct Stop {
     pub most: u32,
 }
 
-/// Photons that are sent to all finite smooth objects, for the light that these throw onto what the camera sees.
+/// Photons that are sent to smooth objects, for the light that these throw onto what the camera sees.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightPass {
     /// How many, about.
@@ -109,6 +109,8 @@ pub struct LightPass {
     /// The lights that send them: points, spots, suns, what is bright in an image of the sky, and finite `emissive`
     /// surfaces.
     pub lights: Vec<LightId>,
+    /// Whether they are sent to objects that are smooth only in part as well, such as those with a clear coat.
+    pub coats: bool,
     /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and
     /// chance.
     pub map: Option<MapPasses>,

@@ -30,10 +30,20 @@ const EVERYWHERE: f64 = 0.1;
 /// Of a surface that has no end, photons are sent to so many times what was found.
 const REACH: f64 = 6.0;
 
+/// How far an object is smooth to which photons can be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smoothness {
+    /// Wherever light goes on from it.
+    Whole,
+    /// It scatters light widely as well, as what lies under a clear coat does.
+    Partial,
+}
+
 /// A place on a smooth surface by way of which light may come to what the camera sees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) at: DVec3,
+    smoothness: Smoothness,
     /// Whether the surface has no end.
     endless: bool,
     /// How far the camera is.
@@ -47,10 +57,21 @@ pub(super) struct Part {
     pub(super) share: f64,
 }
 
-/// Whether photons can be sent to an object: it is smooth where light goes on.
-pub fn is_photon_target<S>(scene: &Scene<S>, object: usize) -> bool {
+/// How far an object is smooth; none if photons cannot be sent to it.
+pub fn smoothness<S>(scene: &Scene<S>, object: usize) -> Option<Smoothness> {
     let material = scene.material_of(object as u32);
-    !material.lobes().is_wide() && !matches!(material, Material::Emissive(_))
+    if material.lobes().is_wide() {
+        material.is_smooth_somewhere().then_some(Smoothness::Partial)
+    } else {
+        (!matches!(material, Material::Emissive(_))).then_some(Smoothness::Whole)
+    }
+}
+
+impl Smoothness {
+    /// Whether photons of a light pass are sent to what is so smooth, which sends them to coats or not.
+    pub fn is_aimed_at(self, coats: bool) -> bool {
+        coats || self == Self::Whole
+    }
 }
 
 /// Whether the camera may see a small part of what lies in a ball: it is wider than the image there.
@@ -62,8 +83,9 @@ fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
 
 /// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
 /// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
-pub(super) fn places(scene: &Scene<Table>, lights: &[LightId]) -> Vec<Place> {
-    let targets = (0..scene.objects.len()).filter(|&object| is_photon_target(scene, object));
+pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> Vec<Place> {
+    let is_target = |&object: &usize| smoothness(scene, object).is_some_and(|smooth| smooth.is_aimed_at(coats));
+    let targets = (0..scene.objects.len()).filter(is_target);
     let mut balls = targets.map(|object| scene.objects[object].shape.ball());
     let mut found = Vec::new();
     if lights.is_empty() || balls.all(|ball| ball.is_some_and(|ball| !is_large(scene, &ball))) {
@@ -82,8 +104,8 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId]) -> Vec<Place> {
     found
 }
 
-/// Walks straight through smooth surfaces, adds where they are met, and answers where another one is. A ray that has
-/// left no surface is the camera's.
+/// Walks straight through smooth surfaces, adds where they are met, and answers where another one is, or one that is
+/// smooth only in part. A ray that has left no surface is the camera's.
 fn walk(
     scene: &Scene<Table>,
     mut ray: Ray,
@@ -100,11 +122,14 @@ fn walk(
         if distance < 0.0 {
             return None;
         }
-        if !is_photon_target(scene, hit.object as usize) {
+        let smoothness = smoothness(scene, hit.object as usize);
+        if let Some(smoothness) = smoothness {
+            let distance = (point.position - scene.camera.position()).length();
+            found.push(Place { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });
+        }
+        if smoothness != Some(Smoothness::Whole) {
             return Some((point.position, hit.primitive()));
         }
-        let from_camera = (point.position - scene.camera.position()).length();
-        found.push(Place { at: point.position, endless: !object.shape.is_bounded(), distance: from_camera });
         (ray, left) = (point.leave(ray.direction), Some(hit.primitive()));
     }
     None
@@ -127,12 +152,13 @@ pub(super) fn reach(places: &[Place]) -> Option<Ball> {
     (places.len() >= FEWEST).then(|| around(&places, REACH))
 }
 
-/// The parts, at most so many, of what lies in a ball; none where it is seen as a whole, or not at all.
+/// The parts, at most so many, of what is so smooth in a ball; none where it is seen as a whole, or not at all.
 ///
 /// A part of n places gets photons for the square root of n: by area, the near ones would get too few, and by pixels
 /// the far ones, where photons are gathered around places that look longer than wide.
-pub(super) fn parts(places: &[Place], whole: &Ball, most: usize) -> Vec<Part> {
-    let mut places: Vec<Place> = places.iter().filter(|place| whole.contains(place.at)).copied().collect();
+pub(super) fn parts(places: &[Place], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<Part> {
+    let is_in = |place: &&Place| place.smoothness == smoothness && whole.contains(place.at);
+    let mut places: Vec<Place> = places.iter().filter(is_in).copied().collect();
     if places.len() < FEWEST {
         return Vec::new();
     }
@@ -167,11 +193,15 @@ mod tests {
     fn parts_of_a_sea_are_small_where_it_is_near() {
         // Rows of an image of a plane, from below the camera to the horizon.
         let row = |i: u32| 1.6 / (f64::from(i) / 576.0);
-        let place =
-            |i| Place { at: DVec3::new(f64::from(i % 24) / 24.0, 0.0, 1.0) * row(i), endless: true, distance: row(i) };
+        let place = |i| Place {
+            at: DVec3::new(f64::from(i % 24) / 24.0, 0.0, 1.0) * row(i),
+            smoothness: Smoothness::Whole,
+            endless: true,
+            distance: row(i),
+        };
         let places: Vec<Place> = (1..=576).map(place).collect();
         let whole = reach(&places).expect("there are enough");
-        let parts = parts(&places, &whole, 6);
+        let parts = parts(&places, Smoothness::Whole, &whole, 6);
         assert!((3..=6).contains(&parts.len()), "{parts:?}");
         assert!(parts.is_sorted_by(|a, b| 1.5 * a.ball.radius < b.ball.radius), "{parts:?}");
         for place in &places {
@@ -181,6 +211,6 @@ mod tests {
         assert!((share - 0.9).abs() < 1e-12, "{share} of the photons are sent to parts");
         // Seen as a whole, there are none.
         let small = Ball { radius: 0.5 * parts[0].ball.radius, ..parts[0].ball };
-        assert_eq!(super::parts(&places, &small, 6), []);
+        assert_eq!(super::parts(&places, Smoothness::Whole, &small, 6), []);
     }
 }

@@ -3,17 +3,18 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{Part, Place, is_photon_target, parts, reach};
+use super::photon_focus::{Part, Place, Smoothness, parts, reach, smoothness};
 use crate::light::{Beam, LeSample, LightId};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
 
-/// Photons of one light toward one ball of smooth objects, or toward a part of it.
+/// Photons of one light toward one ball of objects that are all as smooth, or toward a part of it.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTarget {
     pub(super) light: LightId,
+    smoothness: Smoothness,
     /// How many photons are sent.
     pub(super) photons: u64,
     /// The share of those of the whole ball; of a part, it is worth as much however small it is.
@@ -34,8 +35,8 @@ pub(super) struct PhotonTargets {
     pub(super) targets: Vec<PhotonTarget>,
     /// Which lights send photons.
     pub(super) lights: Vec<bool>,
-    /// Which objects they are sent to ..
-    objects: Vec<bool>,
+    /// Which objects they are sent to, by how smooth these are ..
+    objects: Vec<Option<Smoothness>>,
     /// .. and where to those that have no end.
     pub(super) reach: Option<Ball>,
     /// A ball around all that is finite.
@@ -55,22 +56,38 @@ const MOST_TOLD_APART: usize = 12;
 const MANY: usize = 4096;
 /// Share of the photons that all targets get alike; the others go by flux.
 const EVENLY: f64 = 0.1;
+/// What a clear coat mirrors, about: of the flux that is sent to what is smooth in part, this goes on from there.
+const MIRRORED: f64 = 0.05;
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, to all objects that photons can be sent to, of large ones mostly
-    /// to places that matter; none if there is none, or none of the lights shines there.
-    pub(super) fn new(scene: &Scene<Table>, lights: &[(LightId, f64)], places: &[Place], photons: u64) -> Option<Self> {
-        let mut objects: Vec<bool> = (0..scene.objects.len()).map(|object| is_photon_target(scene, object)).collect();
-        let shapes = || scene.objects.iter().map(|object| &object.shape);
-        let balls = shapes().zip(&objects).filter(|(_, target)| **target).filter_map(|(shape, _)| shape.ball());
-        let mut balls = gathered(balls.collect(), (MOST_AIMS / lights.len().max(1)).clamp(1, MOST));
+    /// From some lights, given with their luminances, to all objects that photons can be sent to, those with coats too
+    /// or not, of large ones mostly to places that matter; none if there is none, or none of the lights shines there.
+    pub(super) fn new(
+        scene: &Scene<Table>,
+        lights: &[(LightId, f64)],
+        places: &[Place],
+        coats: bool,
+        photons: u64,
+    ) -> Option<Self> {
         let reach = reach(places);
-        match reach {
-            Some(reach) => balls.push(reach),
-            None => objects.iter_mut().zip(shapes()).for_each(|(target, shape)| *target &= shape.is_bounded()),
+        let of_object = |object: usize| {
+            let has_end = scene.objects[object].shape.is_bounded();
+            let is_aimed_at = |smooth: &Smoothness| smooth.is_aimed_at(coats) && (has_end || reach.is_some());
+            smoothness(scene, object).filter(is_aimed_at)
+        };
+        let objects: Vec<Option<Smoothness>> = (0..scene.objects.len()).map(of_object).collect();
+        let most = (MOST_AIMS / lights.len().max(1)).clamp(1, MOST);
+        let mut balls = Vec::new();
+        for smooth in [Smoothness::Whole, Smoothness::Partial] {
+            let of_all = || objects.iter().zip(scene.objects.iter()).filter(|(found, _)| **found == Some(smooth));
+            let finite = gathered(of_all().filter_map(|(_, object)| object.shape.ball()).collect(), most);
+            balls.extend(finite.into_iter().map(|ball| (smooth, ball)));
+            let is_endless = of_all().any(|(_, object)| !object.shape.is_bounded());
+            balls.extend(reach.filter(|_| is_endless).map(|ball| (smooth, ball)));
         }
         let most = (MOST_TOLD_APART / (lights.len() * balls.len()).max(1)).clamp(1, MOST_PARTS);
-        let wholes: Vec<_> = balls.into_iter().map(|ball| (ball, parts(places, &ball, most))).collect();
+        let wholes: Vec<_> =
+            balls.into_iter().map(|(smooth, ball)| (smooth, ball, parts(places, smooth, &ball, most))).collect();
         let guides = [Guide::even(), Guide::disc()].map(Arc::new);
         let targets: Vec<_> =
             lights.iter().flat_map(|light| of_light(scene, light.0, light.1, &wholes, &guides)).collect();
@@ -90,7 +107,7 @@ impl PhotonTargets {
     /// Whether photons are sent to a place on an object.
     pub(super) fn include(&self, scene: &Scene<Table>, object: u32, place: DVec3) -> bool {
         let is_near = || self.reach.is_some_and(|reach| reach.contains(place));
-        self.objects[object as usize] && (scene.objects[object as usize].shape.is_bounded() || is_near())
+        self.objects[object as usize].is_some() && (scene.objects[object as usize].shape.is_bounded() || is_near())
     }
 
     /// The flux that all targets send, about, as CIE Y.
@@ -111,8 +128,20 @@ impl PhotonTargets {
     /// Follows what other targets of the same scene, of all these lights, have learned.
     pub(super) fn follow(&mut self, taught: &Self) {
         self.targets.clone_from(&taught.targets);
-        self.targets.retain(|target| self.lights[target.light]);
+        self.targets.retain(|target| self.lights[target.light] && self.objects.contains(&Some(target.smoothness)));
         self.share_out();
+    }
+
+    /// Those of some lights alone, to what is so smooth.
+    pub(super) fn only(mut self, lights: &[LightId], smoothness: Smoothness) -> Self {
+        self.targets.retain(|target| target.smoothness == smoothness && lights.contains(&target.light));
+        self.objects.iter_mut().for_each(|object| *object = object.filter(|smooth| *smooth == smoothness));
+        self
+    }
+
+    /// Whether any are sent to what is so smooth.
+    pub(super) fn aim_at(&self, smoothness: Smoothness) -> bool {
+        self.targets.iter().any(|target| target.smoothness == smoothness)
     }
 
     /// The same with another number of photons, so many times as many.
@@ -182,21 +211,22 @@ fn of_light(
     scene: &Scene<Table>,
     light: LightId,
     luminance: f64,
-    wholes: &[(Ball, Vec<Part>)],
+    wholes: &[(Smoothness, Ball, Vec<Part>)],
     [even, disc]: &[Arc<Guide>; 2],
 ) -> Vec<PhotonTarget> {
-    let target = |ball: &Ball, share: f64, is_part: bool| {
+    let target = |smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
         let beam = scene.lights[light].beam(ball)?;
-        let flux = beam.flux * luminance;
+        let goes_on = if smoothness == Smoothness::Whole { 1.0 } else { MIRRORED };
+        let flux = beam.flux * luminance * goes_on;
         let guide = if beam.is_apart { disc.clone() } else { even.clone() };
-        (flux > 0.0).then_some(PhotonTarget { light, photons: 0, share, is_part, beam, guide, flux })
+        (flux > 0.0).then_some(PhotonTarget { light, smoothness, photons: 0, share, is_part, beam, guide, flux })
     };
     let mut targets = Vec::new();
-    for (ball, parts) in wholes {
+    for (smooth, ball, parts) in wholes {
         let share = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
-        if let Some(whole) = target(ball, share, false) {
+        if let Some(whole) = target(*smooth, ball, share, false) {
             targets.push(whole);
-            targets.extend(parts.iter().filter_map(|part| target(&part.ball, part.share, true)));
+            targets.extend(parts.iter().filter_map(|part| target(*smooth, &part.ball, part.share, true)));
         }
     }
     targets

@@ -44,7 +44,8 @@ fn films(
     seeds: u64,
 ) -> Vec<Film> {
     let lights = (0..scene.lights.len()).collect();
-    let light_pass = pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, map });
+    let light_pass =
+        pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, coats: true, map });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
     films_of(scene, &asked, 0..seeds)
 }

@@ -11,7 +11,7 @@ use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene};
 /// The method of a scene's plan with all lights and so many photons.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
-    let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), map: None });
+    let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), coats: false, map: None });
     let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
     film_of(&scene, method)
 }
@@ -280,8 +280,8 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     leaves(point.into(), "no caustics: no surface is smooth");
     let coated = "[material.coat]\nplastic = { reflectance = 0.5, index = 1.5 }\n[[object]]\nmaterial = \"coat\"\n\
                   shape.cube = { center = [2, 0.5, 0], size = 1 }\n";
-    asks(format!("{ball}{coated}{point}"), "surface by way of surfaces that are smooth only in part (coat)");
-    leaves(format!("{coated}{point}"), "surface by way of smooth ones (coat)");
+    asks(format!("{ball}{coated}{point}"), "photons from a point toward 2 smooth objects");
+    asks(format!("{coated}{point}"), "photons from a point toward object ");
     let frosted = "[material.frosted]\ndielectric = { index = 1.5, roughness = 0.25 }\n".to_owned();
     let plan = room(&(frosted + &ball.replace("\"glass\"", "\"frosted\"") + point));
     let all = because(&plan);

@@ -17,7 +17,7 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
     let scene = scene(&text);
     for samples in [1, 4, 16, 64] {
         let image = |map: Option<MapPasses>| {
-            let light_pass = map.map(|map| LightPass { photons: 4096, lights: vec![1], map: Some(map) });
+            let light_pass = map.map(|map| LightPass { photons: 4096, lights: vec![1], coats: false, map: Some(map) });
             let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
             film_of(&scene, method).pixels
         };

@@ -14,6 +14,8 @@ fn sun(more: &str) -> String {
     SUN.replace(" }\n", &format!(", {more} }}\n"))
 }
 
+const PLASTIC: &str = "plastic = { reflectance = 0.6, index = 1.5 }";
+
 /// Mirrors throw its light to where paths from the camera find it by chance often enough to tell a mean.
 fn wide() -> String {
     sun("angular_diameter = 40")
@@ -145,16 +147,18 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
     let map = LightPass {
         photons: 8192,
         lights: vec![0],
+        coats: true,
         map: Some(MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 }),
     };
     type Looking = Box<dyn Fn(&World) -> World>;
-    let rooms: [(&str, String, Option<LightPass>, Looking); 9] = [
+    let rooms: [(&str, String, Option<LightPass>, Looking); 10] = [
         ("alone", with(&[cubes()]), None, Box::new(looking)),
         ("a pane", with(&[cubes(), pane()]), None, Box::new(looking)),
         ("a lamp", with(&[cubes(), lamp()]), None, Box::new(looking)),
         ("a sun as well", with(&[cubes(), SUN.into()]), None, Box::new(looking)),
         ("a mirror", with(&[ball("silver", "mirror = { reflectance = 0.9 }")]), None, Box::new(looking)),
-        ("plastic", with(&[ball("plastic", "plastic = { reflectance = 0.6, index = 1.5 }")]), None, Box::new(looking)),
+        ("plastic", with(&[ball("plastic", PLASTIC)]), None, Box::new(looking)),
+        ("plastic and photons", with(&[ball("plastic", PLASTIC)]), Some(map.clone()), Box::new(looking)),
         ("glass and photons", with(&[ball("glass", "dielectric = { index = 1.5 }")]), Some(map), Box::new(looking)),
         ("a small part", with(&[cubes()]), None, Box::new(part(Vec::new(), [-1.0, 0.4, 0.3], 0.5))),
         ("half", with(&[cubes(), pane()]), None, Box::new(part(vec![(2080, 1.0)], [0.0, 1.0, -2.5], 2.5))),
@@ -172,6 +176,7 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
     let map = MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 };
     let glass = || ball("glass", "dielectric = { index = 1.5 }");
     let bent = || smooth("dielectric = { index = 1.5 }");
+    let plastic = || ball("plastic", PLASTIC);
     let frosted = || {
         let cube = "cube = { center = [0.9, 0.5, 0.2], size = 0.8 }";
         body("frosted", "dielectric = { index = 1.5, roughness = 0.3 }", &[cube])
@@ -193,11 +198,15 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
         ("a lamp in a globe", globe(""), vec![0], Some(sharp)),
         ("a lamp in a globe, two diffuse bounces", globe("diffuse_bounces = 2"), vec![0], Some(sharp)),
         ("a lamp in a globe, four bounces", globe("max_bounces = 4"), vec![0], Some(sharp)),
+        ("plastic in the sun", open("", &[SUN.into(), environment(0.5), plastic(), cubes()]), vec![0], Some(map)),
+        ("plastic under a lamp", open("", &[lamp(), plastic(), cubes()]), vec![0], Some(map)),
+        ("a smooth mesh of plastic", open("", &[SUN.into(), lamp(), smooth(PLASTIC)]), vec![0, 1], Some(map)),
+        ("plastic, and photons that are shown", open("", &[wide(), environment(0.5), plastic()]), vec![0], None),
         ("photons of the lamp alone", open("", &[SUN.into(), lamp(), environment(0.5), glass()]), vec![1], Some(map)),
     ];
     for (what, text, lights, map) in &rooms {
         let photons = |method: &mut Method| {
-            method.light_pass = Some(LightPass { photons: 8192, lights: lights.clone(), map: *map });
+            method.light_pass = Some(LightPass { photons: 8192, lights: lights.clone(), coats: true, map: *map });
         };
         let worst = assert_same(what, text, &photons, &looking, rooms.len());
         println!("{what}: at most {worst:.1} sigma");

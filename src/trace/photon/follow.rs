@@ -7,8 +7,8 @@ use crate::material::{Arrival, Branch, Material, Scatter};
 use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
-use crate::trace::World;
 use crate::trace::walk::{Departure, Interaction, Onward, Path, PathKind, Polarization, Polarized, Walker, shading};
+use crate::trace::{Smoothness, World, smoothness};
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
@@ -57,7 +57,7 @@ pub enum Surfaces {
     Smooth,
     /// All.
     All,
-    /// All, but light that starts toward an object to which its photons are sent is left to those.
+    /// All, but light that smooth surfaces of an object send on to which its photons are sent is left to those.
     AllButPhotons,
 }
 
@@ -97,11 +97,17 @@ fn advance<const N: usize, P: Polarization<N>>(
     {
         return;
     }
+    let mut is_left_to_photons = false;
     if path.vertices == 0 {
         let is_target = world.is_photon_target(meeting.hit.object, meeting.point.position);
         match over {
             Surfaces::Smooth if !is_target => return,
-            Surfaces::AllButPhotons if is_target && world.sends_photons(photon.light) => return,
+            Surfaces::AllButPhotons if is_target && world.sends_photons(photon.light) => {
+                if smoothness(&world.scene, meeting.hit.object as usize) == Some(Smoothness::Whole) {
+                    return;
+                }
+                is_left_to_photons = true;
+            }
             Surfaces::All | Surfaces::AllButPhotons if !is_target => path.kind = PathKind::Wide,
             _ => {}
         }
@@ -129,7 +135,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
     } else if allowed && path.surfaces() < world.method.max_bounces {
-        scatter(walker, path, &at, sampler);
+        scatter(walker, path, &at, sampler, is_left_to_photons);
     }
 }
 
@@ -160,18 +166,21 @@ fn passes<const N: usize, P: Polarization<N>>(
     false
 }
 
-/// Lets a photon go on from a surface that scatters widely, with the share that the camera would see of the way back.
+/// Lets a photon go on from a surface that scatters widely, with the share that the camera would see of the way back,
+/// or only where it is scattered widely.
 fn scatter<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
     at: &Interaction<N>,
     sampler: &Sampler,
+    is_only_wide: bool,
 ) {
     let Interaction { material, point, arrival, flat, .. } = at;
     let u = sampler.four(path.key, SCATTER);
     walker.branches.clear();
     if point.shading == point.normal {
         material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
+        walker.branches.retain(|branch| branch.pdf.is_some() || !is_only_wide);
         walker.polarize(path, at);
         if !matches!(material, Material::Diffuse(_)) {
             walker.branches.iter_mut().filter(|branch| branch.pdf.is_some()).for_each(|branch| turn_back(at, branch));

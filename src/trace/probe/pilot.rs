@@ -10,13 +10,15 @@ use crate::trace::camera::PathTracer;
 use crate::trace::image::splats;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
-use crate::trace::{RAYS_OF_A_LOOK, World};
+use crate::trace::{RAYS_OF_A_LOOK, Smoothness, World};
 
 /// What one light's photons bring to the whole image, or those of several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotonWorth {
     /// The lights that send them.
     pub lights: Vec<LightId>,
+    /// How smooth what they are sent to is.
+    pub to: Smoothness,
     /// XYZ, summed over all pixels, of all light that they bring.
     pub brings: [f64; 3],
     /// Variance of an image by n photons, summed over pixels and channels, times n.
@@ -55,8 +57,8 @@ const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
 
-/// What photons of each of the pass's lights are worth, where photons of the light are seen; many lights are weighed in
-/// groups.
+/// What photons of each of the pass's lights are worth, where photons of the light are seen, those to what is wholly
+/// smooth and those to the rest each for themselves; many lights are weighed in groups.
 ///
 /// The format counts, also where a part of it or more is made, so that all parts are made alike.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
@@ -65,17 +67,25 @@ pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
 
 fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     let mut world = whole.of_the_format();
-    let groups = whole.photon_light_groups();
+    let Some(targets) = &whole.photon_targets else { return Vec::new() };
+    let smooth = [Smoothness::Whole, Smoothness::Partial].into_iter().filter(|&smooth| targets.aim_at(smooth));
+    let lights = whole.photon_light_groups();
+    let groups: Vec<_> = smooth.flat_map(|smooth| lights.iter().map(move |lights| (lights.clone(), smooth))).collect();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);
     let affordable = photons_within(&world, RAYS_OF_A_LOOK as f64 / (IMAGES * groups.len().max(1) as u64) as f64);
     let photons = photons.min(affordable);
-    groups.into_iter().filter_map(|lights| weigh::<N>(whole, &mut world, lights, photons)).collect()
+    groups.into_iter().filter_map(|(lights, to)| weigh::<N>(whole, &mut world, lights, to, photons)).collect()
 }
 
-/// What so many photons of some lights are worth, in a world whose targets are replaced.
-fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>, each: u64) -> Option<PhotonWorth> {
-    let mut sending = whole.photon_targets.clone()?;
-    sending.targets.retain(|target| lights.binary_search(&target.light).is_ok());
+/// What so many photons of some lights to what is so smooth are worth, in a world whose targets are replaced.
+fn weigh<const N: usize>(
+    whole: &World,
+    world: &mut World,
+    lights: Vec<LightId>,
+    to: Smoothness,
+    each: u64,
+) -> Option<PhotonWorth> {
+    let mut sending = whole.photon_targets.clone()?.only(&lights, to);
     let all = sending.photons();
     for target in &mut sending.targets {
         target.photons = (target.photons as f64 * each as f64 / all as f64).round().max(1.0) as u64;
@@ -109,7 +119,7 @@ fn weigh<const N: usize>(whole: &World, world: &mut World, lights: Vec<LightId>,
         cells[cell].mean += sums[3] / (images * sizes[cell]);
         cells[cell].variance += variances[3] / sizes[cell];
     }
-    let worth = PhotonWorth { lights, brings, variance, rays: rays as f64 / photons as f64, cells };
+    let worth = PhotonWorth { lights, to, brings, variance, rays: rays as f64 / photons as f64, cells };
     brings.iter().any(|&x| x != 0.0).then_some(worth)
 }
 

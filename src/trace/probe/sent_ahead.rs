@@ -144,7 +144,12 @@ mod tests {
         let scene = Scene::parse(text, ".").expect("it is a scene");
         let transport = Transport::Random { split: 0.05, roulette: 0.05 };
         let method = Method::of_paths(Basis::rgb(ColorSpace::Rec709), transport, 0);
-        World::new(&scene, method).with_light_pass(Some(LightPass { photons, lights: vec![0], map: None }))
+        World::new(&scene, method).with_light_pass(Some(LightPass {
+            photons,
+            lights: vec![0],
+            coats: false,
+            map: None,
+        }))
     }
 
     /// A heap of glass balls under a spot, in which a photon follows dozens of rays.

@@ -1,0 +1,147 @@
+//! Caustics of surfaces that are smooth only in part: what a clear coat mirrors, or a mix of paint and mirror.
+
+use std::f64::consts::{FRAC_1_PI, PI};
+
+use abbe::plan::plan;
+use abbe::trace::{LightPass, MapPasses, Method};
+
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
+use crate::support::scenes::{SPLITTING, body, films_of, mean_color, moments, object, quad, scene, view};
+
+const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
+const VARNISH: &str = "[material.varnish]\nplastic = { reflectance = { rgb = [0.4, 0.3, 0.2] }, index = 1.5 }\n";
+/// Half paint, half mirror.
+const MIX: &str = "[material.paint]\ndiffuse = { reflectance = 0.5 }\n[material.mirror]\nmirror = { reflectance = 0.9 }\n\
+                   [material.mixed]\nmix = { materials = [\"paint\", \"mirror\"], amount = 0.5 }\n";
+const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
+
+/// Renders of what has a closed form.
+const SEEDS: u64 = 64;
+
+/// Reflectance of unpolarized light at a clear surface (Born & Wolf, *Principles of Optics*, 1.5.2).
+fn fresnel(cos: f64, index: f64) -> f64 {
+    let refracted = (1.0 - (1.0 - cos * cos) / (index * index)).sqrt();
+    let s = (cos - index * refracted) / (cos + index * refracted);
+    let p = (index * cos - refracted) / (index * cos + refracted);
+    0.5 * (s * s + p * p)
+}
+
+/// A varnished floor mirrors a spot that shines at it alone: where that image of the spot lights a small disc above the
+/// floor, its intensity is F times as large, and it lies as far below the floor as the spot above.
+#[test]
+fn what_a_varnished_floor_mirrors_of_a_spot_has_its_closed_form() {
+    for (index, aside) in [(1.5, 1.0), (1.8, 6.0)] {
+        let (spot_height, height, reflectance) = (1.0, 1.5, 0.3);
+        let where_met = aside * spot_height / (spot_height + height);
+        let text = view([aside - 0.05, 0.3, 0.1], [aside, height, 0.0], 0.7, 12)
+            + "[render]\nmodel = \"rgb\"\npolarization = \"off\"\n"
+            + &body(
+                "floor",
+                &format!("plastic = {{ reflectance = 0, index = {index:?} }}"),
+                &[&quad([where_met, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, -0.1])],
+            )
+            + &body(
+                "small",
+                &format!("diffuse = {{ reflectance = {reflectance:?} }}"),
+                &[&format!("disc = {{ center = [{aside:?}, {height:?}, 0], normal = [0, -1, 0], radius = 0.02 }}")],
+            )
+            + &format!(
+                "[[light]]\nspot = {{ position = [0, {spot_height:?}, 0], toward = [{where_met:?}, -1, 0], \
+                 cone_angle = 1, blend = 0, intensity = 20 }}\n"
+            );
+        let scene = scene(&text);
+        let planned = plan(&scene);
+        assert!(planned.method.light_pass.as_ref().is_some_and(|pass| pass.coats), "{:?}", planned.because);
+        let pass = LightPass { photons: 65_536, lights: vec![0], coats: true, map: None };
+        let method = Method { samples: 1, transport: SPLITTING, light_pass: Some(pass), ..planned.method };
+        let films = films_of(&scene, &method, 0..SEEDS);
+        let (found, variance) = moments(films.iter().map(|film| mean_color(film)[1]));
+        let along = aside.hypot(spot_height + height);
+        let cos = (spot_height + height) / along;
+        let expected = reflectance * FRAC_1_PI * 20.0 * fresnel(cos, index) * cos / (along * along);
+        let error = (variance / SEEDS as f64).sqrt();
+        println!("index {index}, aside {aside}: {found:.6} for {expected:.6}, error {:.3} %", 100.0 * error / expected);
+        assert!(error < 0.001 * expected, "{error} of {expected}");
+        assert!(
+            (found - expected).abs() < 4.0 * error,
+            "index {index}: {found} for {expected} with an error of {error}"
+        );
+    }
+    assert!((fresnel(1.0, 1.5) - 0.04).abs() < 1e-12 && fresnel((0.5 * PI).cos(), 1.5) > 0.999_999);
+}
+
+#[test]
+fn a_varnished_ball_and_a_mixed_one_under_a_lamp() {
+    for (what, material) in [("varnish", VARNISH), ("mixed", MIX)] {
+        let text = seen_by(ABOVE, "") + FLOOR + LAMP + material + &object(what, BALL) + &object("lamp", ROUND_LAMP);
+        agree(what, &text, 32);
+    }
+}
+
+/// Each mirrors the lamp onto all others, and what the glass throws lands on varnish.
+#[test]
+fn a_glass_ball_and_a_cube_of_varnish_on_varnish_without_end() {
+    let text = seen_by(ABOVE, "")
+        + LAMP
+        + VARNISH
+        + &object("varnish", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        + &object("varnish", "cube = { center = [-0.8, 0.5, 0.3], size = [0.6, 1, 0.6] }")
+        + &glass("index = 1.5")
+        + &object("glass", "sphere = { center = [0.5, 0.5, 0], radius = 0.4 }")
+        + &object("lamp", ROUND_LAMP);
+    agree("glass and varnish", &text, 32);
+}
+
+#[test]
+fn varnish_with_bent_normals_and_varnish_with_holes() {
+    let bent = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 2, 1], [0, 3, 2]], \
+                normals = [[0.6, 1, 0], [0, 1, 0.5], [-0.5, 1, 0], [0, 1, -0.6]], smooth = true }";
+    let text = seen_by(ABOVE, "")
+        + LAMP
+        + VARNISH
+        + "[material.lattice]\nmask = { material = \"varnish\", opacity = { checker = [0.3, { rgb = [1, 0.8, 0.6] }], repeat = 4 } }\n\
+           [material.wall]\ndiffuse = { reflectance = 0.8 }\n"
+        + &object("varnish", bent)
+        + &object("lattice", "quad = { center = [0.3, 0.5, 0], u = [0.6, 0.2, 0], v = [0, 0, -0.6] }")
+        + &object("wall", "quad = { center = [-0.9, 0.5, 0], u = [0, 0, 1], v = [0, 0.5, 0] }")
+        + &object("lamp", ROUND_LAMP);
+    agree("bent, and with holes", &text, 32);
+}
+
+#[test]
+fn what_varnish_throws_is_seen_in_a_mirror() {
+    let text = seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
+        + FLOOR
+        + LAMP
+        + MIX
+        + VARNISH
+        + &object("mirror", "quad = { center = [0, 2, -2], u = [3, 0, 0], v = [0, 2, 0.3] }")
+        + &object("varnish", BALL)
+        + &object("mixed", "cube = { center = [1.2, 0.4, 0.3], size = 0.8 }")
+        + &object("lamp", "sphere = { center = [0.5, 5, 0], radius = 0.6 }");
+    agree_with("in a mirror", &text, [64; 2], Some(NARROW));
+}
+
+/// Where light is left to chance that varnish throws, photons still bring all that glass does, by way of varnish too.
+#[test]
+fn photons_to_glass_alone_leave_varnish_to_chance() {
+    let text = seen_by(ABOVE, "")
+        + FLOOR
+        + LAMP
+        + VARNISH
+        + &object("varnish", "cube = { center = [-0.9, 0.5, 0.3], size = [0.6, 1, 0.6] }")
+        + &glass("index = 1.5")
+        + &object("glass", BALL)
+        + &object("lamp", ROUND_LAMP);
+    let scene = scene(&text);
+    let planned = plan(&scene).method;
+    let by = |coats: bool, photons: u64| {
+        let light_pass = Some(LightPass { photons, lights: vec![0], coats, map: None });
+        let method = Method { samples: 32, transport: SPLITTING, light_pass, ..planned.clone() };
+        moments(films_of(&scene, &method, 0..16).iter().map(|film| mean_color(film)[1]))
+    };
+    let [(with, v), (without, w)] = [by(true, 40_000), by(false, 20_000)];
+    let z = (with - without) / ((v + w) / 16.0).sqrt();
+    println!("to all {with:.6}, to glass alone {without:.6}, z {z:.2}");
+    assert!(z.abs() < 4.0, "{with} and {without}, {z} standard errors apart");
+}
