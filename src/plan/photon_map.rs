@@ -1,6 +1,6 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
-use super::caustics::{has_coats, small_lights, targets};
+use super::caustics::{small_lights, targets};
 use super::efficiency::rounded;
 use super::words::{in_number, percent};
 use crate::scene::{AutoText, Scene};
@@ -42,7 +42,9 @@ pub(super) fn with_map(
     let method = untaught.method();
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AutoText::Off;
-    if is_off || settled || targets(scene, true).is_empty() {
+    // What coats throw and the camera would not see straight is not worth photons of its own.
+    let is_aimed = shown.is_some() || !targets(scene, false).is_empty();
+    if is_off || settled || !is_aimed {
         return as_shown();
     }
     let places = reached_places(untaught);
@@ -59,7 +61,7 @@ pub(super) fn with_map(
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
         photons: (PHOTONS * samples).ceil() as u64,
         lights: small_lights(untaught, &places, SMALL),
-        coats: has_coats(scene),
+        coats: false,
         map: None,
     });
     if pass.lights.is_empty() {
