@@ -47,6 +47,8 @@ impl Shown {
 pub(super) struct Caustics {
     /// The photons of each light that sends them.
     pub(super) photons: Vec<PhotonWorth>,
+    /// Whether they are sent to what is smooth only in part as well.
+    coats: bool,
     /// Which those are, and what they are sent to.
     from: String,
     to: String,
@@ -66,14 +68,9 @@ impl Caustics {
         LightPass {
             photons: (of_a_sample * world.samples_of_the_format()).max(FEWEST).ceil() as u64,
             lights,
-            coats: self.reach_coats(),
+            coats: self.coats,
             map: None,
         }
-    }
-
-    /// Whether they are sent to what is smooth only in part as well.
-    fn reach_coats(&self) -> bool {
-        self.photons.iter().any(|photons| photons.to == Smoothness::Partial)
     }
 
     /// What a person is told of them.
@@ -134,9 +131,9 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
     }
     let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
-    let caustics = Caustics { photons, from: named(scene, &sending), to, seen, gain };
-    let to = aim(scene, caustics.reach_coats());
-    Shown { caustics: Some(Caustics { to, ..caustics }), why: lines, settled: false, taught: Some(world) }
+    let coats = photons.iter().any(|photons| photons.to == Smoothness::Partial);
+    let caustics = Caustics { photons, coats, from: named(scene, &sending), to: aim(scene, coats), seen, gain };
+    Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
 }
 
 /// What photons are sent to, as a person is told.
@@ -236,12 +233,16 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
 
 /// Objects that photons can be sent to: they only mirror or refract light, or with `coats`, do so with a part of it.
 pub(super) fn targets(scene: &Scene<Curve>, coats: bool) -> Vec<usize> {
-    let is_target = |&object: &usize| smoothness(scene, object).is_some_and(|smooth| smooth.is_aimed_at(coats));
-    (0..scene.objects.len()).filter(is_target).collect()
+    (0..scene.objects.len()).filter(|&object| is_target(scene, object, coats)).collect()
+}
+
+/// Whether an object is one of them.
+fn is_target(scene: &Scene<Curve>, object: usize, coats: bool) -> bool {
+    smoothness(scene, object).is_some_and(|smooth| smooth.is_aimed_at(coats))
 }
 
 /// Whether any of them is smooth only in part.
-pub(super) fn has_coats(scene: &Scene<Curve>) -> bool {
+fn has_coats(scene: &Scene<Curve>) -> bool {
     (0..scene.objects.len()).any(|object| smoothness(scene, object) == Some(Smoothness::Partial))
 }
 
@@ -289,10 +290,11 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
     let unseen = ", seen in a mirror or through glass or by way of another surface";
-    let aimed_at = targets(scene, pass.coats);
-    let of_aimed = aimed_at.first().filter(|_| pass.map.is_none()).map(|&object| line("smooth ones", object, unseen));
-    let left = smooth().find(|object| !aimed_at.contains(object));
-    let of_left = left.map(|object| line("surfaces that are smooth only in part", object, sent_on));
+    let is_aimed_at = |&object: &usize| is_target(scene, object, pass.coats);
+    let of_aimed = smooth().find(is_aimed_at).filter(|_| pass.map.is_none());
+    let of_aimed = of_aimed.map(|object| line("smooth ones", object, unseen));
+    let of_left = smooth().find(|object| !is_aimed_at(object));
+    let of_left = of_left.map(|object| line("surfaces that are smooth only in part", object, sent_on));
     of_aimed.into_iter().chain(of_left).collect()
 }
 

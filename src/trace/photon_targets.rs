@@ -132,9 +132,9 @@ impl PhotonTargets {
         self.share_out();
     }
 
-    /// Those of some lights alone, to what is so smooth.
+    /// Those of some lights alone, given in order, to what is so smooth.
     pub(super) fn only(mut self, lights: &[LightId], smoothness: Smoothness) -> Self {
-        self.targets.retain(|target| target.smoothness == smoothness && lights.contains(&target.light));
+        self.targets.retain(|target| target.smoothness == smoothness && lights.binary_search(&target.light).is_ok());
         self.objects.iter_mut().for_each(|object| *object = object.filter(|smooth| *smooth == smoothness));
         self
     }
