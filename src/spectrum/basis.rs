@@ -15,7 +15,7 @@ use super::palette::palette;
 use super::projection::{Part, Projection};
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
-use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
+use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands, Waves};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -280,10 +280,8 @@ impl Basis {
         if let Some(table) = self.patterned(quantity, curve) {
             return table;
         }
-        match quantity {
-            Quantity::Emission => return self.emission(curve),
-            Quantity::BandWidth => return self.band_widths(),
-            _ => {}
+        if quantity == Quantity::Emission {
+            return self.emission(curve);
         }
         let reader = curve.reader(quantity, &self.upsampler);
         let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
@@ -291,7 +289,7 @@ impl Basis {
             (LaneKind::Rgb(_), Some(rgb), _) if is_share || quantity == Quantity::Absorption => {
                 Table::new(rgb.map(|x| x * curve.scale))
             }
-            (LaneKind::Prefiltered(bands), ..) if !matches!(quantity, Quantity::Index | Quantity::Wavelength) => {
+            (LaneKind::Prefiltered(bands), ..) if quantity != Quantity::Index => {
                 Table::new(bands.filter(quantity, curve, &*reader))
             }
             (_, _, Some(projection)) if is_share => self.table(projection.read(&*reader), &*reader),
@@ -305,6 +303,11 @@ impl Basis {
                 self.table(bands.index(&*reader).into(), &*reader).refracting_as(reader(DIRECTION_NM))
             }
         }
+    }
+
+    /// Where the lanes lie in the spectrum.
+    pub fn waves(&self) -> Waves {
+        Waves::new(self.table(self.wavelengths_nm.clone(), &|nm| nm), self.band_widths())
     }
 
     /// A curve that varies over a surface, read onto the bins; none if it is the same all over.

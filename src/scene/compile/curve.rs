@@ -94,7 +94,7 @@ fn forms(quantity: Quantity) -> &'static str {
         Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
         Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
         Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
+        Quantity::Thickness => {
             "write a number of nm, or an image of grays and the nm of its white: { image = \"thickness.png\", scale = 600 }"
         }
         Quantity::Excitation | Quantity::Fluorescence => {
@@ -371,8 +371,7 @@ fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) ->
         Quantity::Index => (CurveKind::glass(name), unknown_glass),
         Quantity::MetalIndex | Quantity::MetalExtinction => (CurveKind::metal(name), unknown_metal),
         Quantity::Absorption => return absorption(context, place, name),
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => return None,
-        Quantity::Excitation | Quantity::Fluorescence => return None,
+        Quantity::Thickness | Quantity::Excitation | Quantity::Fluorescence => return None,
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
             (CurveKind::reflectance(name), unknown_reflectance)
         }

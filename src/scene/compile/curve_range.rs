@@ -73,7 +73,6 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
         Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL, false),
         Quantity::MetalExtinction => (0.0, MAX_METAL, false),
         Quantity::Thickness => return possible_thickness(value, place),
-        Quantity::Wavelength | Quantity::BandWidth => (0.0, f64::MAX, false),
     };
     if (least..=most).contains(&value) {
         return Ok(());
@@ -138,6 +137,5 @@ pub(super) fn article(quantity: Quantity) -> &'static str {
         Quantity::Thickness => "a layer's thickness",
         Quantity::Excitation => "a dye's absorption",
         Quantity::Fluorescence => "a dye's emission",
-        Quantity::Wavelength | Quantity::BandWidth => "a lane",
     }
 }

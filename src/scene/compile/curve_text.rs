@@ -117,7 +117,7 @@ fn fitting(quantity: Quantity) -> &'static [&'static str] {
         }
         Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => &["rgb", "samples", "file"],
         Quantity::Excitation | Quantity::Fluorescence => &["samples", "file"],
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => &["image", "checker"],
+        Quantity::Thickness => &["image", "checker"],
     }
 }
 
@@ -148,9 +148,7 @@ fn example(quantity: Quantity) -> &'static str {
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR,
         Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR,
         Quantity::Excitation | Quantity::Fluorescence => "{ samples = [[400, 0.2], [450, 0.9], [500, 0]] }",
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
-            "{ image = \"thickness.png\", scale = 600 }"
-        }
+        Quantity::Thickness => "{ image = \"thickness.png\", scale = 600 }",
     }
 }
 

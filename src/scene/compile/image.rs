@@ -24,7 +24,7 @@ pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, qua
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => true,
         Quantity::Thickness => true,
         Quantity::Index | Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => false,
-        Quantity::Excitation | Quantity::Fluorescence | Quantity::Wavelength | Quantity::BandWidth => false,
+        Quantity::Excitation | Quantity::Fluorescence => false,
     };
     match &text.kind {
         KindText::Image(file) if varies => image_curve(context, text, file, quantity),
