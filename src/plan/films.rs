@@ -10,17 +10,17 @@ use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
 
 /// Light meets a film at right angles, where its fringes are closest, and is reflected or crosses it.
 pub(super) struct Film<'a> {
-    pub(super) coating: &'a Coating<Curve>,
+    coating: &'a Coating<Curve>,
     /// What is beyond it; nothing behind a pane.
-    pub(super) beyond: Beyond<'a>,
+    beyond: Beyond<'a>,
     pub(super) crosses: bool,
     /// Whether layers that vary are taken as thick as they are anywhere, and else as on the mean.
-    pub(super) thickest: bool,
+    thickest: bool,
 }
 
 /// What a film lies on.
 #[derive(Clone, Copy)]
-pub(super) enum Beyond<'a> {
+enum Beyond<'a> {
     Nothing,
     Glass(&'a Curve),
     Metal(&'a Curve, &'a Curve),

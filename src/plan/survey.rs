@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::films::{Beyond, Film, between_polarizers, films, plate};
+use super::films::{Film, between_polarizers, films, plate};
 use super::lights::{different, farthest_apart};
 use crate::material::{
     Conductor, Dielectric, Material, PathDifference, Plastic, conductor_reflectance, diffuse_transmittance,
@@ -81,7 +81,7 @@ pub(super) enum Tint<'a> {
     Coated(&'a Plastic<Curve>, Cow<'a, Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, Cow<'a, Curve>),
-    /// A metal's reflection under an angle of this cosine, once or, where it is rough, more often.
+    /// A bare metal's reflection under an angle of this cosine, once or, where it is rough, more often.
     Metal(&'a Conductor<Curve>, f64),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
@@ -347,10 +347,6 @@ impl Tint<'_> {
             Self::Plate(plate) => between_polarizers(*plate, waves),
             Self::Metal(metal, cos) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
-                if let Some(coating) = &metal.coating {
-                    let beyond = Beyond::Metal(&metal.n, &metal.k);
-                    return Film { coating, beyond, crosses: false, thickest: true }.left(waves, read);
-                }
                 let reflected = n.into_iter().zip(k).map(|(n, k)| match *cos {
                     1.0 => normal_reflectance(n, k),
                     cos => 0.5 * conductor_reflectance(1.0, n, k, cos).iter().sum::<f64>(),
