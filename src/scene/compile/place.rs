@@ -101,9 +101,8 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
             Some(relief) => Some(relief.on(coordinates.as_ref())?),
             None => None,
         };
-        let (chart, coordinates) = (coordinates.clone(), coordinates.filter(|_| varies));
         let (shape, asset, group) = (Arc::new(shape), asset.clone(), group.clone());
-        Some(Object { name, asset, shape, material, light: None, coordinates, chart, group, sight, relief })
+        Some(Object { name, asset, shape, material, light: None, coordinates, varies, group, sight, relief })
     };
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
