@@ -126,7 +126,7 @@ fn shading_normals_turn_with_the_mesh_whether_it_is_baked_or_an_instance() {
         .then(&Transform::translate(DVec3::new(4.0, 0.0, 1.0)));
     let back = map.inverse().expect("a map that can be turned back");
     let body = smooth(64, 32, true);
-    let (baked, instance) = (body.clone().transformed(&map), body.copied(&map));
+    let (baked, instance) = (body.transformed(&map), body.copied(&map));
     let mut random = Random::new(3);
     for _ in 0..2000 {
         let from = map.point(random.direction() * 3.0);

@@ -283,7 +283,7 @@ mod tests {
         for (shape, place) in cases {
             for map in maps() {
                 let coordinates = Coordinates::new(&shape, &map).unwrap();
-                for placed in [shape.clone().transformed(&map), shape.copied(&map)] {
+                for placed in [shape.transformed(&map), shape.copied(&map)] {
                     check(&placed, &coordinates, map.point(place), map.normal(outward(&shape, place)));
                 }
             }

@@ -154,9 +154,10 @@ impl Shape {
     }
 
     /// The shape after an invertible affine map.
-    pub fn transformed(self, map: &Transform) -> Self {
+    #[must_use]
+    pub fn transformed(&self, map: &Transform) -> Self {
         if *map == Transform::IDENTITY {
-            return self;
+            return self.clone();
         }
         match self {
             Self::Plane(plane) => Self::Plane(plane.transformed(map)),
@@ -183,7 +184,7 @@ impl Shape {
             Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
             _ => None,
         };
-        shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
+        shared.map_or_else(|| self.transformed(map), |instance| Self::Instance(Box::new(instance)))
     }
 
     /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.

@@ -344,7 +344,7 @@ fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: 
     let coordinates = Coordinates::new(written, map).expect("it has coordinates");
     let picture =
         picture([1.5, 1.0], if name.len().is_multiple_of(2) { TexelFilter::Linear } else { TexelFilter::Nearest });
-    let shape = written.clone().transformed(map);
+    let shape = written.transformed(map);
     let seen = EmissionMap::new(&picture, TexturedShape { shape: &shape, coordinates: &coordinates })
         .expect("the image varies");
     let shapes = if written.part_count() > 0 { vec![shape.clone(), written.copied(map)] } else { vec![shape.clone()] };

@@ -46,7 +46,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
         // Normals that the scene file writes out are meant to be seen, unless it says that they are not.
         let (flat, smooth) = (smooth == Some(false), smooth.unwrap_or(false));
-        let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file, edges: None };
+        let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file };
         let mut parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
                 if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {

@@ -107,12 +107,12 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
         let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
-        fits(written.edges, &shape, map, place)?;
+        fits(&written.shape, &shape, map, place)?;
         return Some(vec![object(name, shape, coordinates)?]);
     };
     let instance = |(number, map): (usize, At<Transform>)| {
         let shape = written.shape.copied(&map.it);
-        fits(written.edges, &shape, map, map.place)?;
+        fits(&written.shape, &shape, map, map.place)?;
         object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.it))
     };
     let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();
