@@ -5,7 +5,7 @@ use super::curve_name::{
     color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
     unknown_metal, unknown_reflectance,
 };
-use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, told};
+use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible};
 use super::curve_text::{CurveText, KindText, ONE_OF_EACH, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
@@ -32,7 +32,7 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     let kind = kind(context, text, quantity)?;
     let curve = Curve { kind, scale: text.scale.it, luminance: text.luminance.map(|luminance| luminance.it) };
     if let Some(At { place, it: luminance }) = text.luminance {
-        told(place, factor("a luminance", luminance))?;
+        place.told(factor("a luminance", luminance))?;
         if luminance > 0.0 && !Emission::new(&curve, ColorSpace::default()).xyz()[1].is_normal() {
             return place.refuse("a light without power has no luminance");
         }
@@ -112,7 +112,7 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
     match &text.kind {
         kind if !is_fit(kind, quantity) => unfit(text, quantity),
         KindText::Number(number) => {
-            told(place, possible(quantity, number * text.scale.it, ""))?;
+            place.told(possible(quantity, number * text.scale.it, ""))?;
             Some(CurveKind::Number(*number))
         }
         KindText::Rgb(rgb) => {
@@ -133,12 +133,12 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
         KindText::Abbe { nd, vd } if is_index => abbe(text, *nd, *vd),
         KindText::Illuminant(name) if shines => {
             let Some(light) = CurveKind::illuminant(name) else { return unknown_illuminant(name).tell(place) };
-            told(text.scale.place, factor("a scale", text.scale.it))?;
+            text.scale.place.told(factor("a scale", text.scale.it))?;
             Some(light)
         }
         KindText::Blackbody(kelvin) if shines => {
-            told(place, blackbody(*kelvin))?;
-            told(text.scale.place, factor("a scale", text.scale.it))?;
+            place.told(blackbody(*kelvin))?;
+            text.scale.place.told(factor("a scale", text.scale.it))?;
             Some(CurveKind::Blackbody(*kelvin))
         }
         KindText::Lines(lines) if shines => {
@@ -168,7 +168,7 @@ fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> 
 fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
     let scale = text.scale.it;
     values.enumerate().try_for_each(|(number, value)| {
-        told(text.place.entry(number), possible(quantity, value * scale, &with_scale(scale)))
+        text.place.entry(number).told(possible(quantity, value * scale, &with_scale(scale)))
     })
 }
 
@@ -290,7 +290,7 @@ fn abbe(text: &CurveText, nd: At<f64>, vd: At<f64>) -> Option<CurveKind> {
         return nd.place.advise(format!("a refractive index is above 1, not {}", shown(nd.it)), ABBE);
     }
     let kind = CurveKind::Cauchy(cauchy_through(nd.it, vd.it));
-    told(text.place, bends(text.scale.it, &kind).map_err(|refusal| refusal.help(ABBE)))?;
+    text.place.told(bends(text.scale.it, &kind).map_err(|refusal| refusal.help(ABBE)))?;
     Some(kind)
 }
 

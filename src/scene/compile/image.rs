@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::curve::curve;
-use super::curve_range::{is_factor, possible_thickness, told};
+use super::curve_range::{is_factor, possible_thickness};
 use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{ImageFile, read_texture};
 use super::image_numbers::Meaning;
@@ -77,7 +77,7 @@ fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Opti
     }
     let ([x, y], most) = image.brightest();
     let place = format!(" where pixel ({x}, {y}) of {file} is {most}");
-    told(text.scale.place, possible_thickness(f64::from(most) * scale, &place))
+    text.scale.place.told(possible_thickness(f64::from(most) * scale, &place))
 }
 
 /// The factor on an image, if it is one, and no luminance stands in its place.
