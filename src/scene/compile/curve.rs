@@ -50,18 +50,6 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     }
 }
 
-/// Whether a quantity that is no color may be written like this: a length is no spectrum, and what a dye does is known
-/// by wavelength.
-fn is_fit(kind: &KindText, quantity: Quantity) -> bool {
-    let is_measured = matches!(kind, KindText::Samples(_) | KindText::File(_));
-    match quantity {
-        Quantity::Thickness => matches!(kind, KindText::Number(_)),
-        Quantity::Excitation => is_measured || matches!(kind, KindText::Number(_)),
-        Quantity::Fluorescence => is_measured,
-        _ => true,
-    }
-}
-
 /// Tells that a quantity cannot be written like this.
 fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
     let key = || format!("`{}`", text.place.key());
@@ -108,9 +96,11 @@ fn forms(quantity: Quantity) -> &'static str {
 
 /// What a text says, looked up and read.
 fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
-    let (place, is_index, shines) = (text.place, quantity == Quantity::Index, quantity == Quantity::Emission);
+    if !text.fits(quantity) {
+        return unfit(text, quantity);
+    }
+    let place = text.place;
     match &text.kind {
-        kind if !is_fit(kind, quantity) => unfit(text, quantity),
         KindText::Number(number) => {
             place.told(possible(quantity, number * text.scale.it, ""))?;
             Some(CurveKind::Number(*number))
@@ -128,26 +118,26 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
             }
         },
         KindText::File(file) => file_of_samples(context, text, file, quantity),
-        KindText::Cauchy(terms) if is_index => cauchy(text, *terms),
-        KindText::Sellmeier { b, c } if is_index => sellmeier(text, b, c),
-        KindText::Abbe { nd, vd } if is_index => abbe(text, *nd, *vd),
-        KindText::Illuminant(name) if shines => {
+        KindText::Cauchy(terms) => cauchy(text, *terms),
+        KindText::Sellmeier { b, c } => sellmeier(text, b, c),
+        KindText::Abbe { nd, vd } => abbe(text, *nd, *vd),
+        KindText::Illuminant(name) => {
             let Some(light) = CurveKind::illuminant(name) else { return unknown_illuminant(name).tell(place) };
             text.scale.place.told(factor("a scale", text.scale.it))?;
             Some(light)
         }
-        KindText::Blackbody(kelvin) if shines => {
+        KindText::Blackbody(kelvin) => {
             place.told(blackbody(*kelvin))?;
             text.scale.place.told(factor("a scale", text.scale.it))?;
             Some(CurveKind::Blackbody(*kelvin))
         }
-        KindText::Lines(lines) if shines => {
+        KindText::Lines(lines) => {
             visible_lines(text, lines)?;
             each(text, quantity, lines.iter().map(|line| line[1]))?;
             Some(CurveKind::Lines(lines.clone()))
         }
-        KindText::Name(name) if !shines => named(context, text.value, name, quantity),
-        _ => unfit(text, quantity),
+        KindText::Name(name) => named(context, text, name, quantity),
+        KindText::Image(_) | KindText::Checker(_) => unfit(text, quantity),
     }
 }
 
@@ -366,14 +356,17 @@ fn blackbody(kelvin: f64) -> Result<(), Refusal> {
 }
 
 /// An entry of the catalog.
-fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) -> Option<CurveKind> {
+fn named(context: &mut Context, text: &CurveText, name: &str, quantity: Quantity) -> Option<CurveKind> {
+    let place = text.value;
     let (found, unknown): (_, fn(&str) -> Refusal) = match quantity {
         Quantity::Index => (CurveKind::glass(name), unknown_glass),
         Quantity::MetalIndex | Quantity::MetalExtinction => (CurveKind::metal(name), unknown_metal),
         Quantity::Absorption => return absorption(context, place, name),
-        Quantity::Thickness | Quantity::Excitation | Quantity::Fluorescence => return None,
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => {
             (CurveKind::reflectance(name), unknown_reflectance)
+        }
+        Quantity::Emission | Quantity::Thickness | Quantity::Excitation | Quantity::Fluorescence => {
+            return unfit(text, quantity);
         }
     };
     found.or_else(|| unknown(name).tell(place))

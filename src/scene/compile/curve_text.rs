@@ -165,6 +165,15 @@ impl<'d> CurveText<'d> {
         }
     }
 
+    /// Whether a spectrum of a quantity may be written like this, whatever a name stands for.
+    pub(super) fn fits(&self, quantity: Quantity) -> bool {
+        match self.kind {
+            KindText::Name(_) => true,
+            KindText::Number(_) => quantity != Quantity::Fluorescence,
+            _ => fitting(quantity).contains(&self.place.key()),
+        }
+    }
+
     /// Where its image lies, if that is possible.
     pub(super) fn placement(&self) -> Option<Placement> {
         Some(Placement { repeat: is_repeat(self.repeat)?, wrap: self.wrap, filter: self.filter })

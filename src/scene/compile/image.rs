@@ -20,15 +20,9 @@ pub(super) const BRIGHT_IMAGE: FileKind = FileKind { endings: &["exr", "hdr"], .
 
 /// The spectrum of a surface, which may vary over it.
 pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
-    let varies = match quantity {
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => true,
-        Quantity::Thickness => true,
-        Quantity::Index | Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => false,
-        Quantity::Excitation | Quantity::Fluorescence => false,
-    };
     match &text.kind {
-        KindText::Image(file) if varies => image_curve(context, text, file, quantity),
-        KindText::Checker(cells) if varies => checker(context, text, cells, quantity),
+        KindText::Image(file) if text.fits(quantity) => image_curve(context, text, file, quantity),
+        KindText::Checker(cells) if text.fits(quantity) => checker(context, text, cells, quantity),
         _ => curve(context, text, quantity),
     }
 }
