@@ -6,7 +6,7 @@ use super::{
     Ball, Crossing, Cube, Density, Disc, Ellipsoid, Instance, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
     SurfacePoint, Triangle,
 };
-use crate::math::{Bounds, Cone, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
+use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -280,17 +280,6 @@ impl Shape {
         density.toward(crossing.t, self.normal(ray, crossing).dot(ray.direction).abs())
     }
 
-    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it, given by its unit normals.
-    pub fn sample_cap(&self, cap: &Cone, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
-        if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
-    }
-
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a
-    /// crossing.
-    pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, crossing: &Crossing) -> f64 {
-        if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
-    }
-
     /// How many parts may be sampled one by one: triangles of a mesh, faces of a cube; 0 of other shapes.
     pub fn part_count(&self) -> u32 {
         match self {
@@ -355,22 +344,6 @@ impl Shape {
             Self::Sphere(sphere) => sphere.pdf_emission(toward, point),
             Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
             _ => 1.0 / self.area(),
-        }
-    }
-
-    /// A point as `sample_emission` draws it; of a sphere, most often of a cap of it, given by its unit normals.
-    pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
-        match self {
-            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, toward, u)),
-            _ => self.sample_emission(toward, u),
-        }
-    }
-
-    /// Density per unit of area with which `sample_cap_emission` draws a point of the shape for a ball.
-    pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
-        match self {
-            Self::Sphere(sphere) => sphere.pdf_cap_emission(cap, toward, point),
-            _ => self.pdf_emission(toward, point),
         }
     }
 }
