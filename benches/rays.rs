@@ -52,7 +52,7 @@ fn main() {
             let ((), seconds) = timed(|| {
                 for (ray, t_max) in rays {
                     if any {
-                        hits += usize::from(mesh.is_crossed(ray, *t_max));
+                        hits += usize::from(mesh.is_crossed(ray, *t_max, None));
                     } else if let Some(crossing) = mesh.intersect(ray, *t_max) {
                         hits += 1;
                         sum += crossing.t;

@@ -52,13 +52,8 @@ impl Shape {
         }
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max`.
-    pub fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
-        self.is_crossed_from(ray, t_max, None)
-    }
-
-    /// The same of a ray that may leave one of the shape's own parts.
-    pub fn is_crossed_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
+    /// Whether there is a crossing with 0 < t <= `t_max` of a ray that may leave one of the shape's own parts.
+    pub fn is_crossed(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
         if self.has_triangles() {
             self.are_triangles_crossed(ray, t_max, left, |_, _| true)
         } else {

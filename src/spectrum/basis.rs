@@ -78,23 +78,15 @@ impl Basis {
     /// # Panics
     /// If lanes and lines are none or more than [`MAX_LANES`].
     pub fn bands(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
-        Self::bands_over(space, bands, Self::best_range_nm(bands, false), lines_nm)
+        Self::bands_over(space, bands, Self::best_range_nm(bands), lines_nm)
     }
 
-    /// As many wavelengths in equal steps from 300 to 730 nm, for dyes that ultraviolet light excites, and a lane of
-    /// its own for every ideal line.
-    ///
-    /// # Panics
-    /// If lanes and lines are none or more than [`MAX_LANES`].
-    pub fn bands_from_ultraviolet(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
-        Self::bands_over(space, bands, Self::best_range_nm(bands, true), lines_nm)
-    }
+    /// From where to where, in nm, wavelengths lie for dyes that ultraviolet light excites.
+    pub const FROM_ULTRAVIOLET_NM: [f64; 2] = [visible::START_NM, 730.0];
 
     /// From where to where, in nm, so many wavelengths show colors best.
-    /// For dyes, ultraviolet light as well.
-    pub(crate) fn best_range_nm(bands: usize, from_ultraviolet: bool) -> [f64; 2] {
+    pub(crate) fn best_range_nm(bands: usize) -> [f64; 2] {
         match bands {
-            _ if from_ultraviolet => [visible::START_NM, 730.0],
             ..=8 => [410.0, 710.0],
             9..=14 => [400.0, 700.0],
             15..=23 => [380.0, 730.0],

@@ -155,7 +155,7 @@ fn b6_triangles_that_are_cut_are_met_as_if_they_were_whole() {
         let each = (0..).zip(&alone).filter_map(|(i, one)| Some((one.intersect(&ray, f64::INFINITY)?.t, i)));
         let nearest = each.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         assert_eq!(found, nearest, "{ray:?}");
-        assert_eq!(mesh.is_crossed(&ray, f64::INFINITY), nearest.is_some(), "{ray:?}");
+        assert_eq!(mesh.is_crossed(&ray, f64::INFINITY, None), nearest.is_some(), "{ray:?}");
         hits += usize::from(found.is_some());
     }
     assert!(hits > 5000, "{hits}");
