@@ -33,7 +33,7 @@ fn main() {
     let count = faces.len();
     let mut built = None;
     let (_, seconds) = timed(|| built = Mesh::new(Vertices::Single(points.clone()), faces.clone()));
-    let mesh = Shape::Mesh(built.expect("the room has triangles").0.into());
+    let mesh = Shape::Mesh(built.expect("the room has triangles").into());
     println!("{count} triangles, built in {seconds:.2} s");
     let primary = primary_rays();
     let mut random = Random(1);

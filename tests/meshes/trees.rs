@@ -27,8 +27,8 @@ fn ball(center: DVec3, scale: f64) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
 }
 
 fn mesh(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Shape {
-    let (mesh, report) = Mesh::new(Vertices::Single(points.to_vec()), faces.to_vec()).expect("faces with area");
-    assert_eq!(report.open_edges, 0);
+    let mesh = Mesh::new(Vertices::Single(points.to_vec()), faces.to_vec()).expect("faces with area");
+    assert_eq!(mesh.open_edges(), 0);
     Shape::Mesh(mesh.into())
 }
 

@@ -129,14 +129,13 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
     if is_averaged {
         attributes.normals = vertex_normals(&vertices, &faces);
     }
-    let Some((mesh, report)) = Mesh::new(vertices, faces) else {
+    let Some(mesh) = Mesh::new(vertices, faces) else {
         return value.refuse("no triangle of this mesh has an area");
     };
-    if report.degenerate > 0 {
-        context.warn(match report.degenerate {
-            1 => format!("{name}: 1 triangle without area was dropped"),
-            count => format!("{name}: {count} triangles without area were dropped"),
-        });
+    match mesh.degenerate() {
+        0 => {}
+        1 => context.warn(format!("{name}: 1 triangle without area was dropped")),
+        count => context.warn(format!("{name}: {count} triangles without area were dropped")),
     }
     let mesh = Arc::new(mesh.with(attributes));
     if is_averaged {
