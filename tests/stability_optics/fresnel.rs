@@ -90,7 +90,7 @@ fn d1_no_branch_is_nan_at_the_critical_angle() {
 }
 
 #[test]
-fn d2_between_equal_indices_nothing_happens_even_along_the_surface() {
+fn between_equal_indices_nothing_happens_even_along_the_surface() {
     let mut random = Random::new(22);
     for _ in 0..10_000 {
         let (n, wo) = (random.between(1.0, 3.0), random.direction());

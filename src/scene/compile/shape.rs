@@ -111,7 +111,8 @@ fn cube(value: Value) -> Option<Shape> {
     })
 }
 
-/// That numbers hold the size and the place of a shape before and after a map has placed it; `whole` is where it stands.
+/// That numbers hold the size and the place of a shape that a map has placed, given before and after that; `whole` is
+/// where it stands.
 pub(super) fn fits(shape: &Shape, placed: &Shape, map: At<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };
     let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
