@@ -33,7 +33,7 @@ fn main() {
     let count = faces.len();
     let mut built = None;
     let (_, seconds) = timed(|| built = Mesh::new(Vertices::Single(points.clone()), faces.clone()));
-    let mesh = Shape::Mesh(built.expect("the room has triangles").0.into());
+    let mesh = Shape::Mesh(built.expect("the room has triangles").into());
     println!("{count} triangles, built in {seconds:.2} s");
     let primary = primary_rays();
     let mut random = Random(1);
@@ -52,7 +52,7 @@ fn main() {
             let ((), seconds) = timed(|| {
                 for (ray, t_max) in rays {
                     if any {
-                        hits += usize::from(mesh.is_crossed(ray, *t_max));
+                        hits += usize::from(mesh.is_crossed(ray, *t_max, None));
                     } else if let Some(crossing) = mesh.intersect(ray, *t_max) {
                         hits += 1;
                         sum += crossing.t;

@@ -99,7 +99,7 @@ pub fn lanes(scene: &Scene<Curve>, basis: Basis) -> Method {
 /// The only pixel of an image in 32 lanes from 300 nm on, in which nothing is left to chance.
 pub fn pixel(text: &str) -> [f64; 3] {
     let scene = scene(text);
-    let method = lanes(&scene, Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]));
+    let method = lanes(&scene, Basis::bands_over(scene.film.color_space, 32, Basis::FROM_ULTRAVIOLET_NM, &[]));
     film_of(&scene, method).pixels[0].rgb.map(f64::from)
 }
 

@@ -115,7 +115,7 @@ fn smooth(around: u32, rings: u32, exact: bool) -> Shape {
         false => vertex_normals(&vertices, &faces),
     };
     let coordinates = points.iter().map(|p| [p.x as f32, p.y as f32]).collect();
-    let (mesh, _) = Mesh::new(vertices, faces).expect("faces with area");
+    let mesh = Mesh::new(vertices, faces).expect("faces with area");
     Shape::Mesh(mesh.with(Attributes { normals, coordinates, bare: 0 }).into())
 }
 
@@ -126,7 +126,7 @@ fn shading_normals_turn_with_the_mesh_whether_it_is_baked_or_an_instance() {
         .then(&Transform::translate(DVec3::new(4.0, 0.0, 1.0)));
     let back = map.inverse().expect("a map that can be turned back");
     let body = smooth(64, 32, true);
-    let (baked, instance) = (body.clone().transformed(&map), body.copied(&map));
+    let (baked, instance) = (body.transformed(&map), body.copied(&map));
     let mut random = Random::new(3);
     for _ in 0..2000 {
         let from = map.point(random.direction() * 3.0);
@@ -151,7 +151,7 @@ fn faces_that_run_the_other_way_around_than_their_normals_are_smooth_all_the_sam
     let back: Vec<[u32; 3]> = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
     let normals: Vec<[f32; 3]> = points.iter().map(|p| p.to_array().map(|x| x as f32)).collect();
     let built = |faces: Vec<[u32; 3]>, normals: Vec<[f32; 3]>| {
-        let (mesh, _) = Mesh::new(Vertices::Double(points.clone()), faces).expect("faces with area");
+        let mesh = Mesh::new(Vertices::Double(points.clone()), faces).expect("faces with area");
         Shape::Mesh(mesh.with(Attributes { normals, ..Attributes::default() }).into())
     };
     let at = |shape: &Shape, ray: &Ray| {
@@ -216,7 +216,7 @@ fn texture_coordinates_are_interpolated() {
         assert!((u - place.x).abs() < 1e-6 && (v - place.y).abs() < 1e-6);
     }
     let (points, faces) = ball(8, 4);
-    let (bare, _) = Mesh::new(Vertices::Double(points), faces).expect("faces with area");
+    let bare = Mesh::new(Vertices::Double(points), faces).expect("faces with area");
     assert_eq!(bare.coordinates(0, [0.2, 0.3]), None);
 }
 

@@ -152,7 +152,7 @@ impl Files {
         let image = rendering.image();
         let (colors, spectra) = (image.write_exr(path), image.write_spectral_exr(path.with_extension("spectral.exr")));
         self.has_snapshot.set(colors.is_ok());
-        colors.and(spectra.map(|_| ()))
+        colors.and(spectra)
     }
 }
 

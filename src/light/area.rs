@@ -3,7 +3,9 @@ use std::sync::Arc;
 
 use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
 use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray, cosine_about};
-use crate::shape::{Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, SurfacePoint, TexturedShape};
+use crate::shape::{
+    Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, Sphere, SurfacePoint, TexturedShape,
+};
 use crate::spectrum::Quantity;
 
 /// A surface that shines: an object whose material emits.
@@ -118,6 +120,14 @@ impl<S> Area<S> {
         self.visible_cap = wider.filter(|cap| cap.one_minus_cos < SMALL);
     }
 
+    /// The sphere that it is and the part of that which is seen, if that is small.
+    fn seen_cap(&self) -> Option<(&Sphere, &Cone)> {
+        match &*self.shape {
+            Shape::Sphere(sphere) => Some((sphere, self.visible_cap.as_ref()?)),
+            _ => None,
+        }
+    }
+
     /// Whether the backs of parts may be met first: never from outside of a closed body.
     fn shows_backs(&self, from: DVec3) -> bool {
         self.sides == Sides::Both && self.closed.is_none_or(|bounds| bounds.contains(from))
@@ -129,8 +139,8 @@ impl<S> Area<S> {
     }
 
     fn sample(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
-        if let Some(cap) = &self.visible_cap {
-            return self.shape.sample_cap(cap, from, u);
+        if let Some((sphere, cap)) = self.seen_cap() {
+            return sphere.sample_cap(cap, from, u);
         }
         let Some(parts) = &self.parts else { return self.sample_part(None, from, u) };
         let part = parts.sample(from, normal, self.shows_backs(from), u[0])?;
@@ -214,8 +224,8 @@ impl<S> Area<S> {
     /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
     /// meets it first at a crossing; none where it is seen exactly edge-on.
     pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
-        usable(match (&self.visible_cap, &self.parts) {
-            (Some(cap), _) => self.shape.pdf_cap(cap, ray, crossing),
+        usable(match (self.seen_cap(), &self.parts) {
+            (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, crossing.t),
             (None, None) => self.pdf_part(ray, crossing),
             (None, Some(parts)) => {
                 let two_sided = self.shows_backs(ray.origin);
@@ -290,9 +300,9 @@ impl<S> Area<S> {
         } else {
             cone.pdf(direction, guide)
         };
-        let of_point = match (density, &self.visible_cap) {
+        let of_point = match (density, self.seen_cap()) {
             (Some(density), _) => *density,
-            (None, Some(cap)) => self.shape.pdf_cap_emission(cap, ball, point),
+            (None, Some((sphere, cap))) => sphere.pdf_cap_emission(cap, ball, point),
             (None, None) => self.shape.pdf_emission(ball, point),
         };
         along * of_point
@@ -300,10 +310,10 @@ impl<S> Area<S> {
 
     /// A point from which light may reach a ball.
     fn sample_emission(&self, ball: &Ball, u: [f64; 2]) -> Option<EmissionPoint> {
-        match (&self.image, &self.visible_cap) {
+        match (&self.image, self.seen_cap()) {
             (Some(image), _) => self.sample_textured(&image.coordinates, u),
             (None, _) if matches!(*self.shape, Shape::Instance(_)) => self.sample_textured(&Coordinates::Mesh, u),
-            (None, Some(cap)) => Some(EmissionPoint::of_even(self.shape.sample_cap_emission(cap, ball, u)?)),
+            (None, Some((sphere, cap))) => Some(EmissionPoint::of_even(sphere.sample_cap_emission(cap, ball, u))),
             (None, None) => Some(EmissionPoint::of_even(self.shape.sample_emission(ball, u)?)),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::shared_transmittance;
 use crate::math::DVec3;
-use crate::spectrum::{Draw, Lanes, Table};
+use crate::spectrum::{Draw, Lanes, Table, Waves};
 
 /// What a material may know of the light that arrives, followed backward from the viewer.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +15,8 @@ pub struct Arrival<'a, const N: usize> {
     pub uv: [f64; 2],
     /// Which bin each lane reads.
     pub draw: &'a Draw<N>,
+    /// Where each lane lies in the spectrum.
+    pub waves: &'a Waves,
     /// The lanes on the ray, each 1, the others 0.
     pub present: Lanes<N>,
     /// Whether the viewer is behind the surface's front, inside a clear body, and meets a coating at its inner side.
@@ -57,6 +59,11 @@ impl<const N: usize> Arrival<'_, N> {
             Index::Same(index) => index,
             Index::Own(table) => self.draw.read_lane(table, lane),
         }
+    }
+
+    /// The wavelength of a lane in nm in vacuum, and the width of its band over that.
+    pub(super) fn wave(&self, lane: usize) -> [f64; 2] {
+        self.waves.of_lane(self.draw, lane)
     }
 
     /// The indices of all lanes on both sides.

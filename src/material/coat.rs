@@ -88,7 +88,7 @@ impl Coat {
         let m = n2 / n1;
         let squared = m * m;
         let around = diffuse_transmittance(m);
-        let [from_smooth, to_smooth] = [from, to].map(|cos| transmittance(n1, n2, cos));
+        let [from_smooth, to_smooth] = [from, to].map(|cos| Interface::new(n1, n2, cos).transmittance);
         let Some(surface) = self.roughness.surface() else {
             return Crossing { from: from_smooth, to: to_smooth, around, squared, lost: 0.0 };
         };
@@ -173,7 +173,7 @@ fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     // At the very horizon a rough surface still lets light in, which a smooth one does not.
     AlbedoTable::new(surface.facets().alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
-        reflected_once(surface, m, z) - (1.0 - transmittance(1.0, m, z))
+        reflected_once(surface, m, z) - (1.0 - Interface::new(1.0, m, z).transmittance)
     })
 }
 
@@ -213,12 +213,7 @@ const HORIZON: f64 = 1e-9;
 fn reflected_once(surface: &RoughSurface, m: f64, z: f64) -> f64 {
     let facets = surface.facets();
     facets.mean_over_visible(z, m, |[wo, h]| {
-        let reflectance = 1.0 - transmittance(1.0, m, wo.dot(h).clamp(0.0, 1.0));
+        let reflectance = 1.0 - Interface::new(1.0, m, wo.dot(h)).transmittance;
         reflectance * facets.left_and_blocked(wo, reflect(wo, h))[0]
     })
-}
-
-/// Share of the light that crosses a smooth boundary; all of it where there is none.
-pub(super) fn transmittance(n1: f64, n2: f64, cos: f64) -> f64 {
-    if n1 == n2 { 1.0 } else { Interface::new(n1, n2, cos).transmittance }
 }

@@ -52,7 +52,7 @@ pub(super) fn shares_at<const N: usize>(
     cos: f64,
 ) -> StackShares {
     let [here, beyond] = arrival.refracting(lane);
-    let goes_on = here == beyond || Interface::new(here, beyond, cos).transmittance > 0.0;
+    let goes_on = Interface::new(here, beyond, cos).transmittance > 0.0;
     shares_of_lane(arrival, lane, cos, goes_on, |n1, n2, q1| met.shares(lane, n1, n2.into(), q1))
 }
 

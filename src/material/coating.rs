@@ -25,10 +25,6 @@ use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 pub struct Coating<S> {
     /// From the outside inward.
     pub layers: Vec<CoatingLayer<S>>,
-    /// 1, of which lanes read where they are,
-    pub wavelength: S,
-    /// and how wide their bands are.
-    pub band: S,
     /// From outside and from inside, what fixed lanes make of light from many directions.
     known: Arc<[[Known; MAX_LANES]; 2]>,
 }
@@ -50,9 +46,9 @@ pub struct CoatingLayer<S> {
 }
 
 impl<S> Coating<S> {
-    /// Layers from the outside inward; `one` is the number 1.
-    pub fn new(layers: Vec<CoatingLayer<S>>, one: impl Fn() -> S) -> Self {
-        Self { layers, wavelength: one(), band: one(), known: unknown() }
+    /// Layers from the outside inward.
+    pub fn new(layers: Vec<CoatingLayer<S>>) -> Self {
+        Self { layers, known: Arc::new([const { [const { OnceLock::new() }; MAX_LANES] }; 2]) }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Coating<T> {
@@ -62,17 +58,8 @@ impl<S> Coating<S> {
             is_metal: layer.is_metal,
             thickness: convert(Quantity::Thickness, &layer.thickness),
         };
-        Coating {
-            layers: self.layers.iter().map(layer).collect(),
-            wavelength: convert(Quantity::Wavelength, &self.wavelength),
-            band: convert(Quantity::BandWidth, &self.band),
-            known: unknown(),
-        }
+        Coating::new(self.layers.iter().map(layer).collect())
     }
-}
-
-fn unknown() -> Arc<[[Known; MAX_LANES]; 2]> {
-    Arc::new([const { [const { OnceLock::new() }; MAX_LANES] }; 2])
 }
 
 impl Coating<Table> {
@@ -141,7 +128,7 @@ impl<const N: usize> MetCoating<'_, N> {
     pub(super) fn shares(&self, lane: usize, n1: f64, n2: Complex, q1: f64) -> StackShares {
         let boundary = [n1, n2.re, n2.im, q1];
         LAST.with_borrow_mut(|last| match &mut last[lane] {
-            Some(last) if last.boundary == boundary && last.stack.is(self.light(lane), self.layers(lane)) => {
+            Some(last) if last.boundary == boundary && last.stack.is(self.arrival.wave(lane), self.layers(lane)) => {
                 last.shares
             }
             last => {
@@ -158,12 +145,7 @@ impl<const N: usize> MetCoating<'_, N> {
 
     /// The layers for a lane, the viewer's side first.
     pub(super) fn stack(&self, lane: usize) -> Stack {
-        Stack::new(self.light(lane), self.layers(lane))
-    }
-
-    /// The wavelength of a lane in nm, and the relative width of its band.
-    fn light(&self, lane: usize) -> [f64; 2] {
-        [&self.coating.wavelength, &self.coating.band].map(|table| self.arrival.draw.read_lane(table, lane))
+        Stack::new(self.arrival.wave(lane), self.layers(lane))
     }
 
     fn layers(&self, lane: usize) -> impl Iterator<Item = Layer> {

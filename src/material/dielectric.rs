@@ -133,24 +133,19 @@ impl Dielectric<Table> {
             let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
             let interface = last.of(pair, |[here, beyond]| Interface::new(here, beyond, cos));
             let [reflects, lets_through] = match &own {
-                Some(own) => [1.0 - own[lane], own[lane]],
-                None => [interface.reflectance, interface.transmittance],
+                Some(own) if here != beyond || n1 != n2 => [1.0 - own[lane], own[lane]],
+                _ => [interface.reflectance, interface.transmittance],
             };
             let weight = arrival.present[lane];
-            // Between equal indices nothing happens at all, even along the surface.
-            let same = here == beyond && n1 == n2;
-            if !same {
-                reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
-                polarization = interface.polarization_reflected.abs().max(polarization);
-            }
-            let (crosses, transmittance) = (weight * crossing[lane], if same { 1.0 } else { lets_through });
-            if transmittance == 0.0 || crosses == 0.0 {
+            reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
+            polarization = interface.polarization_reflected.abs().max(polarization);
+            let crosses = weight * crossing[lane];
+            if lets_through == 0.0 || crosses == 0.0 {
                 continue;
             }
-            let degree = if same { 0.0 } else { interface.polarization_refracted.abs() as f32 };
             let branch = refracted.branch(pair, || interface);
-            branch.polarization = branch.polarization.max(degree);
-            branch.share.0[lane] = crosses * (transmittance * ((n1 / n2) * (n1 / n2))) as f32;
+            branch.polarization = branch.polarization.max(interface.polarization_refracted.abs() as f32);
+            branch.share.0[lane] = crosses * (lets_through * ((n1 / n2) * (n1 / n2))) as f32;
         }
         if !reflected.is_zero() {
             branches.push(Branch::mirrored(arrival, reflected, polarization as f32));

@@ -19,7 +19,8 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The boundary from index `n1` to a different index `n2`, met at an angle with cosine `c1` in 0..1.
+    /// The boundary from index `n1` to `n2`, met at an angle with cosine `c1` in 0..1. Between equal indices nothing
+    /// happens at all, even along the surface.
     ///
     /// Fresnel 1823, Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance has its own formula,
     /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which keeps its digits at grazing angles; the
@@ -27,16 +28,20 @@ impl Interface {
     pub fn new(n1: f64, n2: f64, c1: f64) -> Self {
         let c1 = c1.clamp(0.0, 1.0);
         let eta = n1 / n2;
+        let whole = |[reflectance, transmittance, cos_beyond]: [f64; 3]| Self {
+            reflectance,
+            transmittance,
+            cos_beyond,
+            polarization_reflected: 0.0,
+            polarization_refracted: 0.0,
+            eta,
+        };
+        if n1 == n2 {
+            return whole([0.0, 1.0, c1]);
+        }
         let c2_squared = (n2 - n1) * (n2 + n1) / (n2 * n2) + (eta * c1) * (eta * c1);
         if c2_squared <= 0.0 {
-            return Self {
-                reflectance: 1.0,
-                transmittance: 0.0,
-                cos_beyond: 0.0,
-                polarization_reflected: 0.0,
-                polarization_refracted: 0.0,
-                eta,
-            };
+            return whole([1.0, 0.0, 0.0]);
         }
         let c2 = c2_squared.sqrt().min(1.0);
         let (s, p) = (n1 * c1 + n2 * c2, n2 * c1 + n1 * c2);

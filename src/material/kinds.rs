@@ -28,7 +28,7 @@ pub enum Material<S> {
     /// Lets light through that is polarized along an axis.
     Polarizer(Polarizer),
     /// Shifts the phase of light that is polarized along an axis.
-    Retarder(Retarder<S>),
+    Retarder(Retarder),
     /// Does what two other materials do, each on a share of the surface.
     Mix(Mix<S, Self>),
     /// Does what another material does, and lets the rest straight through.
@@ -47,7 +47,7 @@ impl<S> Material<S> {
             Self::Emissive(emissive) => Material::Emissive(emissive.map(convert)),
             Self::Plastic(plastic) => Material::Plastic(plastic.map(convert)),
             Self::Polarizer(polarizer) => Material::Polarizer(*polarizer),
-            Self::Retarder(retarder) => Material::Retarder(retarder.map(convert)),
+            Self::Retarder(retarder) => Material::Retarder(*retarder),
             Self::Mix(Mix { materials, amount }) => {
                 let amount = convert(Quantity::Share, amount);
                 let materials = materials.each_ref().map(|part| part.map(|material| material.map(convert)));

@@ -107,7 +107,7 @@ impl Plastic<Table> {
                 let reflected = met.at_cosine(lane, n1, n2, cos).reflected;
                 share.0[lane] = reflected.mean() as f32;
                 of_lanes[lane] = [reflected.s, reflected.p];
-            } else if n1 != n2 {
+            } else {
                 let interface = Interface::new(n1, n2, cos);
                 share.0[lane] = interface.reflectance as f32;
                 degree = degree.max(interface.polarization_reflected.abs());
@@ -298,10 +298,9 @@ impl CoatLane {
     /// BRDF times cosine of a rough coat.
     fn coat(&self, surface: &RoughSurface, reflection: &RoughReflection) -> f64 {
         let (cos, [n1, n2]) = (reflection.cos, self.indices);
-        let bare = || if n1 == n2 { 0.0 } else { Interface::new(n1, n2, cos).reflectance };
         let [once, again] = match &self.film {
             Some(film) => [film.shares(cos).reflected.mean(), surface.reflected_again(film.averages.mean[0])],
-            None => [bare(), Coat::reflected_again(surface, n1, n2)],
+            None => [Interface::new(n1, n2, cos).reflectance, Coat::reflected_again(surface, n1, n2)],
         };
         once * reflection.once + again * reflection.again
     }

@@ -1,7 +1,7 @@
-use super::coat::{Coat, Crossing, transmittance};
+use super::coat::{Coat, Crossing};
 use super::coating::MetCoating;
 use super::film_averages::{FilmAverages, mean};
-use super::{Stack, StackShares};
+use super::{Interface, Stack, StackShares};
 
 /// The film on the coat of an opaque body, for one lane.
 pub(super) struct PlasticFilm {
@@ -33,7 +33,7 @@ impl PlasticFilm {
 fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
     let film = |cos: f64| stack.shares(n1, n2.into(), n1 * cos).means();
     let bare = |cos: f64| {
-        let crosses = transmittance(n1, n2, cos);
+        let crosses = Interface::new(n1, n2, cos).transmittance;
         [1.0 - crosses, crosses]
     };
     // In a denser medium layers may reflect totally, from other angles on than the coat.

@@ -63,8 +63,8 @@ impl Thin<Table> {
                 let [s, p] = conductor_reflectance(here, read(&layers[0].index), read(&layers[0].k), cos);
                 0.5 * (s + p)
             }
-            Self::Film(Coating { layers, .. }) => reflectance(here, read(&layers[0].index), cos),
-            Self::Pane { index, .. } => reflectance(here, read(index), cos),
+            Self::Film(Coating { layers, .. }) => Interface::new(here, read(&layers[0].index), cos).reflectance,
+            Self::Pane { index, .. } => Interface::new(here, read(index), cos).reflectance,
         }
     }
 
@@ -128,11 +128,8 @@ impl Thin<Table> {
                 let (index, left) = (arrival.draw.read_exact(index), arrival.read(transmittance));
                 let mut last = Last::NONE;
                 for lane in present {
-                    let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
-                    let [through, back] = match n1 == n2 {
-                        true => [[t; 2], [0.0; 2]],
-                        false => last.of(pane, |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t)),
-                    };
+                    let pane = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
+                    let [through, back] = last.of(pane, |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t));
                     lanes[lane] = if crosses { through } else { back };
                 }
                 (mean(&lanes), largest(lanes.into_iter().map(degree)))
@@ -149,11 +146,6 @@ impl Thin<Table> {
             }
         }
     }
-}
-
-/// The share of unpolarized light that a surface between two clear media mirrors.
-fn reflectance(n1: f64, n2: f64, cos: f64) -> f64 {
-    if n1 == n2 { 0.0 } else { Interface::new(n1, n2, cos).reflectance }
 }
 
 /// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.

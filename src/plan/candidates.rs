@@ -138,7 +138,10 @@ pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown:
     let lines = own_lines(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());
     let space = survey.color_space;
-    let [from, to] = Basis::best_range_nm(bands, survey.needs_ultraviolet());
+    let [from, to] = match survey.needs_ultraviolet() {
+        true => Basis::FROM_ULTRAVIOLET_NM,
+        false => Basis::best_range_nm(bands),
+    };
     let basis = match shown.map(WavelengthBands::range_nm) {
         None => Basis::bands_over(space, bands, [from, to], &lines),
         // Lanes stand at both ends: where they stood half a step inside, an edge at 380 nm was off by 0.15.

@@ -10,17 +10,17 @@ use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
 
 /// Light meets a film at right angles, where its fringes are closest, and is reflected or crosses it.
 pub(super) struct Film<'a> {
-    pub(super) coating: &'a Coating<Curve>,
+    coating: &'a Coating<Curve>,
     /// What is beyond it; nothing behind a pane.
-    pub(super) beyond: Beyond<'a>,
+    beyond: Beyond<'a>,
     pub(super) crosses: bool,
     /// Whether layers that vary are taken as thick as they are anywhere, and else as on the mean.
-    pub(super) thickest: bool,
+    thickest: bool,
 }
 
 /// What a film lies on.
 #[derive(Clone, Copy)]
-pub(super) enum Beyond<'a> {
+enum Beyond<'a> {
     Nothing,
     Glass(&'a Curve),
     Metal(&'a Curve, &'a Curve),
@@ -49,9 +49,10 @@ pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
 }
 
 impl Film<'_> {
-    /// What is left of the light, of all that is read of each curve.
-    pub(super) fn left(&self, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
-        let stacks = stacks(self.coating, self.thickest, &read);
+    /// What is left of light of each wavelength in nm and relative width of its band, for all of which each curve is
+    /// read.
+    pub(super) fn left(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
+        let stacks = self.stacks(waves, &read);
         let (n, k) = match self.beyond {
             Beyond::Nothing => (vec![1.0; stacks.len()], vec![0.0; stacks.len()]),
             Beyond::Glass(index) => (read(Quantity::Index, index), vec![0.0; stacks.len()]),
@@ -67,27 +68,26 @@ impl Film<'_> {
     /// Optical thickness of each layer in the middle of the spectrum, in nm.
     pub(super) fn optical_nm(&self) -> Vec<f64> {
         let read = |quantity, curve: &Curve| vec![curve.values(quantity)(MIDDLE_NM)];
-        let stacks = stacks(self.coating, self.thickest, read);
+        let stacks = self.stacks(&[[MIDDLE_NM, 0.0]], read);
         stacks.iter().flat_map(|stack| stack.layers().iter().map(Layer::optical_nm)).collect()
+    }
+
+    /// The layers for light of each wavelength in nm and relative width of its band.
+    fn stacks(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
+        let of_layer = |layer: &CoatingLayer<Curve>| {
+            let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
+            let (n, k) = (read(of_index, &layer.index), read(Quantity::MetalExtinction, &layer.k));
+            let thickness = read(Quantity::Thickness, &even(&layer.thickness, self.thickest));
+            let lane = |i: usize| Layer { index: Complex::new(n[i], -k[i]), thickness_nm: thickness[i] };
+            (0..n.len()).map(lane).collect()
+        };
+        let layers: Vec<Vec<Layer>> = self.coating.layers.iter().map(of_layer).collect();
+        let stack = |(i, wave): (usize, &[f64; 2])| Stack::new(*wave, layers.iter().map(|lanes| lanes[i]));
+        waves.iter().enumerate().map(stack).collect()
     }
 }
 
 const MIDDLE_NM: f64 = 550.0;
-
-/// The layers at each wavelength or in each lane.
-fn stacks(coating: &Coating<Curve>, thickest: bool, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
-    let (nm, band) = (read(Quantity::Wavelength, &coating.wavelength), read(Quantity::BandWidth, &coating.band));
-    let of_layer = |layer: &CoatingLayer<Curve>| {
-        let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
-        let (n, k) = (read(of_index, &layer.index), read(Quantity::MetalExtinction, &layer.k));
-        let thickness = read(Quantity::Thickness, &even(&layer.thickness, thickest));
-        let lane = |i: usize| Layer { index: Complex::new(n[i], -k[i]), thickness_nm: thickness[i] };
-        (0..n.len()).map(lane).collect()
-    };
-    let layers: Vec<Vec<Layer>> = coating.layers.iter().map(of_layer).collect();
-    let stack = |i: usize| Stack::new([nm[i], band[i]], layers.iter().map(|lanes| lanes[i]));
-    (0..nm.len()).map(stack).collect()
-}
 
 /// A thickness that is the same all over: of one that varies the most or the mean.
 fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
@@ -108,9 +108,9 @@ fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
 }
 
 /// The plate of a material alone that shows fringes between polarizers, if it is one.
-pub(super) fn plate(material: &Material<Curve>) -> Option<&PathDifference<Curve>> {
+pub(super) fn plate(material: &Material<Curve>) -> Option<PathDifference> {
     match material {
-        Material::Retarder(retarder) => match &retarder.retardance {
+        Material::Retarder(retarder) => match retarder.retardance {
             Retardance::Path(path) => Some(path),
             Retardance::Phase(_) => None,
         },
@@ -119,24 +119,21 @@ pub(super) fn plate(material: &Material<Curve>) -> Option<&PathDifference<Curve>
 }
 
 /// What two crossed polarizers let through of light polarized along the first, with a plate at 45 degrees between them,
-/// of all that is read of each curve: sin^2 of half its phase.
-pub(super) fn between_polarizers(
-    plate: &PathDifference<Curve>,
-    read: impl Fn(Quantity, &Curve) -> Vec<f64>,
-) -> Vec<f64> {
-    let (nm, band) = (read(Quantity::Wavelength, &plate.wavelength), read(Quantity::BandWidth, &plate.band));
-    nm.iter().zip(band).map(|(nm, band)| 0.5 * (1.0 - plate.block(*nm, band).c)).collect()
+/// of each wavelength in nm and relative width of its band: sin^2 of half its phase.
+pub(super) fn between_polarizers(plate: PathDifference, waves: &[[f64; 2]]) -> Vec<f64> {
+    waves.iter().map(|wave| 0.5 * (1.0 - plate.block(*wave).c)).collect()
 }
 
 /// How lanes read the films and the plates of a material, in words; none of one without.
 pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String> {
-    let read = |quantity, curve: &Curve| basis.tabulate(quantity, curve).bins().to_vec();
+    let waves: Vec<_> = basis.waves().of_fixed_lanes().collect();
     if let Some(plate) = material.with_parts().into_iter().find_map(plate) {
-        return Some(spoken_plate(plate, basis, read));
+        return Some(spoken_plate(plate, basis, &waves));
     }
     let films = films(material);
     let thickest = films.first().filter(|film| film.thickest)?;
-    let widest = stacks(thickest.coating, true, read).iter().map(Stack::phase_step).fold(0.0, f64::max);
+    let read = |quantity, curve: &Curve| basis.tabulate(quantity, curve).bins().to_vec();
+    let widest = thickest.stacks(&waves, read).iter().map(Stack::phase_step).fold(0.0, f64::max);
     let optical = thickest.optical_nm();
     let count = thickest.coating.layers.len();
     let layers = if count == 1 { "a layer".to_owned() } else { format!("{count} layers") };
@@ -162,9 +159,8 @@ fn of_three_bands(basis: &Basis) -> String {
     format!("at {red}, {green} and {blue} nm alone, for three bands have no other wavelengths")
 }
 
-fn spoken_plate(plate: &PathDifference<Curve>, basis: &Basis, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> String {
-    let (nm, band) = (read(Quantity::Wavelength, &plate.wavelength), read(Quantity::BandWidth, &plate.band));
-    let widest = nm.iter().zip(band).map(|(nm, band)| plate.phase_step(*nm, band)).fold(0.0, f64::max);
+fn spoken_plate(plate: PathDifference, basis: &Basis, waves: &[[f64; 2]]) -> String {
+    let widest = waves.iter().map(|wave| plate.phase_step(*wave)).fold(0.0, f64::max);
     let how = if basis.fixed_lanes() <= 3 {
         format!("its phase is that {}", of_three_bands(basis))
     } else if widest <= PHASE_STEP {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::films::films;
 use super::survey::{Survey, Tint, method_of_a_look, missed, strongest, tolerance};
 use crate::material::Material;
 use crate::scene::Scene;
@@ -210,7 +211,10 @@ fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Ti
         (Material::Dielectric(glass), Way::Inside(_)) => {
             vec![Tint::Depth(&glass.absorption, libm::exp(rounded as f64 * libm::log(DISTANCE)))]
         }
-        (Material::Conductor(metal), _) => vec![Tint::Metal(metal, rounded as f64 / COSINES)],
+        (Material::Conductor(metal), _) if metal.coating.is_none() => {
+            vec![Tint::Metal(metal, rounded as f64 / COSINES)]
+        }
+        (coated @ Material::Conductor(_), _) => films(coated).into_iter().take(1).map(Tint::Film).collect(),
         (Material::Diffuse(diffuse), _) => vec![Tint::Diffuse(farthest_from_gray(&diffuse.reflectance))],
         (Material::Plastic(plastic), Way::Scattered) => {
             vec![Tint::Coated(plastic, farthest_from_gray(&plastic.reflectance))]

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::films::{Beyond, Film, between_polarizers, films, plate};
+use super::films::{Film, between_polarizers, films, plate};
 use super::lights::{different, farthest_apart};
 use crate::material::{
     Conductor, Dielectric, Material, PathDifference, Plastic, conductor_reflectance, diffuse_transmittance,
@@ -81,14 +81,14 @@ pub(super) enum Tint<'a> {
     Coated(&'a Plastic<Curve>, Cow<'a, Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, Cow<'a, Curve>),
-    /// A metal's reflection under an angle of this cosine, once or, where it is rough, more often.
+    /// A bare metal's reflection under an angle of this cosine, once or, where it is rough, more often.
     Metal(&'a Conductor<Curve>, f64),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
     /// Light meets layers in which it interferes.
     Film(Film<'a>),
     /// Light crosses a wave plate between crossed polarizers.
-    Plate(&'a PathDifference<Curve>),
+    Plate(PathDifference),
     /// Light meets a clear surface of a measured index at right angles, and is reflected or crosses it.
     Surface { index: &'a Curve, crosses: bool, together: bool },
 }
@@ -311,11 +311,9 @@ impl Tint<'_> {
 
     /// What is left of the light at wavelengths in nm.
     pub(super) fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
-        self.combine(|quantity, curve| {
-            if quantity == Quantity::BandWidth {
-                // What is summed over 1 nm has the fringes of bands of 1 nm.
-                return wavelengths_nm.iter().map(|nm| 1.0 / nm).collect();
-            }
+        // What is summed over 1 nm has the fringes of bands of 1 nm.
+        let waves: Vec<_> = wavelengths_nm.iter().map(|&nm| [nm, 1.0 / nm]).collect();
+        self.combine(&waves, |quantity, curve| {
             let reader = curve.reader(quantity, upsampler);
             wavelengths_nm.iter().map(|&nm| reader(nm)).collect()
         })
@@ -327,10 +325,13 @@ impl Tint<'_> {
             Self::Surface { together: true, .. } => Cow::Owned(basis.clone().kept_together()),
             _ => Cow::Borrowed(basis),
         };
-        self.combine(|quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
+        let waves: Vec<_> = basis.waves().of_fixed_lanes().collect();
+        self.combine(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
-    fn combine(&self, read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
+    /// What is left of light of each wavelength in nm and relative width of its band, for all of which each curve is
+    /// read.
+    fn combine(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
             Self::Coated(plastic, reflectance) => {
@@ -342,14 +343,10 @@ impl Tint<'_> {
                 read(Quantity::Reflectance, reflectance).into_iter().zip(index).map(coated).collect()
             }
             Self::Filter(quantity, curve) => read(*quantity, curve),
-            Self::Film(film) => film.left(read),
-            Self::Plate(plate) => between_polarizers(plate, read),
+            Self::Film(film) => film.left(waves, read),
+            Self::Plate(plate) => between_polarizers(*plate, waves),
             Self::Metal(metal, cos) => {
                 let (n, k) = (read(Quantity::MetalIndex, &metal.n), read(Quantity::MetalExtinction, &metal.k));
-                if let Some(coating) = &metal.coating {
-                    let beyond = Beyond::Metal(&metal.n, &metal.k);
-                    return Film { coating, beyond, crosses: false, thickest: true }.left(read);
-                }
                 let reflected = n.into_iter().zip(k).map(|(n, k)| match *cos {
                     1.0 => normal_reflectance(n, k),
                     cos => 0.5 * conductor_reflectance(1.0, n, k, cos).iter().sum::<f64>(),

@@ -111,7 +111,7 @@ impl Index {
                 light => {
                     let is_later = light.is_some_and(|light| light < object);
                     let t_max = if is_later { distance.next_down() } else { distance };
-                    shape.is_crossed_from(ray, t_max, left.and_then(|left| left.of(object)))
+                    shape.is_crossed(ray, t_max, left.and_then(|left| left.of(object)))
                 }
             }
         };

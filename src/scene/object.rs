@@ -21,10 +21,10 @@ pub struct Object {
     pub material: MaterialId,
     /// The light it is, if it shines.
     pub light: Option<LightId>,
-    /// Where its points lie in images, if its material varies over the surface.
+    /// Where its points lie in images; none of a mesh that does not say.
     pub coordinates: Option<Arc<Coordinates>>,
-    /// The same whatever its material is; none of a shape that has none.
-    pub chart: Option<Arc<Coordinates>>,
+    /// Whether its material varies over the surface.
+    pub varies: bool,
     /// The name of what it is one of, if it is one of several instances; else its own.
     pub asset: String,
     /// The group of lights that it belongs to if it shines; its asset alone if absent.
@@ -62,12 +62,12 @@ impl Object {
 
     /// Where a point of its surface would lie in an image on it; (0, 0) if it has no coordinates.
     pub fn chart_uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
-        self.chart.as_ref().map_or([0.0; 2], |chart| chart.at(&self.shape, crossing, point.position))
-    }
-
-    /// Where a point of its surface lies in images on it; (0, 0) if there are none.
-    pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
         let coordinates = self.coordinates.as_ref();
         coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, crossing, point.position))
+    }
+
+    /// Where a point of its surface lies in the images of its material; (0, 0) if that is the same everywhere.
+    pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
+        if self.varies { self.chart_uv(crossing, point) } else { [0.0; 2] }
     }
 }

@@ -268,7 +268,7 @@ mod tests {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.2, 1.0, 0.1), DVec3::Y, DVec3::new(1.2, 1.0, 0.1)];
         let faces = vec![[0, 1, 2], [0, 4, 3]];
         let coordinates = vec![[0.5, 0.25], [1.0, 0.5], [0.75, 1.5], [1.0, 0.125], [1.5, 0.5]];
-        let (mesh, _) = Mesh::new(Vertices::Double(points), faces).unwrap();
+        let mesh = Mesh::new(Vertices::Double(points), faces).unwrap();
         Shape::Mesh(mesh.with(Attributes { coordinates, ..Default::default() }).into())
     }
 
@@ -283,7 +283,7 @@ mod tests {
         for (shape, place) in cases {
             for map in maps() {
                 let coordinates = Coordinates::new(&shape, &map).unwrap();
-                for placed in [shape.clone().transformed(&map), shape.copied(&map)] {
+                for placed in [shape.transformed(&map), shape.copied(&map)] {
                     check(&placed, &coordinates, map.point(place), map.normal(outward(&shape, place)));
                 }
             }

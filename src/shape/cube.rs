@@ -87,6 +87,11 @@ impl Cube {
         self.faces[crossing.part as usize].point(crossing.uv)
     }
 
+    /// Three of its edges, each along one axis before a transform.
+    pub fn edges(&self) -> [DVec3; 3] {
+        self.half_edges.map(|half| 2.0 * half)
+    }
+
     /// How far the cube reaches from its center along each axis of the world.
     fn extent(&self) -> DVec3 {
         let [a, b, c] = self.half_edges.map(|edge| edge.abs());

@@ -6,7 +6,7 @@ use super::{
     Ball, Crossing, Cube, Density, Disc, Ellipsoid, Instance, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
     SurfacePoint, Triangle,
 };
-use crate::math::{Bounds, Cone, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
+use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -52,13 +52,8 @@ impl Shape {
         }
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max`.
-    pub fn is_crossed(&self, ray: &Ray, t_max: f64) -> bool {
-        self.is_crossed_from(ray, t_max, None)
-    }
-
-    /// The same of a ray that may leave one of the shape's own parts.
-    pub fn is_crossed_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
+    /// Whether there is a crossing with 0 < t <= `t_max` of a ray that may leave one of the shape's own parts.
+    pub fn is_crossed(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
         if self.has_triangles() {
             self.are_triangles_crossed(ray, t_max, left, |_, _| true)
         } else {
@@ -154,9 +149,10 @@ impl Shape {
     }
 
     /// The shape after an invertible affine map.
-    pub fn transformed(self, map: &Transform) -> Self {
+    #[must_use]
+    pub fn transformed(&self, map: &Transform) -> Self {
         if *map == Transform::IDENTITY {
-            return self;
+            return self.clone();
         }
         match self {
             Self::Plane(plane) => Self::Plane(plane.transformed(map)),
@@ -183,7 +179,7 @@ impl Shape {
             Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
             _ => None,
         };
-        shared.map_or_else(|| self.clone().transformed(map), |instance| Self::Instance(Box::new(instance)))
+        shared.map_or_else(|| self.transformed(map), |instance| Self::Instance(Box::new(instance)))
     }
 
     /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
@@ -279,17 +275,6 @@ impl Shape {
         density.toward(crossing.t, self.normal(ray, crossing).dot(ray.direction).abs())
     }
 
-    /// A direction as `sample` draws it; toward a sphere, most often to a cap of it, given by its unit normals.
-    pub fn sample_cap(&self, cap: &Cone, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
-        if let Self::Sphere(sphere) = self { sphere.sample_cap(cap, from, u) } else { self.sample(from, u) }
-    }
-
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the shape at a
-    /// crossing.
-    pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, crossing: &Crossing) -> f64 {
-        if let Self::Sphere(sphere) = self { sphere.pdf_cap(cap, ray, crossing.t) } else { self.pdf(ray, crossing) }
-    }
-
     /// How many parts may be sampled one by one: triangles of a mesh, faces of a cube; 0 of other shapes.
     pub fn part_count(&self) -> u32 {
         match self {
@@ -354,22 +339,6 @@ impl Shape {
             Self::Sphere(sphere) => sphere.pdf_emission(toward, point),
             Self::Ellipsoid(ellipsoid) => ellipsoid.density_over(ellipsoid.unit_of(point.position)),
             _ => 1.0 / self.area(),
-        }
-    }
-
-    /// A point as `sample_emission` draws it; of a sphere, most often of a cap of it, given by its unit normals.
-    pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
-        match self {
-            Self::Sphere(sphere) => Some(sphere.sample_cap_emission(cap, toward, u)),
-            _ => self.sample_emission(toward, u),
-        }
-    }
-
-    /// Density per unit of area with which `sample_cap_emission` draws a point of the shape for a ball.
-    pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
-        match self {
-            Self::Sphere(sphere) => sphere.pdf_cap_emission(cap, toward, point),
-            _ => self.pdf_emission(toward, point),
         }
     }
 }

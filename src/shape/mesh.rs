@@ -25,25 +25,18 @@ pub struct Mesh {
     bounds: Bounds,
     /// The triangles by their areas; only lights ask for it.
     areas: OnceLock<Distribution>,
-    closed: bool,
     attributes: Attributes,
+    degenerate: usize,
+    open_edges: usize,
 }
 
 /// Triangles of a mesh up to which memory does not matter.
 pub(super) const SMALL: u32 = 1024;
 
-/// What building a mesh left out or noticed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MeshReport {
-    /// Triangles without area, which were dropped.
-    pub degenerate: usize,
-    /// Edges along which triangles do not run as often one way as the other: 0 in a closed mesh.
-    pub open_edges: usize,
-}
-
 impl Mesh {
-    /// The mesh of triangles whose corners index existing, finite vertices. None if no triangle has an area.
-    pub fn new(vertices: Vertices, faces: Vec<[u32; 3]>) -> Option<(Self, MeshReport)> {
+    /// The mesh of triangles whose corners index existing, finite vertices; those without area are dropped. None if no
+    /// triangle has an area.
+    pub fn new(vertices: Vertices, faces: Vec<[u32; 3]>) -> Option<Self> {
         let is_flat = |face: &[u32; 3]| Triangle::is_degenerate(face.map(|corner| vertices.at(corner)));
         let (flat, triangles): (Vec<_>, Vec<_>) = faces.into_iter().partition(is_flat);
         if triangles.is_empty() {
@@ -54,17 +47,16 @@ impl Mesh {
             open if open > 0 && !flat.is_empty() => open.min(open_edges(&vertices, &[&*triangles, &flat].concat())),
             open => open,
         };
-        let report = MeshReport { degenerate: flat.len(), open_edges };
-        Some((Self::built(vertices, triangles, open_edges == 0), report))
+        Some(Self::built(vertices, triangles, flat.len(), open_edges))
     }
 
-    fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, closed: bool) -> Self {
+    fn built(vertices: Vertices, triangles: Vec<[u32; 3]>, degenerate: usize, open_edges: usize) -> Self {
         let packed = Packed::new(&vertices, &triangles);
         let facet = |corners: &[u32; 3]| Facet::new(Triangle::new(corners.map(|corner| vertices.at(corner))));
         let facets = if triangles.len() <= SMALL as usize { triangles.iter().map(facet).collect() } else { vec![] };
         let bounds = Bounds::around(triangles.iter().flatten().map(|&corner| vertices.at(corner)));
         let (areas, attributes) = (OnceLock::new(), Attributes::default());
-        Self { packed, facets, vertices, triangles, bounds, areas, closed, attributes }
+        Self { packed, facets, vertices, triangles, bounds, areas, attributes, degenerate, open_edges }
     }
 
     /// How many triangles there are, at least one.
@@ -72,9 +64,19 @@ impl Mesh {
         self.triangles.len() as u32
     }
 
+    /// How many triangles without area were dropped.
+    pub fn degenerate(&self) -> usize {
+        self.degenerate
+    }
+
+    /// Edges along which triangles do not run as often one way as the other.
+    pub fn open_edges(&self) -> usize {
+        self.open_edges
+    }
+
     /// Whether it encloses a volume.
     pub fn is_closed(&self) -> bool {
-        self.closed
+        self.open_edges == 0
     }
 
     /// One of the triangles.
@@ -141,7 +143,7 @@ impl Mesh {
 
     /// How many triangles are to be turned over to close the mesh; 0 if it is closed, or that does not close it.
     pub fn turned(&self) -> usize {
-        if self.closed { 0 } else { turned(&self.vertices, &self.triangles) }
+        if self.is_closed() { 0 } else { turned(&self.vertices, &self.triangles) }
     }
 
     /// The largest angle in degrees between a triangle and a normal by which it is shaded; 0 if the mesh is not smooth.
@@ -185,7 +187,8 @@ impl Mesh {
     pub(super) fn transformed(&self, map: &Transform) -> Self {
         let points = self.vertices().map(|vertex| map.point(vertex)).collect();
         let triangles = self.triangles.iter().map(|&corners| map.wound(corners)).collect();
-        Self::built(Vertices::Double(points), triangles, self.closed).with(self.attributes.transformed(map))
+        let attributes = self.attributes.transformed(map);
+        Self::built(Vertices::Double(points), triangles, self.degenerate, self.open_edges).with(attributes)
     }
 
     fn areas(&self) -> &Distribution {

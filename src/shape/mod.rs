@@ -53,7 +53,7 @@ pub use ellipsoid::Ellipsoid;
 pub use faces::Faces;
 pub use instance::Instance;
 pub use kinds::{Shape, is_before};
-pub use mesh::{Mesh, MeshReport};
+pub use mesh::Mesh;
 pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
 pub use plane::Plane;
 pub use polygon::Polygon;

@@ -103,9 +103,9 @@ impl Sphere {
         self.cone_from(ray.origin).map_or(1.0 / (4.0 * PI), |cone| cone.uniform_pdf())
     }
 
-    /// A direction from a point to a sphere of which most often a cap alone is seen: from outside most lead to points
-    /// of the cap, uniform by area. The others keep the estimate right where more is seen.
-    pub(super) fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
+    /// A direction from a point to a sphere of which most often a cap alone is seen, given by its unit normals: from
+    /// outside most lead to points of the cap, uniform by area. The others keep the estimate right where more is seen.
+    pub fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
         let outside = self.is_outside(from);
         if u < ELSEWHERE || !outside {
             let u = if outside { u / ELSEWHERE } else { u };
@@ -119,7 +119,7 @@ impl Sphere {
 
     /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a
     /// distance.
-    pub(super) fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
+    pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
         let everywhere = self.pdf(ray);
         if !self.is_outside(ray.origin) {
             return everywhere;
@@ -149,16 +149,17 @@ impl Sphere {
         share * 2.0 / (one_minus_cos * self.area())
     }
 
-    /// A point as `sample_emission` draws it, or most often of a cap, uniform by area.
-    pub(super) fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
+    /// A point from which light may reach a ball: most often of a cap, given by its unit normals and uniform by area,
+    /// else as `sample_emission` draws it.
+    pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
         if u < ELSEWHERE {
             return self.sample_emission(toward, [u / ELSEWHERE, v]);
         }
         self.point(self.over(cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])))
     }
 
-    /// Density per unit of area with which `sample_cap_emission` draws a point.
-    pub(super) fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
+    /// Density per unit of area with which `sample_cap_emission` draws a point for a ball.
+    pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
         let of_cap = if cap.contains(point.normal) { 2.0 / (cap.one_minus_cos * self.area()) } else { 0.0 };
         ELSEWHERE * self.pdf_emission(toward, point) + (1.0 - ELSEWHERE) * of_cap
     }

@@ -15,7 +15,7 @@ use super::palette::palette;
 use super::projection::{Part, Projection};
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
-use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands};
+use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands, Waves};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,23 +78,15 @@ impl Basis {
     /// # Panics
     /// If lanes and lines are none or more than [`MAX_LANES`].
     pub fn bands(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
-        Self::bands_over(space, bands, Self::best_range_nm(bands, false), lines_nm)
+        Self::bands_over(space, bands, Self::best_range_nm(bands), lines_nm)
     }
 
-    /// As many wavelengths in equal steps from 300 to 730 nm, for dyes that ultraviolet light excites, and a lane of
-    /// its own for every ideal line.
-    ///
-    /// # Panics
-    /// If lanes and lines are none or more than [`MAX_LANES`].
-    pub fn bands_from_ultraviolet(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
-        Self::bands_over(space, bands, Self::best_range_nm(bands, true), lines_nm)
-    }
+    /// From where to where, in nm, wavelengths lie for dyes that ultraviolet light excites.
+    pub const FROM_ULTRAVIOLET_NM: [f64; 2] = [visible::START_NM, 730.0];
 
     /// From where to where, in nm, so many wavelengths show colors best.
-    /// For dyes, ultraviolet light as well.
-    pub(crate) fn best_range_nm(bands: usize, from_ultraviolet: bool) -> [f64; 2] {
+    pub(crate) fn best_range_nm(bands: usize) -> [f64; 2] {
         match bands {
-            _ if from_ultraviolet => [visible::START_NM, 730.0],
             ..=8 => [410.0, 710.0],
             9..=14 => [400.0, 700.0],
             15..=23 => [380.0, 730.0],
@@ -280,10 +272,8 @@ impl Basis {
         if let Some(table) = self.patterned(quantity, curve) {
             return table;
         }
-        match quantity {
-            Quantity::Emission => return self.emission(curve),
-            Quantity::BandWidth => return self.band_widths(),
-            _ => {}
+        if quantity == Quantity::Emission {
+            return self.emission(curve);
         }
         let reader = curve.reader(quantity, &self.upsampler);
         let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
@@ -291,7 +281,7 @@ impl Basis {
             (LaneKind::Rgb(_), Some(rgb), _) if is_share || quantity == Quantity::Absorption => {
                 Table::new(rgb.map(|x| x * curve.scale))
             }
-            (LaneKind::Prefiltered(bands), ..) if !matches!(quantity, Quantity::Index | Quantity::Wavelength) => {
+            (LaneKind::Prefiltered(bands), ..) if quantity != Quantity::Index => {
                 Table::new(bands.filter(quantity, curve, &*reader))
             }
             (_, _, Some(projection)) if is_share => self.table(projection.read(&*reader), &*reader),
@@ -305,6 +295,11 @@ impl Basis {
                 self.table(bands.index(&*reader).into(), &*reader).refracting_as(reader(DIRECTION_NM))
             }
         }
+    }
+
+    /// Where the lanes lie in the spectrum.
+    pub fn waves(&self) -> Waves {
+        Waves::new(self.table(self.wavelengths_nm.clone(), &|nm| nm), self.band_widths())
     }
 
     /// A curve that varies over a surface, read onto the bins; none if it is the same all over.

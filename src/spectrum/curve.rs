@@ -227,9 +227,6 @@ impl Curve {
     /// The value at any wavelength in nm, without a spectrum being made of `rgb`.
     pub fn values(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
         let (scale, values) = (self.scale, self.kind.values(quantity));
-        if quantity == Quantity::Wavelength {
-            return Box::new(move |nm| scale * nm);
-        }
         Box::new(move |nm| scale * values(nm))
     }
 

@@ -28,6 +28,7 @@ mod throughput;
 mod upsample;
 pub mod visible;
 mod wavelength_bands;
+mod waves;
 
 pub use advice::{imitation, provenance, reach, reach_of_absorption};
 pub use band_response::BandResponse;
@@ -51,3 +52,4 @@ pub use texture::{Channel, Encoding, Placement, TexelFilter, Texture};
 pub use throughput::Throughput;
 pub use upsample::{Sigmoid, Upsampler};
 pub use wavelength_bands::WavelengthBands;
+pub use waves::Waves;

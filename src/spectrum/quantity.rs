@@ -23,9 +23,4 @@ pub enum Quantity {
     Excitation,
     /// Power per nm that a dye shines, on any scale; not negative.
     Fluorescence,
-    /// Of the number 1: where a lane reads, in nm in vacuum.
-    Wavelength,
-    /// Of the number 1: the width of the band of wavelengths that a lane stands for over its wavelength, 0 of lines and
-    /// heroes.
-    BandWidth,
 }

@@ -13,7 +13,7 @@ use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, Scene, Sight};
-use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, apply};
+use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
 
 /// Lights that are weighed one by one: of more, neighbors in the scene as one.
 const LIGHTS: usize = 16;
@@ -23,6 +23,8 @@ const LIGHTS: usize = 16;
 pub struct World {
     pub(super) scene: Scene<Table>,
     pub(super) method: Method,
+    /// Where the lanes lie in the spectrum.
+    pub(super) waves: Waves,
     /// What is asked for beside the image.
     pub(super) layers: Layers,
     /// X + Y + Z of each film channel.
@@ -91,6 +93,7 @@ impl World {
         let bright = method.bright.as_ref().map(Bright::new);
         let path_starts = if method.light_vertices { path_starts(&scene, &method.sunlit) } else { Arc::new([]) };
         let mut world = Self {
+            waves: method.basis.waves(),
             layers,
             xyz_of_channel,
             dyes,

@@ -344,7 +344,7 @@ fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: 
     let coordinates = Coordinates::new(written, map).expect("it has coordinates");
     let picture =
         picture([1.5, 1.0], if name.len().is_multiple_of(2) { TexelFilter::Linear } else { TexelFilter::Nearest });
-    let shape = written.clone().transformed(map);
+    let shape = written.transformed(map);
     let seen = EmissionMap::new(&picture, TexturedShape { shape: &shape, coordinates: &coordinates })
         .expect("the image varies");
     let shapes = if written.part_count() > 0 { vec![shape.clone(), written.copied(map)] } else { vec![shape.clone()] };
@@ -401,7 +401,7 @@ fn directions_toward_lamps_of_parts_with_images_follow_their_density() {
     check_image("image on a cube", &cube, &Transform::IDENTITY, from, &Bins::new(-from, 0.6));
     let (points, faces) = ball();
     let coordinates = points.iter().map(|point| [point.x as f32, 0.5 * point.y as f32]).collect();
-    let (mesh, _) = Mesh::new(Vertices::Double(points), faces).expect("it has triangles");
+    let mesh = Mesh::new(Vertices::Double(points), faces).expect("it has triangles");
     let mesh = Shape::Mesh(Arc::new(mesh.with(Attributes { coordinates, ..Default::default() })));
     // Its density is steep: the quadrature is finer.
     check_image("image on a mesh", &mesh, &skew(), from, &Bins { points: 2 * POINTS, ..Bins::new(-from, 1.0) });

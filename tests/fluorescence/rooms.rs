@@ -47,7 +47,7 @@ fn a_room_of_one_dye_shines_as_its_matrix_says() {
                 + &format!("[material.wall]\nmask = {{ material = \"dyed\", opacity = {OPACITY} }}\n")
                 + &format!("[material.dyed]\n{}\n", dye.material());
             let scene = scene(&text);
-            let basis = Basis::bands_from_ultraviolet(scene.film.color_space, 32, &[]);
+            let basis = Basis::bands_over(scene.film.color_space, 32, Basis::FROM_ULTRAVIOLET_NM, &[]);
             let film = film_of(&scene, Method { basis, ..method(&scene, transport) });
             let outside: Vec<f64> = light("D65").iter().map(|light| (1.0 - OPACITY) * light).collect();
             let expected = color(&room(&dye, OPACITY, &outside));

@@ -67,11 +67,12 @@ fn films(text: &str, basis: impl Fn(&abbe::scene::Scene) -> Basis, light_pass: O
 
 #[test]
 fn photons_excite_dyes_where_they_are_shown_and_where_they_are_gathered() {
-    let lanes = |scene: &abbe::scene::Scene| Basis::bands_from_ultraviolet(scene.film.color_space, 16, &[]);
+    let lanes =
+        |scene: &abbe::scene::Scene| Basis::bands_over(scene.film.color_space, 16, Basis::FROM_ULTRAVIOLET_NM, &[]);
     let heroes = |scene: &abbe::scene::Scene| {
         let lights: Vec<Emission> =
             scene.lights.iter().map(|light| Emission::new(light.emission(), scene.film.color_space)).collect();
-        Basis::bands_from_ultraviolet(scene.film.color_space, 16, &[]).with_heroes(4, &lights)
+        Basis::bands_over(scene.film.color_space, 16, Basis::FROM_ULTRAVIOLET_NM, &[]).with_heroes(4, &lights)
     };
     for dye in [YELLOW, BRIGHTENER] {
         for gathered in [false, true] {
@@ -105,8 +106,9 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
         let scene = scene(&text);
         let lights = [Emission::new(scene.lights[0].emission(), scene.film.color_space)];
         let lines = line.as_slice();
-        let lanes = Basis::bands_from_ultraviolet(scene.film.color_space, 32 - lines.len(), lines);
-        let heroes = Basis::bands_from_ultraviolet(scene.film.color_space, 12, lines).with_heroes(4, &lights);
+        let lanes = Basis::bands_over(scene.film.color_space, 32 - lines.len(), Basis::FROM_ULTRAVIOLET_NM, lines);
+        let heroes =
+            Basis::bands_over(scene.film.color_space, 12, Basis::FROM_ULTRAVIOLET_NM, lines).with_heroes(4, &lights);
         let of = |basis: Basis, samples: u32| {
             let method = Method { basis, samples, ..method(&scene, SPLITTING) };
             mean(&films_of(&scene, &method, 0..SEEDS))

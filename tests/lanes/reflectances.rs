@@ -125,7 +125,9 @@ fn what_no_light_shows_and_no_lights_at_all_leave_finite_numbers() {
     let dark: Curve = 0.0.into();
     let invisible: Curve = CurveKind::Lines(vec![[320.0, 1.0]]).into();
     for lights in [vec![], vec![dark], vec![invisible.clone()], vec![illuminant("D65"), invisible]] {
-        for basis in [Basis::bands(SPACE, 12, &[320.0]), Basis::bands_from_ultraviolet(SPACE, 31, &[320.0])] {
+        for basis in
+            [Basis::bands(SPACE, 12, &[320.0]), Basis::bands_over(SPACE, 31, Basis::FROM_ULTRAVIOLET_NM, &[320.0])]
+        {
             let basis = basis.seen_under(&emissions(&lights), &[], None);
             for patch in &patches() {
                 let numbers = read(&basis, patch);
@@ -143,7 +145,7 @@ fn a_filter_lets_as_much_light_excite_a_dye_as_it_does() {
     };
     let dye = Dye { absorption: bell(365.0, 20.0, 0.9), emission: bell(440.0, 22.0, 1.0), quantum_yield: 0.85 };
     let light = illuminant("D65");
-    let own = Basis::bands_from_ultraviolet(SPACE, 20, &[]);
+    let own = Basis::bands_over(SPACE, 20, Basis::FROM_ULTRAVIOLET_NM, &[]);
     let seen = own.clone().seen_under(&emissions(std::slice::from_ref(&light)), std::slice::from_ref(&dye), None);
     let filter: Curve = CurveKind::Samples(vec![[350.0, 0.0], [390.0, 1.0]]).into();
     let exact = {

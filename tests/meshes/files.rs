@@ -377,21 +377,22 @@ fn triangles_without_area_close_what_is_beside_them() {
     let open = vec![[0, 2, 1], [0, 4, 3], [4, 1, 3], [0, 3, 2], [1, 2, 3]];
     let closed = [open.clone(), vec![[0, 1, 4]]].concat();
     for (faces, expected) in [(open, (3, 0)), (closed, (0, 1))] {
-        let (mesh, report) = Mesh::new(Vertices::Double(points()), faces).expect("faces with area");
-        assert_eq!((report.open_edges, report.degenerate), expected);
+        let mesh = Mesh::new(Vertices::Double(points()), faces).expect("faces with area");
+        assert_eq!((mesh.open_edges(), mesh.degenerate()), expected);
         assert_eq!(Shape::Mesh(mesh.into()).is_closed(), expected.0 == 0);
     }
     // One that lies alone opens nothing.
     let alone = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [0, 1, 4]].to_vec();
-    let (_, report) = Mesh::new(Vertices::Double(points()), alone).expect("faces with area");
-    assert_eq!((report.open_edges, report.degenerate), (0, 1));
+    let mesh = Mesh::new(Vertices::Double(points()), alone).expect("faces with area");
+    assert_eq!((mesh.open_edges(), mesh.degenerate()), (0, 1));
 }
 
 fn report(faces: &[[u32; 3]]) -> (usize, usize) {
     let points = POINTS.map(DVec3::from).to_vec();
-    let (mesh, report) = Mesh::new(Vertices::Double(points), faces.to_vec()).expect("faces with area");
-    assert_eq!(Shape::Mesh(mesh.into()).is_closed(), report.open_edges == 0);
-    (report.open_edges, report.degenerate)
+    let mesh = Mesh::new(Vertices::Double(points), faces.to_vec()).expect("faces with area");
+    let report = (mesh.open_edges(), mesh.degenerate());
+    assert_eq!(Shape::Mesh(mesh.into()).is_closed(), report.0 == 0);
+    report
 }
 
 #[test]
@@ -408,8 +409,8 @@ fn open_edges_are_counted() {
     // Corners at the same place are one corner, however often they are written.
     let split: Vec<DVec3> = FACES.iter().flatten().map(|&corner| DVec3::from(POINTS[corner as usize])).collect();
     let faces = (0..6).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let (_, report) = Mesh::new(Vertices::Double(split), faces).expect("faces with area");
-    assert_eq!(report.open_edges, 0);
+    let mesh = Mesh::new(Vertices::Double(split), faces).expect("faces with area");
+    assert_eq!(mesh.open_edges(), 0);
 }
 
 #[test]
@@ -429,7 +430,7 @@ fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
     let points = POINTS.map(DVec3::from);
     let mut random = Random::new(9);
     for map in maps {
-        let (mesh, _) = Mesh::new(Vertices::Double(points.to_vec()), FACES.to_vec()).expect("faces with area");
+        let mesh = Mesh::new(Vertices::Double(points.to_vec()), FACES.to_vec()).expect("faces with area");
         let mesh = Shape::Mesh(mesh.into()).transformed(&map);
         assert!(mesh.is_closed());
         for _ in 0..2000 {

@@ -143,7 +143,7 @@ fn boxes_that_begin_at_a_hit_hide_no_equally_near_triangle() {
 fn assert_mesh_finds(points: &[DVec3], faces: &[[u32; 3]], rays: u32, half: f64, random: &mut Random) -> u32 {
     let triangle = |face: &[u32; 3]| Shape::Triangle(Triangle::new(face.map(|corner| points[corner as usize])));
     let triangles: Vec<Shape> = faces.iter().map(triangle).collect();
-    let (mesh, _) = Mesh::new(Vertices::Double(points.to_vec()), faces.to_vec()).expect("faces with area");
+    let mesh = Mesh::new(Vertices::Double(points.to_vec()), faces.to_vec()).expect("faces with area");
     let mesh = Shape::Mesh(mesh.into());
     let mut met = 0;
     for _ in 0..rays {

@@ -27,8 +27,8 @@ fn ball(center: DVec3, scale: f64) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
 }
 
 fn mesh(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Shape {
-    let (mesh, report) = Mesh::new(Vertices::Single(points.to_vec()), faces.to_vec()).expect("faces with area");
-    assert_eq!(report.open_edges, 0);
+    let mesh = Mesh::new(Vertices::Single(points.to_vec()), faces.to_vec()).expect("faces with area");
+    assert_eq!(mesh.open_edges(), 0);
     Shape::Mesh(mesh.into())
 }
 
@@ -54,7 +54,7 @@ fn of_a_million_rays_at_edges_and_corners_none_slips_through_a_tree() {
             let from = inside(&mut random, center, scale);
             let ray = Ray::new(from, target - from);
             assert!(mesh.intersect(&ray, f64::INFINITY).is_some(), "2^{power} about {center}: {ray:?}");
-            assert!(mesh.is_crossed(&ray, f64::INFINITY), "2^{power} about {center}: {ray:?}");
+            assert!(mesh.is_crossed(&ray, f64::INFINITY, None), "2^{power} about {center}: {ray:?}");
         }
     }
 }
@@ -90,10 +90,13 @@ fn some_crossing_is_found_just_where_there_is_a_nearest_one() {
         match mesh.intersect(&ray, f64::INFINITY) {
             Some(crossing) => {
                 met += 1;
-                assert!(mesh.is_crossed(&ray, f64::INFINITY) && mesh.is_crossed(&ray, crossing.t), "{ray:?}");
-                assert!(!mesh.is_crossed(&ray, crossing.t.next_down()), "{ray:?}");
+                assert!(
+                    mesh.is_crossed(&ray, f64::INFINITY, None) && mesh.is_crossed(&ray, crossing.t, None),
+                    "{ray:?}"
+                );
+                assert!(!mesh.is_crossed(&ray, crossing.t.next_down(), None), "{ray:?}");
             }
-            None => assert!(!mesh.is_crossed(&ray, f64::INFINITY), "{ray:?}"),
+            None => assert!(!mesh.is_crossed(&ray, f64::INFINITY, None), "{ray:?}"),
         }
     }
     assert!((30_000..90_000).contains(&met), "{met} rays meet the ball");

@@ -90,6 +90,20 @@ fn d1_no_branch_is_nan_at_the_critical_angle() {
 }
 
 #[test]
+fn between_equal_indices_nothing_happens_even_along_the_surface() {
+    let mut random = Random::new(22);
+    for _ in 0..10_000 {
+        let (n, wo) = (random.between(1.0, 3.0), random.direction());
+        let cosine = wo.z.abs();
+        for (cosine, index) in [(cosine, n), (0.0, n), (1e-200, n), (1.0, 1.0)] {
+            let found = Interface::new(index, index, cosine);
+            assert_eq!([found.reflectance, found.transmittance, found.cos_beyond], [0.0, 1.0, cosine]);
+            assert_eq!([found.polarization_reflected, found.polarization_refracted], [0.0; 2]);
+        }
+    }
+}
+
+#[test]
 fn d2_reflectance_at_normal_incidence_is_right_within_4_roundings() {
     let mut random = Random::new(2);
     let mut pairs = index_pairs();

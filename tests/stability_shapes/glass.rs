@@ -156,7 +156,7 @@ fn check_unit_body(body: &Shape, target: impl Fn(Aim, &mut Random) -> DVec3) {
         for (size, center) in PLACES.map(|(size, offset)| (size, OFFSET * offset * size)).into_iter().chain([standing])
         {
             let map = map.then(&Transform::scale(DVec3::splat(size))).then(&Transform::translate(center));
-            let placed = body.clone().transformed(&map);
+            let placed = body.transformed(&map);
             for aim in [Aim::Anywhere, Aim::Edge, Aim::Corner] {
                 let result = tally((&placed, center, size), 60_000, ALL, |random| map.point(target(aim, random)));
                 assert_eq!(result.wrong, 0, "aimed at {aim:?}, form {form}, size {size:e} at {center}: {result:?}");
@@ -220,7 +220,7 @@ fn s6_scaling_a_glass_body_by_a_power_of_two_changes_no_bit_of_any_path() {
         let mut expected = None;
         for exponent in [0, -40, -20, 20, 40] {
             let size = libm::exp2(f64::from(exponent));
-            let scaled = body.clone().transformed(&Transform::scale(DVec3::splat(size)));
+            let scaled = body.transformed(&Transform::scale(DVec3::splat(size)));
             let result = tally((&scaled, DVec3::ZERO, size), 20_000, ALL, |random| {
                 random.direction() * 0.4 * size * random.number()
             });

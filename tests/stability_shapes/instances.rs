@@ -117,7 +117,7 @@ fn an_instance_is_where_its_baked_triangles_are() {
     let mirror = maps()[4].then(&Transform::scale(DVec3::new(1.0, -0.7, 1.0)));
     for map in maps().into_iter().chain([mirror]) {
         let map = map.then(&Transform::translate(DVec3::new(30.0, -7.0, 2.0)));
-        let (placed, baked) = (instance(&map), mesh.clone().transformed(&map));
+        let (placed, baked) = (instance(&map), mesh.transformed(&map));
         assert!((placed.area() / baked.area() - 1.0).abs() < 1e-12);
         assert!(placed.is_closed());
         let (wide, tight) = (placed.bounds().expect("finite"), baked.bounds().expect("finite"));

@@ -77,7 +77,7 @@ fn t2_of_coincident_triangles_the_one_listed_first_is_hit() {
     let count = faces.len() as u32;
     let rays = rays_at(&points, &faces, 0.0);
     let twice: Vec<[u32; 3]> = faces.iter().chain(&faces).copied().collect();
-    let (mesh, _) = Mesh::new(Vertices::Double(points), twice).expect("the faces have areas");
+    let mesh = Mesh::new(Vertices::Double(points), twice).expect("the faces have areas");
     let shape = Shape::Mesh(mesh.into());
     for ray in rays.iter().flatten() {
         let crossing = shape.intersect(ray, f64::INFINITY).expect("the ball is closed");
@@ -158,8 +158,8 @@ fn t5_triangles_without_area_are_dropped_and_reported() {
     let faces: String = FACES.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect();
     let (_folder, path) = file("flat.obj", points + &faces);
     let file = read_mesh(&path).expect("the file is sound");
-    let (mesh, report) = Mesh::new(file.vertices, file.faces).expect("one triangle has an area");
-    assert_eq!((mesh.count(), report.degenerate), (1, 3));
+    let mesh = Mesh::new(file.vertices, file.faces).expect("one triangle has an area");
+    assert_eq!((mesh.count(), mesh.degenerate()), (1, 3));
     let only_flat = Mesh::new(Vertices::Single(POINTS.to_vec()), FACES[1..].to_vec());
     assert!(only_flat.is_none());
 }

@@ -1,8 +1,10 @@
 //! Materials written as text, and light that arrives at them.
 
+use std::sync::LazyLock;
+
 use abbe::material::{Arrival, Index, Material, Scatter};
 use abbe::math::{DVec3, Frame};
-use abbe::spectrum::{Draw, Table};
+use abbe::spectrum::{Basis, ColorSpace, Draw, Table, Waves};
 use abbe::trace::prepare;
 
 use super::scenes::{SINGLE_PATH, method, scene, view};
@@ -33,6 +35,9 @@ pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
     Frame::about(NORMAL).to_world(about_z(cos, azimuth)).normalize()
 }
 
+/// Three bands, as of [`material`].
+static WAVES: LazyLock<Waves> = LazyLock::new(|| Basis::rgb(ColorSpace::Rec709).waves());
+
 /// Light from a surface under a medium of an index, toward `wo`.
 pub fn arrival<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Arrival<'_, N> {
     let [incident, beyond] = [Index::Same(index); 2];
@@ -41,6 +46,7 @@ pub fn arrival<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Arrival
         normal: NORMAL,
         uv: [0.0; 2],
         draw,
+        waves: &WAVES,
         present: draw.start(),
         from_inside: false,
         is_alone: false,

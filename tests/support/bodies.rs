@@ -40,7 +40,7 @@ pub fn ball_faces(around: u32, rings: u32) -> Vec<[u32; 3]> {
 
 /// The mesh of some faces; panics if it is not closed.
 pub fn closed_mesh(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Shape {
-    let (mesh, report) = Mesh::new(Vertices::Double(points), faces).expect("the faces have areas");
-    assert_eq!((report.degenerate, report.open_edges), (0, 0));
+    let mesh = Mesh::new(Vertices::Double(points), faces).expect("the faces have areas");
+    assert_eq!((mesh.degenerate(), mesh.open_edges()), (0, 0));
     Shape::Mesh(mesh.into())
 }

@@ -4,8 +4,8 @@ mod on_surface;
 mod open_glass;
 mod out_of_focus;
 mod probe;
-mod sight;
 mod unlit;
+mod view;
 
 use super::Scene;
 use crate::spectrum::Curve;

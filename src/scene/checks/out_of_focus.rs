@@ -1,6 +1,6 @@
 //! Lenses by which nothing that the camera sees is in focus.
 
-use super::sight::Sight;
+use super::view::View;
 use crate::scene::Scene;
 use crate::scene::text::shown;
 use crate::spectrum::Curve;
@@ -16,7 +16,7 @@ const WIDE: f64 = 0.25;
 pub(super) fn out_of_focus(scene: &Scene<Curve>) -> Option<String> {
     let camera = &scene.camera;
     let lens = camera.lens?;
-    let mut depths: Vec<f64> = Sight::new(scene).depths().collect();
+    let mut depths: Vec<f64> = View::new(scene).depths().collect();
     if depths.len() < LEAST {
         return None;
     }

@@ -4,7 +4,7 @@
 //! sees: one that is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks
 //! for the light.
 
-use super::sight::{Place, Sight};
+use super::view::{Place, View};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::math::{BranchKey, DVec3, Ray, Sampler, ball_surface, cosine_about, unit};
@@ -23,22 +23,22 @@ const TOLD: usize = 4;
 
 /// What is wrong with each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
-    let mut sight = Sight::new(scene);
+    let mut view = View::new(scene);
     // One that is switched off is told nothing of.
     let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
     let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
-    sight.look(|sight, places| {
-        let reaches = |id: &LightId| places.iter().any(|place| reaches(sight, &scene.lights[*id], place));
+    view.look(|view, places| {
+        let reaches = |id: &LightId| places.iter().any(|place| reaches(view, &scene.lights[*id], place));
         dark.retain(|id| !reaches(id));
-        dark.is_empty() || sight.rays.get() > MOST_RAYS
+        dark.is_empty() || view.rays.get() > MOST_RAYS
     });
-    if sight.places.is_empty() {
-        return empty_view(&sight).into_iter().collect();
+    if view.places.is_empty() {
+        return empty_view(&view).into_iter().collect();
     }
-    if sight.rays.get() > MOST_RAYS {
+    if view.rays.get() > MOST_RAYS {
         return Vec::new();
     }
-    let mut found: Vec<String> = dark.iter().filter_map(|&id| what_is_wrong(&sight, id)).collect();
+    let mut found: Vec<String> = dark.iter().filter_map(|&id| what_is_wrong(&view, id)).collect();
     if found.len() > TOLD {
         let more = found.len() - TOLD;
         found.truncate(TOLD);
@@ -48,37 +48,37 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
 }
 
 /// What is wrong with a camera that sees neither an object nor a sky.
-fn empty_view(sight: &Sight) -> Option<String> {
-    let Scene { lights, hidden_lights, .. } = sight.scene;
+fn empty_view(view: &View) -> Option<String> {
+    let Scene { lights, hidden_lights, .. } = view.scene;
     let shows_sky = (0..lights.len()).any(|id| lights[id].is_infinite() && !hidden_lights.contains(&id));
     let is_empty =
-        !lights.is_empty() && !shows_sky && sight.first_met().all(|met| met.is_none()) && !sight.may_miss_an_object();
+        !lights.is_empty() && !shows_sky && view.first_met().all(|met| met.is_none()) && !view.may_miss_an_object();
     is_empty
         .then(|| "the camera sees no object: none of 576 rays meets one; `look_at` is a point that it looks at".into())
 }
 
 /// The name of the opaque object that the camera is inside of, if all that it sees is the inside of one.
-fn around_the_camera(sight: &Sight) -> Option<String> {
-    let mut met = sight.first_met();
+fn around_the_camera(view: &View) -> Option<String> {
+    let mut met = view.first_met();
     let (object, _) = met.next()??;
     let is_inside = met.all(|met| met == Some((object, true)));
-    is_inside.then(|| sight.scene.objects[object as usize].name.clone())
+    is_inside.then(|| view.scene.objects[object as usize].name.clone())
 }
 
 /// What is wrong with a light that paths from the camera have not met.
-fn what_is_wrong(sight: &Sight, id: LightId) -> Option<String> {
-    let light = &sight.scene.lights[id];
+fn what_is_wrong(view: &View, id: LightId) -> Option<String> {
+    let light = &view.scene.lights[id];
     let why = match light {
-        _ if sight.rays.get() > MOST_RAYS => return None,
-        _ if light.is_infinite() => (!reaches_a_clear_body(sight, light)).then(|| unseen(light)),
-        _ => match paths_of(sight, light) {
+        _ if view.rays.get() > MOST_RAYS => return None,
+        _ if light.is_infinite() => (!reaches_a_clear_body(view, light)).then(|| unseen(light)),
+        _ => match paths_of(view, light) {
             Paths::Seen => None,
             Paths::PastEverything => Some(past_everything(light)),
             Paths::Unseen => Some(unseen(light)),
         },
     }?;
-    let name = name(sight.scene, id);
-    Some(match around_the_camera(sight).filter(|_| light.is_infinite()) {
+    let name = name(view.scene, id);
+    Some(match around_the_camera(view).filter(|_| light.is_infinite()) {
         Some(body) => {
             format!("{name} lights nothing that the camera sees: the camera is inside {body}, which is opaque")
         }
@@ -97,27 +97,27 @@ enum Paths {
 }
 
 /// Whether a light reaches a place, or is there.
-fn reaches(sight: &Sight, light: &Light<Curve>, place: &Place) -> bool {
+fn reaches(view: &View, light: &Light<Curve>, place: &Place) -> bool {
     let digits = place.point.position.to_array().map(|x| x.to_bits() as u32);
     let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).four_plain(BranchKey::CAMERA, 0);
     let lit = || {
         let sample = light.sample_li(&place.point, place.normal, [u, v]).filter(|sample| sample.factor > 0.0)?;
         let above = sample.ray.direction.dot(place.normal) > 0.0;
-        Some(above && !sight.is_occluded(&sample.ray, sample.distance, sample.object))
+        Some(above && !view.is_occluded(&sample.ray, sample.distance, sample.object))
     };
     // Nearly all samples of an image of the sky may lead to its sun.
     let sees_sky = || {
         let direction = cosine_about(place.normal, [u, v]);
         let shines = matches!(light, Light::Environment(sky) if sky.shines_toward(direction));
-        shines && !sight.is_occluded(&place.point.leave(direction), f64::INFINITY, None)
+        shines && !view.is_occluded(&place.point.leave(direction), f64::INFINITY, None)
     };
     place.shines(light) || lit() == Some(true) || sees_sky()
 }
 
 /// Whether the light of a sky comes to a clear body, which may send it anywhere.
-fn reaches_a_clear_body(sight: &Sight, light: &Light<Curve>) -> bool {
-    let clear = (0..sight.scene.objects.len()).filter(|&object| sight.scene.is_clear(object as u32));
-    let boxes: Vec<_> = clear.filter_map(|object| sight.scene.objects[object].shape.bounds()).collect();
+fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
+    let clear = (0..view.scene.objects.len()).filter(|&object| view.scene.is_clear(object as u32));
+    let boxes: Vec<_> = clear.filter_map(|object| view.scene.objects[object].shape.bounds()).collect();
     (0..POINTS).filter(|_| !boxes.is_empty()).any(|number| {
         let sampler = Sampler::new(4, [number as u32, 0], 0);
         let ([x, y, z, _], [u, v, ..]) =
@@ -125,28 +125,28 @@ fn reaches_a_clear_body(sight: &Sight, light: &Light<Curve>) -> bool {
         let bounds = boxes[number % boxes.len()];
         let origin = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
         let sample = light.sample_li(&SurfacePoint::in_space(origin), ball_surface([u, v]), [z, x]);
-        sample.is_some_and(|sample| !sight.is_occluded(&sample.ray, f64::INFINITY, None))
+        sample.is_some_and(|sample| !view.is_occluded(&sample.ray, f64::INFINITY, None))
     })
 }
 
 /// Follows paths from a lamp, a point or a spot.
-fn paths_of(sight: &Sight, light: &Light<Curve>) -> Paths {
+fn paths_of(view: &View, light: &Light<Curve>) -> Paths {
     let own = if let Light::Area(area) = light { Some(area.object) } else { None };
     let mut meets_others = false;
     for number in 0..PATHS {
         let sampler = Sampler::new(3, [number, 0], 0);
         let Some(Start { ray, surface }) = start(light, &sampler) else { continue };
-        if surface.is_some_and(|place| sight.is_in_view(&place)) {
+        if surface.is_some_and(|place| view.is_in_view(&place)) {
             return Paths::Seen;
         }
-        let first = sight.scene.intersect(&ray);
-        if first.is_some_and(|hit| sight.scene.is_clear(hit.object)) {
+        let first = view.scene.intersect(&ray);
+        if first.is_some_and(|hit| view.scene.is_clear(hit.object)) {
             return Paths::Seen;
         }
-        let seen = sight.walk(ray, &sampler, |place| {
+        let seen = view.walk(ray, &sampler, |place| {
             meets_others |= own != Some(place.object);
-            let shines = matches!(sight.scene.material_of(place.object), Material::Emissive(_));
-            !shines && sight.is_seen(&place, number)
+            let shines = matches!(view.scene.material_of(place.object), Material::Emissive(_));
+            !shines && view.is_seen(&place, number)
         });
         if seen {
             return Paths::Seen;

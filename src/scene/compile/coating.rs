@@ -16,11 +16,7 @@ pub(super) fn coating<'d>(fields: &mut Fields<'d>) -> Option<Option<Coating<Aske
     if layers.len() > MAX_LAYERS {
         return value.refuse(format!("a coating has at most {MAX_LAYERS} layers, not {}", layers.len()));
     }
-    Some((!layers.is_empty()).then(|| of_layers(layers)))
-}
-
-fn of_layers(layers: Vec<CoatingLayer<Asked>>) -> Coating<Asked> {
-    Coating::new(layers, || Asked::Default(1.0))
+    Some((!layers.is_empty()).then(|| Coating::new(layers)))
 }
 
 fn layer(value: Value) -> Option<CoatingLayer<Asked>> {
@@ -65,5 +61,5 @@ pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
         return transmittance
             .refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()));
     }
-    Some(Thin::Film(of_layers(vec![layer_of(fields)?])))
+    Some(Thin::Film(Coating::new(vec![layer_of(fields)?])))
 }

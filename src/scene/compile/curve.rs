@@ -5,7 +5,7 @@ use super::curve_name::{
     color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
     unknown_metal, unknown_reflectance,
 };
-use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible, told};
+use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible};
 use super::curve_text::{CurveText, KindText, ONE_OF_EACH, finite, not_finite};
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
@@ -32,7 +32,7 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     let kind = kind(context, text, quantity)?;
     let curve = Curve { kind, scale: text.scale.it, luminance: text.luminance.map(|luminance| luminance.it) };
     if let Some(At { place, it: luminance }) = text.luminance {
-        told(place, factor("a luminance", luminance))?;
+        place.told(factor("a luminance", luminance))?;
         if luminance > 0.0 && !Emission::new(&curve, ColorSpace::default()).xyz()[1].is_normal() {
             return place.refuse("a light without power has no luminance");
         }
@@ -47,18 +47,6 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     match quantity {
         Quantity::Emission => on_film(context, text, curve),
         _ => Some(curve),
-    }
-}
-
-/// Whether a quantity that is no color may be written like this: a length is no spectrum, and what a dye does is known
-/// by wavelength.
-fn is_fit(kind: &KindText, quantity: Quantity) -> bool {
-    let is_measured = matches!(kind, KindText::Samples(_) | KindText::File(_));
-    match quantity {
-        Quantity::Thickness => matches!(kind, KindText::Number(_)),
-        Quantity::Excitation => is_measured || matches!(kind, KindText::Number(_)),
-        Quantity::Fluorescence => is_measured,
-        _ => true,
     }
 }
 
@@ -94,7 +82,7 @@ fn forms(quantity: Quantity) -> &'static str {
         Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
         Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
         Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
+        Quantity::Thickness => {
             "write a number of nm, or an image of grays and the nm of its white: { image = \"thickness.png\", scale = 600 }"
         }
         Quantity::Excitation | Quantity::Fluorescence => {
@@ -108,11 +96,13 @@ fn forms(quantity: Quantity) -> &'static str {
 
 /// What a text says, looked up and read.
 fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
-    let (place, is_index, shines) = (text.place, quantity == Quantity::Index, quantity == Quantity::Emission);
+    if !text.fits(quantity) {
+        return unfit(text, quantity);
+    }
+    let place = text.place;
     match &text.kind {
-        kind if !is_fit(kind, quantity) => unfit(text, quantity),
         KindText::Number(number) => {
-            told(place, possible(quantity, number * text.scale.it, ""))?;
+            place.told(possible(quantity, number * text.scale.it, ""))?;
             Some(CurveKind::Number(*number))
         }
         KindText::Rgb(rgb) => {
@@ -128,26 +118,26 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
             }
         },
         KindText::File(file) => file_of_samples(context, text, file, quantity),
-        KindText::Cauchy(terms) if is_index => cauchy(text, *terms),
-        KindText::Sellmeier { b, c } if is_index => sellmeier(text, b, c),
-        KindText::Abbe { nd, vd } if is_index => abbe(text, *nd, *vd),
-        KindText::Illuminant(name) if shines => {
+        KindText::Cauchy(terms) => cauchy(text, *terms),
+        KindText::Sellmeier { b, c } => sellmeier(text, b, c),
+        KindText::Abbe { nd, vd } => abbe(text, *nd, *vd),
+        KindText::Illuminant(name) => {
             let Some(light) = CurveKind::illuminant(name) else { return unknown_illuminant(name).tell(place) };
-            told(text.scale.place, factor("a scale", text.scale.it))?;
+            text.scale.place.told(factor("a scale", text.scale.it))?;
             Some(light)
         }
-        KindText::Blackbody(kelvin) if shines => {
-            told(place, blackbody(*kelvin))?;
-            told(text.scale.place, factor("a scale", text.scale.it))?;
+        KindText::Blackbody(kelvin) => {
+            place.told(blackbody(*kelvin))?;
+            text.scale.place.told(factor("a scale", text.scale.it))?;
             Some(CurveKind::Blackbody(*kelvin))
         }
-        KindText::Lines(lines) if shines => {
+        KindText::Lines(lines) => {
             visible_lines(text, lines)?;
             each(text, quantity, lines.iter().map(|line| line[1]))?;
             Some(CurveKind::Lines(lines.clone()))
         }
-        KindText::Name(name) if !shines => named(context, text.value, name, quantity),
-        _ => unfit(text, quantity),
+        KindText::Name(name) => named(context, text, name, quantity),
+        KindText::Image(_) | KindText::Checker(_) => unfit(text, quantity),
     }
 }
 
@@ -168,7 +158,7 @@ fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> 
 fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
     let scale = text.scale.it;
     values.enumerate().try_for_each(|(number, value)| {
-        told(text.place.entry(number), possible(quantity, value * scale, &with_scale(scale)))
+        text.place.entry(number).told(possible(quantity, value * scale, &with_scale(scale)))
     })
 }
 
@@ -290,7 +280,7 @@ fn abbe(text: &CurveText, nd: At<f64>, vd: At<f64>) -> Option<CurveKind> {
         return nd.place.advise(format!("a refractive index is above 1, not {}", shown(nd.it)), ABBE);
     }
     let kind = CurveKind::Cauchy(cauchy_through(nd.it, vd.it));
-    told(text.place, bends(text.scale.it, &kind).map_err(|refusal| refusal.help(ABBE)))?;
+    text.place.told(bends(text.scale.it, &kind).map_err(|refusal| refusal.help(ABBE)))?;
     Some(kind)
 }
 
@@ -366,15 +356,17 @@ fn blackbody(kelvin: f64) -> Result<(), Refusal> {
 }
 
 /// An entry of the catalog.
-fn named(context: &mut Context, place: Value, name: &str, quantity: Quantity) -> Option<CurveKind> {
+fn named(context: &mut Context, text: &CurveText, name: &str, quantity: Quantity) -> Option<CurveKind> {
+    let place = text.value;
     let (found, unknown): (_, fn(&str) -> Refusal) = match quantity {
         Quantity::Index => (CurveKind::glass(name), unknown_glass),
         Quantity::MetalIndex | Quantity::MetalExtinction => (CurveKind::metal(name), unknown_metal),
         Quantity::Absorption => return absorption(context, place, name),
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => return None,
-        Quantity::Excitation | Quantity::Fluorescence => return None,
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => {
+        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => {
             (CurveKind::reflectance(name), unknown_reflectance)
+        }
+        Quantity::Emission | Quantity::Thickness | Quantity::Excitation | Quantity::Fluorescence => {
+            return unfit(text, quantity);
         }
     };
     found.or_else(|| unknown(name).tell(place))

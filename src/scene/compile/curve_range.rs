@@ -1,6 +1,6 @@
 //! Whether a value is possible for what a spectrum describes.
 
-use crate::scene::text::{Value, shown};
+use crate::scene::text::{Fault, Value, shown};
 use crate::spectrum::Quantity;
 
 /// Largest emission: far within f32, which film and lanes hold.
@@ -42,9 +42,10 @@ impl Refusal {
     }
 }
 
-/// What was checked, if it is right; tells of a place if it is not.
-pub(super) fn told<T>(place: Value, checked: Result<T, Refusal>) -> Option<T> {
-    checked.map_or_else(|refusal| refusal.tell(place), Some)
+impl From<Refusal> for Fault {
+    fn from(Refusal { message, help, .. }: Refusal) -> Self {
+        Self { message, help }
+    }
 }
 
 /// Whether a light can be made brighter or darker by this.
@@ -73,7 +74,6 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
         Quantity::MetalIndex => (f64::MIN_POSITIVE, MAX_METAL, false),
         Quantity::MetalExtinction => (0.0, MAX_METAL, false),
         Quantity::Thickness => return possible_thickness(value, place),
-        Quantity::Wavelength | Quantity::BandWidth => (0.0, f64::MAX, false),
     };
     if (least..=most).contains(&value) {
         return Ok(());
@@ -138,6 +138,5 @@ pub(super) fn article(quantity: Quantity) -> &'static str {
         Quantity::Thickness => "a layer's thickness",
         Quantity::Excitation => "a dye's absorption",
         Quantity::Fluorescence => "a dye's emission",
-        Quantity::Wavelength | Quantity::BandWidth => "a lane",
     }
 }

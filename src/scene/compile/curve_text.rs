@@ -117,7 +117,7 @@ fn fitting(quantity: Quantity) -> &'static [&'static str] {
         }
         Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => &["rgb", "samples", "file"],
         Quantity::Excitation | Quantity::Fluorescence => &["samples", "file"],
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => &["image", "checker"],
+        Quantity::Thickness => &["image", "checker"],
     }
 }
 
@@ -148,9 +148,7 @@ fn example(quantity: Quantity) -> &'static str {
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => COLOR,
         Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => COLOR,
         Quantity::Excitation | Quantity::Fluorescence => "{ samples = [[400, 0.2], [450, 0.9], [500, 0]] }",
-        Quantity::Thickness | Quantity::Wavelength | Quantity::BandWidth => {
-            "{ image = \"thickness.png\", scale = 600 }"
-        }
+        Quantity::Thickness => "{ image = \"thickness.png\", scale = 600 }",
     }
 }
 
@@ -164,6 +162,15 @@ impl<'d> CurveText<'d> {
             DeValue::String(name) => Some(Self::bare(value, KindText::Name(name))),
             DeValue::Table(_) => Fields::read(value, |table| curve_table(value, table, quantity)),
             _ => value.wanted("a number, a catalog name in quotes, or a table such as { rgb = [r, g, b] }"),
+        }
+    }
+
+    /// Whether a spectrum of a quantity may be written like this, whatever a name stands for.
+    pub(super) fn fits(&self, quantity: Quantity) -> bool {
+        match self.kind {
+            KindText::Name(_) => true,
+            KindText::Number(_) => quantity != Quantity::Fluorescence,
+            _ => fitting(quantity).contains(&self.place.key()),
         }
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::curve::curve;
-use super::curve_range::{is_factor, possible_thickness, told};
+use super::curve_range::{is_factor, possible_thickness};
 use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{ImageFile, read_texture};
 use super::image_numbers::Meaning;
@@ -20,15 +20,9 @@ pub(super) const BRIGHT_IMAGE: FileKind = FileKind { endings: &["exr", "hdr"], .
 
 /// The spectrum of a surface, which may vary over it.
 pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
-    let varies = match quantity {
-        Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Emission => true,
-        Quantity::Thickness => true,
-        Quantity::Index | Quantity::Absorption | Quantity::MetalIndex | Quantity::MetalExtinction => false,
-        Quantity::Excitation | Quantity::Fluorescence | Quantity::Wavelength | Quantity::BandWidth => false,
-    };
     match &text.kind {
-        KindText::Image(file) if varies => image_curve(context, text, file, quantity),
-        KindText::Checker(cells) if varies => checker(context, text, cells, quantity),
+        KindText::Image(file) if text.fits(quantity) => image_curve(context, text, file, quantity),
+        KindText::Checker(cells) if text.fits(quantity) => checker(context, text, cells, quantity),
         _ => curve(context, text, quantity),
     }
 }
@@ -77,7 +71,7 @@ fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Opti
     }
     let ([x, y], most) = image.brightest();
     let place = format!(" where pixel ({x}, {y}) of {file} is {most}");
-    told(text.scale.place, possible_thickness(f64::from(most) * scale, &place))
+    text.scale.place.told(possible_thickness(f64::from(most) * scale, &place))
 }
 
 /// The factor on an image, if it is one, and no luminance stands in its place.

@@ -82,7 +82,7 @@ const MATERIAL: Choice<Reader> = Choice {
 };
 
 /// By how much light along the fast axis is ahead: in degrees, or by a length.
-fn retardance<'d>(fields: &mut Fields<'d>) -> Option<Retardance<Asked<'d>>> {
+fn retardance(fields: &mut Fields) -> Option<Retardance> {
     let (phase, path) = (fields.get("retardance"), fields.get("retardation_nm"));
     match (phase, path) {
         (Some(phase), None) => {
@@ -102,7 +102,7 @@ fn retardance<'d>(fields: &mut Fields<'d>) -> Option<Retardance<Asked<'d>>> {
                 };
                 return path.advise(format!("a retardation of {} nm changes no light", shown(nm)), help);
             }
-            Some(Retardance::Path(PathDifference::new(nm, || Asked::Default(1.0))))
+            Some(Retardance::Path(PathDifference { nm }))
         }
         (Some(_), Some(path)) => path.refuse_key(
             "a retarder has a `retardance` or a `retardation_nm`, not both",

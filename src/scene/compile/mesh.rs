@@ -46,7 +46,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
         // Normals that the scene file writes out are meant to be seen, unless it says that they are not.
         let (flat, smooth) = (smooth == Some(false), smooth.unwrap_or(false));
-        let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file, edges: None };
+        let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file };
         let mut parts = match (&file, &inline) {
             (Some(file), Inline { points: None, faces: None, normals: None, uv: None }) => {
                 if let Some(mesh) = context.meshes.get(&(file.place.path(file.it), smooth)) {
@@ -129,14 +129,13 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
     if is_averaged {
         attributes.normals = vertex_normals(&vertices, &faces);
     }
-    let Some((mesh, report)) = Mesh::new(vertices, faces) else {
+    let Some(mesh) = Mesh::new(vertices, faces) else {
         return value.refuse("no triangle of this mesh has an area");
     };
-    if report.degenerate > 0 {
-        context.warn(match report.degenerate {
-            1 => format!("{name}: 1 triangle without area was dropped"),
-            count => format!("{name}: {count} triangles without area were dropped"),
-        });
+    match mesh.degenerate() {
+        0 => {}
+        1 => context.warn(format!("{name}: 1 triangle without area was dropped")),
+        count => context.warn(format!("{name}: {count} triangles without area were dropped")),
     }
     let mesh = Arc::new(mesh.with(attributes));
     if is_averaged {

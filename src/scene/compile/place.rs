@@ -101,19 +101,18 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
             Some(relief) => Some(relief.on(coordinates.as_ref())?),
             None => None,
         };
-        let (chart, coordinates) = (coordinates.clone(), coordinates.filter(|_| varies));
         let (shape, asset, group) = (Arc::new(shape), asset.clone(), group.clone());
-        Some(Object { name, asset, shape, material, light: None, coordinates, chart, group, sight, relief })
+        Some(Object { name, asset, shape, material, light: None, coordinates, varies, group, sight, relief })
     };
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
         let shape = if is_shared { written.shape.copied(&map.it) } else { written.shape.transformed(&map.it) };
-        fits(written.edges, &shape, map, place)?;
+        fits(&written.shape, &shape, map, place)?;
         return Some(vec![object(name, shape, coordinates)?]);
     };
     let instance = |(number, map): (usize, At<Transform>)| {
         let shape = written.shape.copied(&map.it);
-        fits(written.edges, &shape, map, map.place)?;
+        fits(&written.shape, &shape, map, map.place)?;
         object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.it))
     };
     let placed: Vec<_> = instances.into_iter().enumerate().map(instance).collect();

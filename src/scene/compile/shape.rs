@@ -38,7 +38,7 @@ pub(super) const SHAPE: Choice<Reader> = Choice {
         ("sphere", |_, _, value| sphere(value).map(Written::from)),
         ("disc", |_, _, value| disc(value).map(Written::from)),
         ("quad", |_, _, value| quad(value).map(Written::from)),
-        ("cube", |_, _, value| cube(value)),
+        ("cube", |_, _, value| cube(value).map(Written::from)),
         ("mesh", mesh),
     ],
 };
@@ -100,23 +100,30 @@ fn quad(value: Value) -> Option<Shape> {
 }
 
 /// A cube has a size, or three.
-fn cube(value: Value) -> Option<Written> {
+fn cube(value: Value) -> Option<Shape> {
     Fields::read(value, |cube| {
         let center = cube.need("center", point);
         let size = cube.need("size", |value| {
             let size: [f64; 3] = value.one_or("[x, y, z]")?;
             size.into_iter().all(|edge| long(value, "an edge", edge).is_some()).then_some(size)
         });
-        let (center, size) = (center?, size?);
-        Some(Written { shape: Shape::Cube(Cube::new(center, size.into())), file: None, edges: Some(size) })
+        Some(Shape::Cube(Cube::new(center?, size?.into())))
     })
 }
 
-/// That numbers hold the size and the place of a shape that a map has placed; `whole` is where it stands, `edges` are
-/// those of a cube, or of that around a sphere, before the map.
-pub(super) fn fits(edges: Option<[f64; 3]>, placed: &Shape, map: At<Transform>, whole: Value) -> Option<()> {
+/// That numbers hold the size and the place of a shape that a map has placed, given before and after that; `whole` is
+/// where it stands.
+pub(super) fn fits(shape: &Shape, placed: &Shape, map: At<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };
     let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
+    let edges = match shape {
+        Shape::Cube(cube) => Some(cube.edges()),
+        Shape::Sphere(_) => {
+            let around = shape.bounds().map(|around| around.max - around.min);
+            around.map(|size| [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * size))
+        }
+        _ => None,
+    };
     let thin = edges.map_or(wide.max_element(), |edges| thickness(edges, &map.it));
     if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
         return map.place.refuse("this makes the shape too small, too large or too far");
@@ -127,9 +134,9 @@ pub(super) fn fits(edges: Option<[f64; 3]>, placed: &Shape, map: At<Transform>, 
     Some(())
 }
 
-/// The least distance between two faces of a cube after a map.
-fn thickness([x, y, z]: [f64; 3], map: &Transform) -> f64 {
-    let [a, b, c] = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z].map(|edge| map.vector(edge));
+/// The least distance between two faces of a cube of three edges after a map.
+fn thickness(edges: [DVec3; 3], map: &Transform) -> f64 {
+    let [a, b, c] = edges.map(|edge| map.vector(edge));
     let height = |edge: DVec3, u: DVec3, v: DVec3| edge.dot(u.normalize().cross(v.normalize()).normalize()).abs();
     height(a, b, c).min(height(b, c, a)).min(height(c, a, b))
 }

@@ -9,9 +9,9 @@ pub(super) struct Row {
     pub(super) pair: [f64; 2],
 }
 
-/// What is wrong with a file.
+/// What is wrong with a table.
 #[derive(Debug, PartialEq)]
-pub(super) struct Fault {
+pub(super) struct TableFault {
     /// What follows the name of the file.
     pub(super) message: String,
     pub(super) help: Option<String>,
@@ -24,7 +24,7 @@ pub(super) struct Fault {
 ///
 /// # Errors
 /// The line and what is wrong with it.
-pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, Fault> {
+pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, TableFault> {
     let (mut rows, mut titles) = (Vec::new(), true);
     // A carriage return alone ends a line as well.
     let lines = text.trim_start_matches('\u{feff}').lines().flat_map(|line| line.split('\r'));
@@ -41,18 +41,18 @@ pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, Fault>
             (Some(Err(cell)), _) | (_, Some(Err(cell))) => return Err(no_number(number + 1, cell, rows.is_empty())),
             _ => {
                 let message = format!(", line {}: there is no column {column}, only {}", number + 1, cells.len());
-                return Err(Fault { message, help: None, is_column: true });
+                return Err(TableFault { message, help: None, is_column: true });
             }
         }
         titles = false;
     }
     match rows.is_empty() {
-        true => Err(Fault { message: " holds no numbers".into(), help: None, is_column: false }),
+        true => Err(TableFault { message: " holds no numbers".into(), help: None, is_column: false }),
         false => Ok(rows),
     }
 }
 
-fn no_number(line: usize, cell: &str, first: bool) -> Fault {
+fn no_number(line: usize, cell: &str, first: bool) -> TableFault {
     let message = match cell {
         "" => format!(", line {line}: a number is missing"),
         _ => format!(", line {line}: {cell:?} is not a number"),
@@ -63,7 +63,7 @@ fn no_number(line: usize, cell: &str, first: bool) -> Fault {
         false if first => Some("one line of titles may come first; a line that begins with # is passed over"),
         false => None,
     };
-    Fault { message, help: help.map(str::to_owned), is_column: false }
+    TableFault { message, help: help.map(str::to_owned), is_column: false }
 }
 
 /// Blanks separate cells only where nothing else does. A comma within a word of several is one of a number.

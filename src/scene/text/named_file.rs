@@ -18,7 +18,7 @@ pub(in crate::scene) struct FileKind {
     pub(in crate::scene) endings: &'static [&'static str],
 }
 
-/// What is wrong with a file.
+/// What is wrong with a value or with the file that it names.
 pub(in crate::scene) struct Fault {
     pub(in crate::scene) message: String,
     /// What to do.

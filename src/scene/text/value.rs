@@ -91,9 +91,9 @@ impl<'d> Value<'d> {
         self.told(read_named(self.folder(), name, kind))
     }
 
-    /// What was read of a file, if it is right; tells what is wrong with that if it is not.
-    pub(in crate::scene) fn told<T>(self, read: Result<T, Fault>) -> Option<T> {
-        read.map_or_else(|fault| self.tell(fault.message, fault.help), Some)
+    /// What was checked or read of a file, if it is right; tells what is wrong with that if it is not.
+    pub(in crate::scene) fn told<T>(self, checked: Result<T, impl Into<Fault>>) -> Option<T> {
+        checked.map_err(Into::into).map_or_else(|Fault { message, help }| self.tell(message, help), Some)
     }
 
     /// Tells that there is no file of this name, which ends in one of some ways.

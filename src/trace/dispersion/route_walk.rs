@@ -139,7 +139,7 @@ impl<'a> Walker<'a> {
             }
             Material::Plastic(plastic) => {
                 let index = self.draw.read_exact(&plastic.index)[1];
-                let r = if index == 1.0 { 0.0 } else { Interface::new(1.0, index, at.wo().dot(normal)).reflectance };
+                let r = Interface::new(1.0, index, at.wo().dot(normal)).reflectance;
                 self.go_on(at, walk.after(None, Lanes::ONE, r), reflect(at.wo(), normal), 1);
                 let tint = self.draw.read_at(&plastic.reflectance, uv);
                 self.scattered(at, flat, tint, 1.0 - r);

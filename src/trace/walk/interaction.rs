@@ -118,6 +118,7 @@ pub fn arrival<'a, const N: usize>(
         normal,
         uv,
         draw,
+        waves: &world.waves,
         present,
         from_inside: false,
         is_alone: false,

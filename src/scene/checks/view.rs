@@ -28,7 +28,7 @@ pub(super) struct Place {
 }
 
 /// The places on a few paths from the camera, and what rays are asked for.
-pub(super) struct Sight<'a> {
+pub(super) struct View<'a> {
     pub(super) scene: &'a Scene<Curve>,
     /// What paths from the camera meet.
     pub(super) places: Vec<Place>,
@@ -37,7 +37,7 @@ pub(super) struct Sight<'a> {
     occluder: Cell<Option<u32>>,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> View<'a> {
     pub(super) fn new(scene: &'a Scene<Curve>) -> Self {
         Self { scene, places: Vec::new(), rays: Cell::new(0), occluder: Cell::new(None) }
     }

@@ -1,0 +1,26 @@
+use super::{Draw, Table};
+
+/// Where each lane lies in the spectrum, for light that interferes.
+#[derive(Clone, Debug)]
+pub struct Waves {
+    /// Wavelengths in nm in vacuum.
+    wavelengths: Table,
+    /// The widths of the bands of wavelengths that lanes stand for, over their wavelengths; 0 of lines and heroes.
+    widths: Table,
+}
+
+impl Waves {
+    pub(super) fn new(wavelengths: Table, widths: Table) -> Self {
+        Self { wavelengths, widths }
+    }
+
+    /// The wavelength of a lane in nm in vacuum, and the width of its band over that: 0 of lines and heroes.
+    pub fn of_lane<const N: usize>(&self, draw: &Draw<N>, lane: usize) -> [f64; 2] {
+        [&self.wavelengths, &self.widths].map(|table| draw.read_lane(table, lane))
+    }
+
+    /// The same of all fixed lanes.
+    pub fn of_fixed_lanes(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.wavelengths.bins().iter().zip(self.widths.bins()).map(|(&nm, &width)| [nm, width])
+    }
+}
