@@ -2,6 +2,7 @@
 
 mod edges;
 mod files;
+mod hidden;
 mod lobes;
 mod mattes;
 mod mitchell;

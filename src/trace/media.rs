@@ -5,7 +5,7 @@ use crate::material::{Dielectric, Index};
 use crate::math::{DVec3, Frame, Ray, unit};
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Plane, Shape, SurfacePoint};
-use crate::spectrum::{Draw, Table};
+use crate::spectrum::{Draw, Lanes, Table};
 
 /// Different media that may overlap in one place: a lens of varying index is made of many shells.
 pub const MOST_MEDIA: usize = 16;
@@ -261,6 +261,19 @@ pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside
         Some(material) => draw.read_exact(&medium(scene, material).index),
         None => [1.0; N],
     }
+}
+
+/// What radiance in the second medium is worth in the first, per lane: it is as the square of the index.
+pub(super) fn change_of_radiance<const N: usize>(
+    scene: &Scene<Table>,
+    draw: &Draw<N>,
+    sides: [Option<MaterialId>; 2],
+) -> Lanes<N> {
+    let [here, there] = sides.map(|side| index(scene, draw, side));
+    Lanes::from_fn(|lane| {
+        let ratio = here[lane] / there[lane];
+        (ratio * ratio) as f32
+    })
 }
 
 /// The same, not yet read.

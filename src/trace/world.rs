@@ -278,8 +278,7 @@ impl World {
         if !self.has_media || !self.scene.camera.starts_away() {
             return self.camera_media;
         }
-        let way = [self.scene.camera.position(), ray.origin];
-        self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
+        self.media_seen_at(ray.origin)
     }
 
     /// The media around a ray that leaves a light.
@@ -293,16 +292,20 @@ impl World {
         Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))
     }
 
-    /// Adds the media of bodies around a surface that the camera's ray has met, and has gone through to it without
-    /// seeing them; those around the camera too if it is the first.
+    /// The media around a point on a straight way from the camera, but for those that it does not see.
     #[cold]
-    pub(super) fn enter_hidden(&self, is_first: bool, ray: &Ray, hit: &Hit, media: &mut Media) {
+    pub(super) fn media_seen_at(&self, point: DVec3) -> Media {
+        let way = [self.scene.camera.position(), point];
+        self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
+    }
+
+    /// The media around a surface that the camera's ray has met, of bodies that the camera does not see.
+    #[cold]
+    pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
-        if is_first {
-            let way = [self.scene.camera.position(), ray.origin];
-            *media = media.and(&self.hidden_media.after_walk(&self.scene, way, &is_hidden));
-        }
-        *media = media.after_walk(&self.scene, [ray.origin, ray.at(hit.crossing.t)], &is_hidden);
+        let [camera, start, end] = [self.scene.camera.position(), ray.origin, ray.at(hit.crossing.t)];
+        let walked = |media: Media, way| media.after_walk(&self.scene, way, &is_hidden);
+        walked(walked(self.hidden_media, [camera, start]), [start, end])
     }
 
     /// Whether next-event estimation at a vertex of the given weight samples every light, or one.

@@ -31,41 +31,47 @@ fn at_edges_albedo_and_normals_are_premultiplied_and_places_are_whole() {
     }
 }
 
-/// A sheet with holes sends back as much of white light as it covers, and what is behind it the rest.
+/// A sheet with holes sends back as much of white light as it covers, and what is behind it the rest, whatever counts
+/// as the first surface. A holdout elsewhere leaves it to chance whether a sample goes through the holes.
 #[test]
 fn albedo_and_normals_of_a_sheet_with_holes_are_of_what_it_covers() {
-    for (opacity, wall) in
-        [(0.1, false), (0.5, false), (0.9, false), (0.1, true), (0.3, true), (0.5, true), (0.9, true)]
-    {
-        let behind = if wall {
-            "object = [{ shape.quad = { center = [0, 0, -1], u = [9, 0, 0], v = [0, 9, 0] }, material = \"gray\" },"
-        } else {
-            "object = ["
-        };
-        let scene = format!(
-            "camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 20 }}\n\
-             film = {{ width = 8, height = 8 }}\nrender.samples = 256\n\
-             material.gray.diffuse.reflectance = 0.5\nmaterial.pink.diffuse.reflectance = 0.8\n\
-             material.net.mask = {{ material = \"pink\", opacity = {opacity} }}\n\
-             light = [{{ environment.radiance = 1 }}]\n\
-             {behind} {{ shape.quad = {{ center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }}, material = \"net\" }}]\n"
-        );
-        let image = rendered(&scene, &[Layer::Albedo, Layer::Normal]);
-        let mean = |name: &str| {
-            let values = image.layer(name).expect("there");
-            values.iter().map(|&x| f64::from(x)).sum::<f64>() / values.len() as f64
-        };
-        let [expected, covered] =
-            if wall { [0.8 * opacity + 0.5 * (1.0 - opacity), 1.0] } else { [0.8 * opacity, opacity] };
-        // Whether a sample meets the sheet is left to chance.
-        let deviation = (opacity * (1.0 - opacity) / (64.0 * 256.0_f64)).sqrt();
-        for (name, expected) in [("albedo.R", expected), ("N.Z", covered), ("A", covered)] {
-            let found = mean(name);
-            assert!(
-                (found - expected).abs() < 5.0 * deviation,
-                "{opacity}, wall {wall}, {name}: {found} for {expected}"
-            );
+    let opacities = [(0.1, false), (0.5, false), (0.9, false), (0.1, true), (0.3, true), (0.5, true), (0.9, true)];
+    for (first, has_holdout) in [("met", false), ("visible", false), ("met", true), ("visible", true)] {
+        for (opacity, has_wall) in opacities {
+            sheet_with_holes(first, has_holdout, opacity, has_wall);
         }
+    }
+}
+
+fn sheet_with_holes(first: &str, has_holdout: bool, opacity: f64, has_wall: bool) {
+    let object = |z: f64, material: &str| {
+        format!("{{ shape.quad = {{ center = [0, 0, {z}], u = [9, 0, 0], v = [0, 9, 0] }}, {material} }}, ")
+    };
+    let behind = if has_wall { object(-1.0, "material = \"gray\"") } else { String::new() };
+    let holdout = if has_holdout { object(9.0, "material = \"gray\", holdout = true") } else { String::new() };
+    let scene = format!(
+        "camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 20 }}\n\
+         film = {{ width = 8, height = 8, first = \"{first}\" }}\nrender.samples = 256\n\
+         material.gray.diffuse.reflectance = 0.5\nmaterial.pink.diffuse.reflectance = 0.8\n\
+         material.net.mask = {{ material = \"pink\", opacity = {opacity} }}\n\
+         light = [{{ environment.radiance = 1 }}]\nobject = [{behind}{holdout}{}]\n",
+        object(0.0, "material = \"net\"")
+    );
+    let image = rendered(&scene, &[Layer::Albedo, Layer::Normal]);
+    let mean = |name: &str| {
+        let values = image.layer(name).expect("there");
+        values.iter().map(|&x| f64::from(x)).sum::<f64>() / values.len() as f64
+    };
+    let [expected, covered] =
+        if has_wall { [0.8 * opacity + 0.5 * (1.0 - opacity), 1.0] } else { [0.8 * opacity, opacity] };
+    // Whether a sample meets the sheet is left to chance.
+    let deviation = (opacity * (1.0 - opacity) / (64.0 * 256.0_f64)).sqrt();
+    for (name, expected) in [("albedo.R", expected), ("N.Z", covered), ("A", covered)] {
+        let found = mean(name);
+        assert!(
+            (found - expected).abs() < 5.0 * deviation,
+            "{first}, holdout {has_holdout}, {opacity}, wall {has_wall}, {name}: {found} for {expected}"
+        );
     }
 }
 

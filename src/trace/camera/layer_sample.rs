@@ -44,6 +44,8 @@ pub struct Met<'a, const N: usize, P> {
     pub straight: Option<&'a Straight<N>>,
     /// Whether it is what the camera ray meets.
     pub is_met_first: bool,
+    /// What the throughput was divided by, as the path did not go through the surface's holes.
+    pub chance: f64,
 }
 
 impl<'a, const N: usize> LayerSample<'a, N> {
@@ -232,6 +234,8 @@ impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
         let shares = draw.shares(path.parted);
         let through =
             |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
-        unfiltered * (path.weight(draw) - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
+        // A surface covers what does not go through its holes, even if by chance all of the path was there.
+        let arrived = self.chance * path.weight(draw);
+        unfiltered * (arrived - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
     }
 }

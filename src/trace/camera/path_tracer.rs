@@ -9,7 +9,7 @@ use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Finding, Sensor};
 use super::shining::Shining;
-use super::surface::{First, Leaving, Surface};
+use super::surface::{First, Leaving, Onwards, Surface};
 use crate::film::{Layer, Sample};
 use crate::light::LightId;
 use crate::material::{Material, Straight};
@@ -191,9 +191,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             onward.iter_mut().for_each(|onward| onward.straight = onward.straight.through_holes());
             onward = onward.filter(|onward| !onward.straight.holes.is_zero());
         }
-        if world.has_mattes && path.surfaces() == 0 && first.is_none() {
-            self.choose(path, draw, sampler, &mut onward);
-        }
+        let may_choose = world.has_mattes && path.surfaces() == 0 && first.is_none();
+        let chance = if may_choose { self.choose(path, draw, sampler, &mut onward) } else { 1.0 };
         let Meeting { hit, point } = &meeting;
         if let Some(straight) = &onward
             && path.throughput.through(straight.straight.share()) == path.throughput
@@ -210,7 +209,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let is_first = path.surfaces() == 1 && first.is_none();
         let met = is_first.then(|| self.first_met(path, draw, sampler, &meeting, onward.as_ref(), first));
         self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
-        let surface = Surface { meeting: &meeting, boundary, onward: onward.as_ref(), first: met };
+        let surface = Surface { meeting: &meeting, boundary, onward: onward.as_ref(), first: met, chance };
         if path.surfaces() > world.method.max_bounces {
             return self.cut(path, draw, sampler, &surface);
         }
@@ -239,14 +238,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
-    /// holdout hides all that a sample shows, and a shadow catcher takes all of it for its own.
+    /// holdout hides all that a sample shows, and a shadow catcher takes all of it for its own. Answers by what the
+    /// throughput of a path was divided that goes on from the surface.
     #[cold]
-    fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, onward: &mut Option<Onward<N, P>>) {
+    fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, onward: &mut Onwards<N, P>) -> f64 {
         let Method { transport, polarization, .. } = &self.walker.world.method;
         let is_by_chance = matches!(transport, Transport::Random { .. });
         // Beyond both in part light is polarized by their mean.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
-        let Some(whole) = onward.filter(|onward| is_by_chance && !is_mean(&onward.straight)) else { return };
+        let Some(whole) = onward.filter(|onward| is_by_chance && !is_mean(&onward.straight)) else { return 1.0 };
         let straight::Met { is_met, chance, .. } = straight::met(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
         let (holes, panes) = if is_met { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
@@ -258,6 +258,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         *onward = (!straight.share().is_zero()).then_some(Onward { straight, ..whole });
         path.throughput = path.throughput.scaled(1.0 / chance);
         self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
+        if is_met { chance } else { 1.0 }
     }
 
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
@@ -304,7 +305,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
     fn scatter(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
-        let &Surface { meeting, boundary, onward, first } = surface;
+        let &Surface { meeting, boundary, onward, first, .. } = surface;
         let world = self.walker.world;
         if path.resampled && world.ends_light_paths(meeting.hit.object) {
             path.resampled = false;
@@ -331,9 +332,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[inline]
     fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
-            let straight = surface.onward.map(|onward| &onward.straight);
-            let is_met_first = surface.first == Some(First::Here);
-            layers.meet(&Met { path, meeting: surface.meeting, at, straight, is_met_first }, sampler);
+            let &Surface { meeting, chance, first, onward, .. } = surface;
+            let (straight, is_met_first) = (onward.map(|onward| &onward.straight), first == Some(First::Here));
+            layers.meet(&Met { path, meeting, at, straight, is_met_first, chance }, sampler);
         }
     }
 

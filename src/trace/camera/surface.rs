@@ -3,6 +3,9 @@
 use crate::trace::media::Boundary;
 use crate::trace::walk::{Meeting, Onward};
 
+/// What goes straight on through a surface, if anything does.
+pub type Onwards<const N: usize, P> = Option<Onward<N, P>>;
+
 /// A surface that a path has met.
 pub struct Surface<'m, const N: usize, P> {
     pub meeting: &'m Meeting,
@@ -11,6 +14,9 @@ pub struct Surface<'m, const N: usize, P> {
     pub onward: Option<&'m Onward<N, P>>,
     /// What the camera ray meets, unless it has met something before.
     pub first: Option<First>,
+    /// How likely the path went on from it and not through its holes, if that was left to chance: its throughput is
+    /// divided by this.
+    pub chance: f64,
 }
 
 /// How a path leaves a surface.

@@ -9,13 +9,13 @@ use crate::material::Arrival;
 use crate::math::{DVec2, DVec3, Ray};
 use crate::scene::{Ends, FilmSettings, Seen, Sight};
 use crate::spectrum::{Draw, Lanes};
-use crate::trace::World;
 use crate::trace::arrived::Arrived;
 use crate::trace::dyes::Dyes;
 use crate::trace::first_lobe::FirstLobe;
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhoton, Walker, parts, shading};
+use crate::trace::{World, media};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
 const LENS: u32 = 3;
@@ -172,14 +172,19 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let ray = at.point.leave(self.seen.direction);
         let distance = (self.seen.start - ray.origin).length();
         let world = self.walker.world;
+        let there = at.boundary.sides()[usize::from(!self.same)];
         let inside = match world.hides_objects && world.has_media {
             true => world.seen_media(&ray).inside(&world.scene),
-            false => at.boundary.sides()[usize::from(!self.same)],
+            false => there,
         };
         let ends = Ends { left: path.left, ..Ends::default() };
         let last_occluder = &self.walker.last_occluder;
         let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder };
-        passage.arriving(world, draw, start, light)
+        let (arriving, polarization) = passage.arriving(world, draw, start, light)?;
+        if inside == there {
+            return Some((arriving, polarization));
+        }
+        Some((arriving * media::change_of_radiance(&world.scene, draw, [inside, there]), polarization))
     }
 
     /// The ray of the camera that sees the place.

@@ -245,6 +245,20 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         self.weight(draw) * f64::from(self.aimed) / draw.siblings(self.parted)
     }
 
+    /// Takes other media to be around its end, without a surface between both: those that the camera sees, or those
+    /// that are there for all other light. Flux stays what it is.
+    pub fn enter(&mut self, world: &World, draw: &Draw<N>, media: Media) {
+        let sides = [self.media, media].map(|media| media.inside(&world.scene));
+        self.media = media;
+        if sides[0] == sides[1] {
+            return;
+        }
+        let weight = |throughput: Throughput<N>| throughput.weight(draw.shares(self.parted));
+        let before = weight(self.throughput);
+        self.throughput = self.throughput.through(media::change_of_radiance(&world.scene, draw, sides));
+        self.eta_scale *= if before > 0.0 { weight(self.throughput) / before } else { 1.0 };
+    }
+
     /// Follows the ray along a distance, on which the medium around it absorbs.
     pub fn advance(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
         self.length += distance;

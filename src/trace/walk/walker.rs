@@ -72,14 +72,18 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             Among::All => self.world.scene.intersect_from(&path.ray, path.left),
             Among::Plate => self.world.scene.intersect_plate(&path.ray, path.left, path.kind.is_from_camera()),
         };
+        let is_past_media = is_past_hidden && self.world.has_media;
+        if is_past_media && path.left.is_some() {
+            path.enter(self.world, draw, self.world.media_seen_at(path.ray.origin));
+        }
         let before = path.throughput;
         path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
         if let Some(audit) = &mut self.audit {
             audit.absorb(path, before, draw);
         }
         let hit = hit?;
-        if is_past_hidden && self.world.has_media {
-            self.world.enter_hidden(path.left.is_none(), &path.ray, &hit, &mut path.media);
+        if is_past_media {
+            path.enter(self.world, draw, path.media.and(&self.world.media_hidden_at(&path.ray, &hit)));
         }
         path.left = Some(hit.primitive());
         Some(Meeting::new(self.world, &path.ray, hit))

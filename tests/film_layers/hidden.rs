@@ -1,0 +1,49 @@
+//! Clear bodies that the camera does not see, and what is within them.
+
+use abbe::Image;
+use abbe::film::Layer;
+
+use super::{beauty, rendered, rgb};
+
+const PIXELS: usize = 16;
+
+/// A body that the camera does not see, and what is within it and behind it.
+fn within(body: &str, rest: &str, samples: u32) -> Image {
+    let text = format!(
+        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\nfilm = {{ width = 4, height = 4 }}\n\
+         render = {{ samples = {samples}, model = \"rgb\" }}\n[material]\nbody.dielectric = {{ {body} }}\n\
+         white.diffuse.reflectance = 1\nblack.diffuse.reflectance = 0\nlamp.emissive.radiance = 2\n\
+         sheet.mask = {{ material = \"black\", opacity = 0.25 }}\n\
+         [[object]]\nshape.cube = {{ center = [0, 0, 0], size = 2 }}\nmaterial = \"body\"\nvisible_to_camera = false\n{rest}"
+    );
+    rendered(&text, &[Layer::Residual])
+}
+
+fn mean(colors: &[[f64; 3]]) -> f64 {
+    colors.iter().map(|color| color[1]).sum::<f64>() / colors.len() as f64
+}
+
+/// In a medium of index n radiance is n^2 times that outside, which what leaves it has no more.
+#[test]
+fn a_white_ball_in_a_hidden_body_is_as_bright_as_the_sky_around_both() {
+    const SAMPLES: u32 = 1024;
+    let ball = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 0.6 }\nmaterial = \"white\"\n\
+        [[light]]\nenvironment = { radiance = 1 }\n";
+    let image = within("index = 1.5", ball, SAMPLES);
+    let (shown, lost) = (mean(&beauty(&image)), mean(&rgb(&image, "residual")));
+    // Roulette alone makes noise, which is as bright at most as what is followed in place of what it ends: a sample is
+    // off by less than 1/4, root mean square.
+    let five_sigma = 5.0 * 0.25 / (PIXELS as f64 * f64::from(SAMPLES)).sqrt();
+    assert!((shown - 1.0).abs() < five_sigma && lost.abs() < five_sigma, "{shown}, of which {lost} is lost");
+}
+
+#[test]
+fn behind_holes_in_a_hidden_body_the_camera_sees_as_if_that_were_not_there() {
+    let sheet = "[[object]]\nshape.quad = { center = [0, 0, 0], u = [0.8, 0, 0], v = [0, 0.8, 0] }\nmaterial = \"sheet\"\n\
+        [[object]]\nshape.quad = { center = [0, 0, -2], u = [3, 0, 0], v = [0, 3, 0] }\nmaterial = \"lamp\"\n";
+    for body in ["index = 1, absorption = 1", "index = 1.5, absorption = 0.5"] {
+        for color in beauty(&within(body, sheet, 4)) {
+            assert!((color[1] - 0.75 * 2.0).abs() < 1e-6, "{body}: {color:?}");
+        }
+    }
+}
