@@ -132,6 +132,10 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     }
     let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
     let coats = photons.iter().any(|photons| photons.to == Smoothness::Partial);
+    if let Some(left) = targets(scene, true).into_iter().find(|&object| !is_target(scene, object, coats)) {
+        let (name, points) = (&scene.objects[left].name, missing(scene));
+        lines.push(format!("left to chance: caustics of {name}, which is smooth only in part{points}"));
+    }
     let caustics = Caustics { photons, coats, from: named(scene, &sending), to: aim(scene, coats), seen, gain };
     Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
 }

@@ -78,12 +78,14 @@ fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
 /// A clear coat mirrors a small light onto the floor, which chance finds too rarely, and never if it is a point.
 #[test]
 fn photons_are_sent_to_clear_coats() {
-    let said = |material: &str, light: &str| {
-        let text = view([0.0, 2.0, 6.0], [0.0, 1.0, 0.0], 30.0, 16)
+    let text = |material: &str, light: &str| {
+        view([0.0, 2.0, 6.0], [0.0, 1.0, 0.0], 30.0, 16)
             + &body("floor", "diffuse = { reflectance = 0.5 }", &[GROUND])
             + &body("ball", material, &["sphere = { center = [0, 1, 0], radius = 0.8 }"])
-            + light;
-        let Plan { because, method, left_out, .. } = plan(&scene(&text));
+            + light
+    };
+    let said = |material: &str, light: &str| {
+        let Plan { because, method, left_out, .. } = plan(&scene(&text(material, light)));
         assert!(left_out.iter().all(|line| !line.contains("point lights")) || method.light_pass.is_none());
         because.into_iter().find(|line| line.starts_with("photon tracing:") || line.starts_with("no ")).expect("a line")
     };
@@ -94,6 +96,13 @@ fn photons_are_sent_to_clear_coats() {
     assert!(said(coat, &sun).contains("photons from the sun (solid angle 6.8e-5 sr) toward object 2"));
     assert!(said(coat, &point).contains("photons from a point toward object 2"));
     assert!(said("plastic = { reflectance = 0.5, roughness = 0.2 }", &sun).starts_with("no caustics: no surface is"));
+    // What lies in a box throws nothing that is seen.
+    let hidden = body("box", "diffuse = { reflectance = 0.5 }", &["cube = { center = [0, 2, 60], size = 3 }"])
+        + &body("hidden", coat, &["sphere = { center = [0, 2, 60], radius = 0.8 }"]);
+    let glass = plan(&scene(&(text("dielectric = { index = 1.5 }", &sun) + &hidden)));
+    let left = "left to chance: caustics of object 4, which is smooth only in part";
+    assert!(glass.because.iter().any(|line| line == left), "{:?}", glass.because);
+    assert!(glass.method.light_pass.is_some_and(|pass| !pass.coats));
     let window =
         body("lamp", "emissive = { radiance = 2 }", &["quad = { center = [0, 5, 0], u = [4, 0, 0], v = [0, 0, 4] }"]);
     assert!(said(coat, &window).contains("large enough for rays to meet by chance"));
