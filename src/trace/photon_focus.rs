@@ -30,7 +30,7 @@ const EVERYWHERE: f64 = 0.1;
 /// Of a surface that has no end, photons are sent to so many times what was found.
 const REACH: f64 = 6.0;
 
-/// How far an object is smooth to which photons can be sent.
+/// How smooth an object is that photons can be sent to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoothness {
     /// Wherever light goes on from it.
@@ -57,7 +57,7 @@ pub(super) struct Part {
     pub(super) share: f64,
 }
 
-/// How far an object is smooth; none if photons cannot be sent to it.
+/// How smooth an object is; none if photons cannot be sent to it.
 pub fn smoothness<S>(scene: &Scene<S>, object: usize) -> Option<Smoothness> {
     let material = scene.material_of(object as u32);
     if material.lobes().is_wide() {
@@ -68,7 +68,7 @@ pub fn smoothness<S>(scene: &Scene<S>, object: usize) -> Option<Smoothness> {
 }
 
 impl Smoothness {
-    /// Whether photons of a light pass are sent to what is so smooth, which sends them to coats or not.
+    /// Whether a light pass sends photons to an object that is so smooth; `coats` says whether it sends them to coats.
     pub fn is_aimed_at(self, coats: bool) -> bool {
         coats || self == Self::Whole
     }
