@@ -9,7 +9,9 @@ use crate::material::Material;
 use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons, smoothness};
+use crate::trace::{
+    LightPass, Method, PhotonWorth, Smoothness, Transport, World, photon_target, piloted, seen_photons,
+};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
@@ -99,7 +101,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
-    let coats = has_coats(scene);
+    let coats = first_coat(scene).is_some();
     let world = piloted(unguided, LightPass { photons: of_all, lights, coats, map: None });
     if let Some(why) = nowhere_to_aim(scene, &world) {
         return Shown::not(vec![why], true);
@@ -132,7 +134,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     }
     let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
     let coats = photons.iter().any(|photons| photons.to == Smoothness::Partial);
-    if let Some(left) = targets(scene, true).into_iter().find(|&object| !is_target(scene, object, coats)) {
+    if let Some(left) = first_coat(scene).filter(|_| !coats) {
         let (name, points) = (&scene.objects[left].name, missing(scene));
         lines.push(format!("left to chance: caustics of {name}, which is smooth only in part{points}"));
     }
@@ -237,17 +239,12 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
 
 /// Objects that photons can be sent to: they only mirror or refract light, or with `coats`, do so with a part of it.
 pub(super) fn targets(scene: &Scene<Curve>, coats: bool) -> Vec<usize> {
-    (0..scene.objects.len()).filter(|&object| is_target(scene, object, coats)).collect()
+    (0..scene.objects.len()).filter(|&object| photon_target(scene, object, coats).is_some()).collect()
 }
 
-/// Whether an object is one of them.
-fn is_target(scene: &Scene<Curve>, object: usize, coats: bool) -> bool {
-    smoothness(scene, object).is_some_and(|smooth| smooth.is_aimed_at(coats))
-}
-
-/// Whether any of them is smooth only in part.
-fn has_coats(scene: &Scene<Curve>) -> bool {
-    (0..scene.objects.len()).any(|object| smoothness(scene, object) == Some(Smoothness::Partial))
+/// The first of them that is smooth only in part.
+fn first_coat(scene: &Scene<Curve>) -> Option<usize> {
+    (0..scene.objects.len()).find(|&object| photon_target(scene, object, true) == Some(Smoothness::Partial))
 }
 
 /// Whether the camera sees any surface straight on which a caustic may lie.
@@ -294,10 +291,9 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
     let unseen = ", seen in a mirror or through glass or by way of another surface";
-    let is_aimed_at = |&object: &usize| is_target(scene, object, pass.coats);
-    let of_aimed = smooth().find(is_aimed_at).filter(|_| pass.map.is_none());
-    let of_aimed = of_aimed.map(|object| line("smooth ones", object, unseen));
-    let of_left = smooth().find(|object| !is_aimed_at(object));
+    let of_aimed = smooth().find(|&object| photon_target(scene, object, pass.coats).is_some());
+    let of_aimed = of_aimed.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
+    let of_left = first_coat(scene).filter(|_| !pass.coats);
     let of_left = of_left.map(|object| line("surfaces that are smooth only in part", object, sent_on));
     of_aimed.into_iter().chain(of_left).collect()
 }

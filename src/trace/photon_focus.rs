@@ -57,20 +57,14 @@ pub(super) struct Part {
     pub(super) share: f64,
 }
 
-/// How smooth an object is; none if photons cannot be sent to it.
-pub fn smoothness<S>(scene: &Scene<S>, object: usize) -> Option<Smoothness> {
+/// How smooth an object is, if a light pass sends photons to it; `coats` says whether it sends them to what is smooth
+/// only in part.
+pub fn photon_target<S>(scene: &Scene<S>, object: usize, coats: bool) -> Option<Smoothness> {
     let material = scene.material_of(object as u32);
     if material.lobes().is_wide() {
-        material.is_smooth_somewhere().then_some(Smoothness::Partial)
+        (coats && material.is_smooth_somewhere()).then_some(Smoothness::Partial)
     } else {
         (!matches!(material, Material::Emissive(_))).then_some(Smoothness::Whole)
-    }
-}
-
-impl Smoothness {
-    /// Whether a light pass sends photons to an object that is so smooth; `coats` says whether it sends them to coats.
-    pub fn is_aimed_at(self, coats: bool) -> bool {
-        coats || self == Self::Whole
     }
 }
 
@@ -84,8 +78,7 @@ fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
 /// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
 /// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
 pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> Vec<Place> {
-    let is_target = |&object: &usize| smoothness(scene, object).is_some_and(|smooth| smooth.is_aimed_at(coats));
-    let targets = (0..scene.objects.len()).filter(is_target);
+    let targets = (0..scene.objects.len()).filter(|&object| photon_target(scene, object, coats).is_some());
     let mut balls = targets.map(|object| scene.objects[object].shape.ball());
     let mut found = Vec::new();
     if lights.is_empty() || balls.all(|ball| ball.is_some_and(|ball| !is_large(scene, &ball))) {
@@ -93,11 +86,11 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> V
     }
     for [x, y] in scene.film.whole().middles_of_cells(SIDE) {
         let ray = scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-        let Some((receiver, primitive)) = walk(scene, ray, f64::INFINITY, None, &mut found) else { continue };
+        let Some((receiver, primitive)) = walk(scene, coats, ray, f64::INFINITY, None, &mut found) else { continue };
         for &light in lights.iter().take(LIGHTS) {
             let way = way_to(&scene.lights[light], receiver);
             if let Some(direction) = way.try_normalize() {
-                walk(scene, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
+                walk(scene, coats, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
             }
         }
     }
@@ -108,6 +101,7 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> V
 /// smooth only in part. A ray that has left no surface is the camera's.
 fn walk(
     scene: &Scene<Table>,
+    coats: bool,
     mut ray: Ray,
     mut distance: f64,
     mut left: Option<Primitive>,
@@ -122,7 +116,7 @@ fn walk(
         if distance < 0.0 {
             return None;
         }
-        let smoothness = smoothness(scene, hit.object as usize);
+        let smoothness = photon_target(scene, hit.object as usize, coats);
         if let Some(smoothness) = smoothness {
             let distance = (point.position - scene.camera.position()).length();
             found.push(Place { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });

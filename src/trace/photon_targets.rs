@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{Part, Place, Smoothness, parts, reach, smoothness};
+use super::photon_focus::{Part, Place, Smoothness, parts, photon_target, reach};
 use crate::light::{Beam, LeSample, LightId};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
@@ -72,8 +72,7 @@ impl PhotonTargets {
         let reach = reach(places);
         let of_object = |object: usize| {
             let has_end = scene.objects[object].shape.is_bounded();
-            let is_aimed_at = |smooth: &Smoothness| smooth.is_aimed_at(coats) && (has_end || reach.is_some());
-            smoothness(scene, object).filter(is_aimed_at)
+            photon_target(scene, object, coats).filter(|_| has_end || reach.is_some())
         };
         let objects: Vec<Option<Smoothness>> = (0..scene.objects.len()).map(of_object).collect();
         let most = (MOST_AIMS / lights.len().max(1)).clamp(1, MOST);

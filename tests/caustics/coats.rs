@@ -3,17 +3,17 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method};
+use abbe::trace::{LightPass, Method};
 
 use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
+use super::gathered::NARROW;
+use super::materials::{BENT, ROUND_LAMP};
 use crate::support::scenes::{SPLITTING, body, films_of, mean_color, moments, object, quad, scene, view};
 
-const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
 const VARNISH: &str = "[material.varnish]\nplastic = { reflectance = { rgb = [0.4, 0.3, 0.2] }, index = 1.5 }\n";
 /// Half paint, half mirror.
 const MIX: &str = "[material.paint]\ndiffuse = { reflectance = 0.5 }\n[material.mirror]\nmirror = { reflectance = 0.9 }\n\
                    [material.mixed]\nmix = { materials = [\"paint\", \"mirror\"], amount = 0.5 }\n";
-const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
 
 /// Renders of what has a closed form.
 const SEEDS: u64 = 64;
@@ -94,14 +94,12 @@ fn a_glass_ball_and_a_cube_of_varnish_on_varnish_without_end() {
 
 #[test]
 fn varnish_with_bent_normals_and_varnish_with_holes() {
-    let bent = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 2, 1], [0, 3, 2]], \
-                normals = [[0.6, 1, 0], [0, 1, 0.5], [-0.5, 1, 0], [0, 1, -0.6]], smooth = true }";
     let text = seen_by(ABOVE, "")
         + LAMP
         + VARNISH
         + "[material.lattice]\nmask = { material = \"varnish\", opacity = { checker = [0.3, { rgb = [1, 0.8, 0.6] }], repeat = 4 } }\n\
            [material.wall]\ndiffuse = { reflectance = 0.8 }\n"
-        + &object("varnish", bent)
+        + &object("varnish", BENT)
         + &object("lattice", "quad = { center = [0.3, 0.5, 0], u = [0.6, 0.2, 0], v = [0, 0, -0.6] }")
         + &object("wall", "quad = { center = [-0.9, 0.5, 0], u = [0, 0, 1], v = [0, 0.5, 0] }")
         + &object("lamp", ROUND_LAMP);

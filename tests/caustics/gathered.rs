@@ -7,7 +7,7 @@ use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, seen
 use crate::support::scenes::{object, standard_errors};
 
 /// A radius so small that blurring moves nothing between blocks that these samples could tell.
-const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
+pub const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
 
 fn agree(what: &str, text: &str, samples: [u32; 2]) {
     agree_with(what, text, samples, Some(NARROW));

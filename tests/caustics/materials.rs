@@ -3,7 +3,10 @@
 use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
 use crate::support::scenes::{GROUND, object};
 
-const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
+pub const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
+/// A square whose normals bend.
+pub const BENT: &str = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 2, 1], [0, 3, 2]], \
+                        normals = [[0.6, 1, 0], [0, 1, 0.5], [-0.5, 1, 0], [0, 1, -0.6]], smooth = true }";
 
 #[test]
 fn a_caustic_on_plastic_that_mirrors_it_onto_a_wall() {
@@ -36,13 +39,11 @@ fn a_caustic_through_the_holes_of_sheets_above_and_below_the_glass() {
 
 #[test]
 fn a_caustic_on_a_floor_of_bent_normals_and_by_way_of_smoothed_glass() {
-    let floor = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 2, 1], [0, 3, 2]], \
-                 normals = [[0.6, 1, 0], [0, 1, 0.5], [-0.5, 1, 0], [0, 1, -0.6]], smooth = true }";
     let gem = "mesh = { points = [[1, 1.2, 0], [-0.2, 1.2, 0], [0.4, 1.8, 0], [0.4, 0.6, 0], [0.4, 1.2, 0.6], [0.4, 1.2, -0.6]], \
                faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]], smooth = true }";
     let text = seen_by(ABOVE, "")
         + "[material.floor]\ndiffuse = { reflectance = 0.8 }\n"
-        + &object("floor", floor)
+        + &object("floor", BENT)
         + LAMP
         + &glass("index = 1.5")
         + &object("glass", gem)

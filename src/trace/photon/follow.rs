@@ -8,7 +8,7 @@ use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::walk::{Departure, Interaction, Onward, Path, PathKind, Polarization, Polarized, Walker, shading};
-use crate::trace::{Smoothness, World, smoothness};
+use crate::trace::{Smoothness, World, photon_target};
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
@@ -103,7 +103,7 @@ fn advance<const N: usize, P: Polarization<N>>(
         match over {
             Surfaces::Smooth if !is_target => return,
             Surfaces::AllButPhotons if is_target && world.sends_photons(photon.light) => {
-                if smoothness(&world.scene, meeting.hit.object as usize) == Some(Smoothness::Whole) {
+                if photon_target(&world.scene, meeting.hit.object as usize, true) == Some(Smoothness::Whole) {
                     return;
                 }
                 is_left_to_photons = true;
