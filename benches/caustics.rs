@@ -15,7 +15,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, Method, prepare, render};
+use abbe::trace::{LightPass, Method, Smoothness, prepare, render};
 
 const SEEDS: u64 = 8;
 
@@ -43,7 +43,7 @@ fn main() {
             let photons = (f64::from(samples) * 576.0 * each) as u64;
             Method {
                 samples,
-                light_pass: Some(LightPass { photons, lights: vec![0], coats: false, map: None }),
+                light_pass: Some(LightPass { photons, lights: vec![0], to: vec![Smoothness::Whole], map: None }),
                 ..plan.clone()
             }
         };

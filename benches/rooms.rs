@@ -12,7 +12,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::{Scene, Source};
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, Method, prepare, render};
+use abbe::trace::{LightPass, Method, Smoothness, prepare, render};
 
 #[path = "../tests/planning/twenty.rs"]
 mod twenty;
@@ -37,7 +37,8 @@ fn main() {
             .map_or(1.0, |pass| pass.photons as f64 / (f64::from(plan.samples) * pixels(&scene)));
         let method = |pass: bool, samples: u32, seed| {
             let photons = (wanted * f64::from(samples) * pixels(&scene)) as u64;
-            let light_pass = pass.then(|| LightPass { photons, lights: lights.clone(), coats: false, map: None });
+            let light_pass =
+                pass.then(|| LightPass { photons, lights: lights.clone(), to: vec![Smoothness::Whole], map: None });
             Method { samples, seed, light_pass, ..plan.clone() }
         };
         let image = |method| pool.install(|| render(&prepare(&scene, method), &|_| ())).0;

@@ -6,7 +6,7 @@
 
 use abbe::film::{Film, Window};
 use abbe::plan::{Plan, plan};
-use abbe::trace::{LightPass, Method, SampleDensity, Stop, World, adaptive, prepare, render};
+use abbe::trace::{LightPass, Method, SampleDensity, Smoothness, Stop, World, adaptive, prepare, render};
 
 use crate::support::scenes::{
     GROUND, SPLITTING, body, film_of, films_of, method, moments, scene, standard_errors, view,
@@ -139,7 +139,7 @@ fn the_density_of_samples_changes_no_mean() {
     let stop = |method| Method { stop: Some(Stop { noise: None, time: None, least: 32, most: 32 }), ..method };
     let plain: Change = |method| method;
     let photons = |method| Method {
-        light_pass: Some(LightPass { photons: 4096, lights: vec![0, 1], coats: false, map: None }),
+        light_pass: Some(LightPass { photons: 4096, lights: vec![0, 1], to: vec![Smoothness::Whole], map: None }),
         ..method
     };
     let sharp = lit([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");

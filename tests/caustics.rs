@@ -12,5 +12,6 @@ mod gathered;
 mod known;
 mod large;
 mod materials;
+mod nearly_smooth;
 mod polarization;
 mod wavelengths;

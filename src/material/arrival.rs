@@ -1,6 +1,6 @@
 //! Light that arrives at a surface, followed backward from the viewer.
 
-use super::shared_transmittance;
+use super::{Lobes, shared_transmittance};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Table, Waves};
 
@@ -31,6 +31,8 @@ pub struct Arrival<'a, const N: usize> {
     pub direction_indices: [Option<f64>; 2],
     /// Lanes whose refracted rays lie within this angle of each other, in radians, go on as one.
     pub together: f64,
+    /// The lobes that are asked for: all, but where photons bring what a part of them scatters.
+    pub lobes: Lobes,
 }
 
 /// The refractive index of a medium.

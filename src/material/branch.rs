@@ -44,7 +44,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// A way on the viewer's side that was drawn with a density.
-    pub(super) fn drawn(wi: DVec3, share: Lanes<N>, pdf: f64) -> Self {
+    pub fn drawn(wi: DVec3, share: Lanes<N>, pdf: f64) -> Self {
         Self { wi, share, pdf: Some(pdf), crosses: false, eta_scale: 1.0, polarization: 0.0 }
     }
 

@@ -3,7 +3,7 @@
 
 use super::{
     Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror,
-    Mix, Mueller, Part, Plastic, Polarizer, Retarder, Scatter, Straight, Thin,
+    Mix, Mueller, Part, Plastic, Polarizer, Retarder, Roughness, Scatter, Straight, Thin,
 };
 use crate::math::{DVec3, Transform};
 use crate::spectrum::{Curve, Lanes, Quantity, Table};
@@ -82,20 +82,16 @@ impl<S> Material<S> {
     /// Its lobes; of what is made of other materials, those of all of them.
     #[inline]
     pub fn lobes(&self) -> Lobes {
-        let smooth_or = |is_smooth: bool, glossy: Lobes| if is_smooth { Lobes::DELTA_REFLECTION } else { glossy };
         match self {
             Self::Diffuse(_) => Lobes::DIFFUSE_REFLECTION,
             Self::Mirror(_) => Lobes::DELTA_REFLECTION,
             Self::Thin(_) => Lobes::DELTA,
-            Self::Conductor(conductor) => smooth_or(conductor.roughness.is_smooth(), Lobes::GLOSSY_REFLECTION),
+            Self::Conductor(conductor) => conductor.roughness.reflection(),
             Self::Dielectric(dielectric) if dielectric.roughness.is_smooth() => Lobes::DELTA,
             // Between equal indices light goes straight on, however rough the surface is.
             Self::Dielectric(_) => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
             Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => Lobes::NONE,
-            Self::Plastic(plastic) => {
-                let coat = smooth_or(plastic.coat.roughness().is_smooth(), Lobes::GLOSSY_REFLECTION);
-                Lobes::DIFFUSE_REFLECTION.union(coat)
-            }
+            Self::Plastic(plastic) => Lobes::DIFFUSE_REFLECTION.union(plastic.coat.roughness().reflection()),
             Self::Mix(_) | Self::Mask(_) => {
                 self.parts().iter().map(|part| part.material().lobes()).fold(Lobes::NONE, Lobes::union)
             }
@@ -112,12 +108,23 @@ impl<S> Material<S> {
         }
     }
 
+    /// The least solid angle in steradians into which any of it spreads what a mirror would send in one direction: 0
+    /// where some of it is smooth.
+    pub fn spread(&self) -> f64 {
+        let of_part = |part: &Self| match part.roughness() {
+            _ if part.is_smooth_somewhere() => 0.0,
+            Some(roughness) => roughness.spread(),
+            None => f64::INFINITY,
+        };
+        self.with_parts().into_iter().map(of_part).fold(f64::INFINITY, f64::min)
+    }
+
     /// How rough it is, where it can be.
-    pub fn roughness(&self) -> Option<f64> {
+    pub fn roughness(&self) -> Option<&Roughness> {
         match self {
-            Self::Conductor(conductor) => Some(conductor.roughness.value()),
-            Self::Dielectric(dielectric) => Some(dielectric.roughness.value()),
-            Self::Plastic(plastic) => Some(plastic.coat.roughness().value()),
+            Self::Conductor(conductor) => Some(&conductor.roughness),
+            Self::Dielectric(dielectric) => Some(&dielectric.roughness),
+            Self::Plastic(plastic) => Some(plastic.coat.roughness()),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => None,
             Self::Mix(_) | Self::Mask(_) | Self::Polarizer(_) | Self::Retarder(_) => None,
         }
@@ -232,6 +239,12 @@ impl Material<Table> {
         }
     }
 
+    /// Whether an arrival asks for none of its lobes.
+    #[inline(always)]
+    fn is_left_out<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+        arrival.lobes != Lobes::ALL && !self.lobes().intersects(arrival.lobes)
+    }
+
     /// Whether lanes part that cross the surface.
     pub fn parts_lanes<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
         match self {
@@ -250,6 +263,7 @@ impl Scatter for Material<Table> {
 
     fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self {
+            _ if self.is_left_out(arrival) => {}
             Self::Diffuse(diffuse) => branches.push(diffuse.scatter(arrival, u)),
             Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
             Self::Thin(thin) => thin.scatter(arrival, branches),
@@ -264,6 +278,7 @@ impl Scatter for Material<Table> {
 
     fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         match self {
+            _ if self.is_left_out(arrival) => None,
             Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
             Self::Conductor(conductor) => conductor.evaluate(arrival, wi),
             Self::Dielectric(dielectric) => dielectric.evaluate(arrival, wi),
@@ -314,6 +329,7 @@ impl Scatter for Material<Table> {
 
     fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         match self {
+            _ if self.is_left_out(arrival) => *mueller = Mueller::NONE,
             Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival, mueller),
             Self::Thin(thin) if incoming.single => thin.mueller(arrival, false, incoming.lanes, mueller),
             Self::Conductor(conductor) => conductor.mueller(arrival, incoming, mueller),

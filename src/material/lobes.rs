@@ -17,12 +17,17 @@ impl Lobes {
     pub const GLOSSY_TRANSMISSION: Self = Self(8);
     /// Light crosses the surface in one direction.
     pub const DELTA_TRANSMISSION: Self = Self(16);
+    /// Light is reflected in every direction, but hardly beyond some degrees from the mirror image.
+    pub const NARROW_REFLECTION: Self = Self(32);
+    /// All kinds.
+    pub const ALL: Self = Self(63);
 
     /// All that leaves in single directions.
     pub const DELTA: Self = Self::DELTA_REFLECTION.union(Self::DELTA_TRANSMISSION);
     /// All that leaves in every direction.
-    pub const NON_DELTA: Self =
-        Self::DIFFUSE_REFLECTION.union(Self::GLOSSY_REFLECTION).union(Self::GLOSSY_TRANSMISSION);
+    pub const NON_DELTA: Self = Self::BROAD.union(Self::NARROW_REFLECTION);
+    /// All of that but what is narrow.
+    pub const BROAD: Self = Self::DIFFUSE_REFLECTION.union(Self::GLOSSY_REFLECTION).union(Self::GLOSSY_TRANSMISSION);
     /// All that crosses the surface.
     pub const TRANSMISSION: Self = Self::GLOSSY_TRANSMISSION.union(Self::DELTA_TRANSMISSION);
 
@@ -34,6 +39,11 @@ impl Lobes {
     /// The kinds that are in both.
     pub const fn intersection(self, kinds: Self) -> Self {
         Self(self.0 & kinds.0)
+    }
+
+    /// Those that are not among these.
+    pub const fn without(self, kinds: Self) -> Self {
+        Self(self.0 & !kinds.0)
     }
 
     /// Whether any of these kinds is among them.
@@ -49,6 +59,18 @@ impl Lobes {
     /// Whether what leaves in every direction has no memory of where it came from: `diffuse_bounces` counts it.
     pub const fn is_diffuse(self) -> bool {
         self.intersection(Self::NON_DELTA).0 == Self::DIFFUSE_REFLECTION.0
+    }
+
+    /// Whether a narrow lobe is told apart from what else leaves in every direction: where that is diffuse, if there is
+    /// anything.
+    pub const fn has_narrow_apart(self) -> bool {
+        self.intersects(Self::NARROW_REFLECTION)
+            && !self.intersects(Self::GLOSSY_REFLECTION.union(Self::GLOSSY_TRANSMISSION))
+    }
+
+    /// Whether nothing leaves in every direction but by a narrow lobe.
+    pub const fn is_narrow(self) -> bool {
+        self.intersection(Self::NON_DELTA).0 == Self::NARROW_REFLECTION.0
     }
 
     /// Whether light crosses the surface in some way.

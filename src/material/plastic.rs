@@ -6,7 +6,8 @@ use super::last::Last;
 use super::plastic_film::PlasticFilm;
 use super::roughness::above;
 use super::{
-    Arrival, Base, Block, Branch, Coating, Incoming, Interface, Mueller, RoughReflection, RoughSurface, StackShares,
+    Arrival, Base, Block, Branch, Coating, Incoming, Interface, Lobes, Mueller, RoughReflection, RoughSurface,
+    StackShares,
 };
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -47,14 +48,18 @@ impl Plastic<Table> {
     /// The mirror image in a smooth coat, and one branch for all other light.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         let Some(surface) = self.coat.roughness().surface() else {
-            branches.extend(self.mirrored(arrival));
+            let is_mirrored = arrival.lobes.intersects(Lobes::DELTA_REFLECTION);
+            branches.extend(is_mirrored.then(|| self.mirrored(arrival)).flatten());
+            if !arrival.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
+                return;
+            }
             let wi = cosine_hemisphere(u);
             let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], CoatLane::base);
             branches.push(branch(arrival, wi, base, wi.z * FRAC_1_PI));
             return;
         };
         let wo = above(&Frame::about(arrival.normal), arrival.wo);
-        let chance = chance_of_coat(&self.lanes(arrival, [wo.z; 2], CoatLane::reflected));
+        let chance = self.chance_of_coat(arrival, &self.lanes(arrival, [wo.z; 2], CoatLane::reflected));
         let wi = if u[0] < chance {
             surface.scatter(wo, [u[0] / chance, u[1]]).map(|reflection| reflection.wi)
         } else {
@@ -71,7 +76,7 @@ impl Plastic<Table> {
         let (light, pdf) = match self.coat.roughness().surface() {
             None => {
                 let cos = wi.dot(arrival.normal);
-                if cos <= 0.0 {
+                if cos <= 0.0 || !arrival.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
                     return None;
                 }
                 let (cosines, pdf) = ([arrival.wo.dot(arrival.normal), cos], cos * FRAC_1_PI);
@@ -129,17 +134,31 @@ impl Plastic<Table> {
     ) -> Option<([f64; N], f64)> {
         let reflection = surface.evaluate(wo, wi)?;
         let base_pdf = wi.z * FRAC_1_PI;
+        let [of_coat, of_base] = self.asked(arrival).map(f64::from);
         let mut last = Last::NONE;
         let lanes = self.lanes(arrival, [wo.z, wi.z], |lane| {
             let coat = match lane.film {
                 Some(_) => lane.coat(surface, &reflection),
                 None => last.of(lane.indices, |_| lane.coat(surface, &reflection)),
             };
-            (coat + lane.base() * base_pdf, lane.reflected())
+            (of_coat * coat + of_base * lane.base() * base_pdf, lane.reflected())
         });
-        let chance = chance_of_coat(&lanes.map(|lane| lane.1));
+        let chance = self.chance_of_coat(arrival, &lanes.map(|lane| lane.1));
         let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
         (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
+    }
+
+    /// Whether a rough coat is asked for, and the base.
+    fn asked<const N: usize>(&self, arrival: &Arrival<N>) -> [bool; 2] {
+        [self.coat.roughness().reflection(), Lobes::DIFFUSE_REFLECTION].map(|lobe| arrival.lobes.intersects(lobe))
+    }
+
+    /// How often a direction is drawn from a rough coat, and else from the base: by what each reflects of all lanes, if
+    /// both are asked for.
+    fn chance_of_coat<const N: usize>(&self, arrival: &Arrival<N>, reflected: &[[f64; 2]; N]) -> f64 {
+        let asked = self.asked(arrival).map(f64::from);
+        let [coat, base] = [0, 1].map(|part| asked[part] * reflected.iter().map(|lane| lane[part]).sum::<f64>());
+        if coat > 0.0 { coat / (coat + base) } else { 0.0 }
     }
 
     /// Something of each lane on the ray, which crosses the coat from directions of two cosines.
@@ -192,6 +211,7 @@ impl Plastic<Table> {
         }
         match self.coat.roughness().surface() {
             None => *mueller = Mueller::NONE,
+            Some(_) if !self.asked(arrival)[0] => *mueller = Mueller::NONE,
             Some(surface) => {
                 let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
                     return *mueller = Mueller::NONE;
@@ -200,6 +220,9 @@ impl Plastic<Table> {
                 let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
                 mueller.set_lanes(axis, incoming.lanes, facet);
             }
+        }
+        if !self.asked(arrival)[1] {
+            return;
         }
         let from = above(&Frame::about(arrival.normal), arrival.wo).z;
         mueller.base = Some(Box::new(self.polarized_base(arrival, [from, to], film)));
@@ -304,12 +327,6 @@ impl CoatLane {
         };
         once * reflection.once + again * reflection.again
     }
-}
-
-/// How often a direction is drawn from the coat, and else from the base: by what each reflects of all lanes.
-fn chance_of_coat(reflected: &[[f64; 2]]) -> f64 {
-    let [coat, base] = [0, 1].map(|part| reflected.iter().map(|lane| lane[part]).sum::<f64>());
-    if coat > 0.0 { coat / (coat + base) } else { 0.0 }
 }
 
 /// The branch of a direction in the surface's frame.

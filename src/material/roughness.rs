@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::{Arrival, Facets, RoughInterface, reflect};
+use super::{Arrival, Facets, Lobes, RoughInterface, reflect};
 use crate::math::{DVec3, Frame};
 
 /// How rough a surface is, from 0 (smooth) to 1, and what follows from it.
@@ -16,6 +16,9 @@ pub struct Roughness {
 
 /// Width of the facets' slopes below which a surface is taken as smooth.
 const SMOOTH: f64 = 1e-4;
+/// Width below which what it reflects is narrow: photons find the light that it sends on sooner than chance does, by
+/// twice or more (`benches/README.md`).
+const NARROW: f64 = 0.1;
 
 impl Roughness {
     /// A surface of roughness `value`: the slopes of its facets are as wide as its square.
@@ -26,6 +29,21 @@ impl Roughness {
     /// As the scene file has it.
     pub fn value(&self) -> f64 {
         self.value
+    }
+
+    /// The lobe by which the surface reflects.
+    pub fn reflection(&self) -> Lobes {
+        match self.alpha() {
+            ..SMOOTH => Lobes::DELTA_REFLECTION,
+            ..NARROW => Lobes::NARROW_REFLECTION,
+            _ => Lobes::GLOSSY_REFLECTION,
+        }
+    }
+
+    /// The solid angle in steradians into which the surface spreads what a mirror would send in one direction: one over
+    /// the density there, weighed by itself. That is a third of 1 / (4 pi alpha^2), that of the mirror image.
+    pub fn spread(&self) -> f64 {
+        if self.is_smooth() { 0.0 } else { 12.0 * PI * self.alpha() * self.alpha() }
     }
 
     /// How wide the slopes of its facets are.

@@ -9,9 +9,7 @@ use crate::material::Material;
 use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{
-    LightPass, Method, PhotonWorth, Smoothness, Transport, World, photon_target, piloted, seen_photons,
-};
+use crate::trace::{LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
@@ -49,8 +47,8 @@ impl Shown {
 pub(super) struct Caustics {
     /// The photons of each light that sends them.
     pub(super) photons: Vec<PhotonWorth>,
-    /// Whether they are sent to what is smooth only in part as well.
-    coats: bool,
+    /// How smooth what they are sent to is.
+    smooth: Vec<Smoothness>,
     /// Which those are, and what they are sent to.
     from: String,
     to: String,
@@ -70,7 +68,7 @@ impl Caustics {
         LightPass {
             photons: (of_a_sample * world.samples_of_the_format()).max(FEWEST).ceil() as u64,
             lights,
-            coats: self.coats,
+            to: self.smooth.clone(),
             map: None,
         }
     }
@@ -101,14 +99,16 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
-    let coats = first_coat(scene).is_some();
-    let world = piloted(unguided, LightPass { photons: of_all, lights, coats, map: None });
+    let all = Smoothness::ALL.to_vec();
+    let world = piloted(unguided, LightPass { photons: of_all, lights, to: all, map: None });
     if let Some(why) = nowhere_to_aim(scene, &world) {
         return Shown::not(vec![why], true);
     }
     let share = seen_photons(&world);
+    let sizes = small.clone();
+    let size = |light: LightId| sizes.iter().find(|(id, _)| *id == light).map_or(0.0, |&(_, size)| size);
     let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
-    let to = aim(scene, coats);
+    let to = aim(scene, &Smoothness::ALL);
     let mut lines = Vec::new();
     if !unseen.is_empty() {
         lines.push(format!(
@@ -119,7 +119,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if seen.is_empty() {
         return Shown::not(lines, false);
     }
-    let Worth { mut photons, gain } = weigh(scene, &world);
+    let Worth { mut photons, gain, of_smooth } = weigh(scene, &world, size);
     photons.retain(|photons| seen.iter().any(|(id, _)| photons.lights.contains(id)));
     let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(is_sent);
@@ -127,24 +127,31 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if sending.is_empty() {
         let (from, why) = (named(scene, &large), not_worth(gain));
         lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-        return Shown::not(lines, gain.is_none_or(|gain| (gain - 1.0).abs() > NOTHING));
+        return Shown::not(lines, gain.is_none_or(|gain| of_smooth && (gain - 1.0).abs() > NOTHING));
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
     }
     let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
-    let coats = photons.iter().any(|photons| photons.to == Smoothness::Partial);
-    if let Some(left) = first_coat(scene).filter(|_| !coats) {
-        let (name, points) = (&scene.objects[left].name, missing(scene));
-        lines.push(format!("left to chance: caustics of {name}, which is smooth only in part{points}"));
-    }
-    let caustics = Caustics { photons, coats, from: named(scene, &sending), to: aim(scene, coats), seen, gain };
+    let smooth: Vec<_> =
+        Smoothness::ALL.into_iter().filter(|smooth| photons.iter().any(|photons| photons.to == *smooth)).collect();
+    lines.extend(Smoothness::ALL.into_iter().filter(|left| !smooth.contains(left)).filter_map(|left| {
+        let name = &scene.objects[*targets(scene, &[left]).first()?].name;
+        let (how, points) = match left {
+            Smoothness::Whole => ("smooth", missing(scene)),
+            Smoothness::Partial => ("smooth only in part", missing(scene)),
+            Smoothness::Narrow | Smoothness::NarrowPartial => ("nearly smooth", ""),
+        };
+        Some(format!("left to chance: caustics of {name}, which is {how}{points}"))
+    }));
+    let to = aim(scene, &smooth);
+    let caustics = Caustics { photons, smooth, from: named(scene, &sending), to, seen, gain };
     Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
 }
 
 /// What photons are sent to, as a person is told.
-fn aim(scene: &Scene<Curve>, coats: bool) -> String {
-    match targets(scene, coats).as_slice() {
+fn aim(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
+    match targets(scene, smooth).as_slice() {
         [one] => scene.objects[*one].name.clone(),
         many => format!("{} smooth objects", many.len()),
     }
@@ -153,7 +160,7 @@ fn aim(scene: &Scene<Curve>, coats: bool) -> String {
 /// Why the photons of a world are sent nowhere, if that is so.
 fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let has_end = |&object: &usize| scene.objects[object].shape.is_bounded();
-    let targets = targets(scene, true);
+    let targets = targets(scene, &Smoothness::ALL);
     let name = &scene.objects[*targets.first()?].name;
     (!world.reaches_without_end() && !targets.iter().any(has_end)).then(|| {
         let why = format!("{name} has no end and is not seen, so photons cannot be aimed at it");
@@ -164,7 +171,7 @@ fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
 /// What the photons of a world leave to chance of surfaces that have no end.
 pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let pass = world.method().light_pass.as_ref()?;
-    let endless = targets(scene, pass.coats).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
+    let endless = targets(scene, &pass.to).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
     let where_left = if world.reaches_without_end() { ", far beyond where it is seen" } else { " and is not seen" };
     let name = &scene.objects[endless].name;
     Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
@@ -226,7 +233,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
 
 /// Why a scene has no caustics, if it has none.
 fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
-    if targets(scene, true).is_empty() {
+    if targets(scene, &Smoothness::ALL).is_empty() {
         Some("no surface is smooth glass, a mirror or polished metal")
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
@@ -237,14 +244,10 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     }
 }
 
-/// Objects that photons can be sent to: they only mirror or refract light, or with `coats`, do so with a part of it.
-pub(super) fn targets(scene: &Scene<Curve>, coats: bool) -> Vec<usize> {
-    (0..scene.objects.len()).filter(|&object| photon_target(scene, object, coats).is_some()).collect()
-}
-
-/// The first of them that is smooth only in part.
-fn first_coat(scene: &Scene<Curve>) -> Option<usize> {
-    (0..scene.objects.len()).find(|&object| photon_target(scene, object, true) == Some(Smoothness::Partial))
+/// Objects of some kinds of smoothness.
+pub(super) fn targets(scene: &Scene<Curve>, smooth: &[Smoothness]) -> Vec<usize> {
+    let is_so = |&object: &usize| Smoothness::of(scene, object).is_some_and(|of| smooth.contains(&of));
+    (0..scene.objects.len()).filter(is_so).collect()
 }
 
 /// Whether the camera sees any surface straight on which a caustic may lie.
@@ -291,10 +294,18 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
     let unseen = ", seen in a mirror or through glass or by way of another surface";
-    let of_aimed = smooth().find(|&object| photon_target(scene, object, pass.coats).is_some());
+    let is_aimed = |object: usize| Smoothness::of(scene, object).is_some_and(|smooth| pass.to.contains(&smooth));
+    let of_aimed = smooth().find(|&object| is_aimed(object));
     let of_aimed = of_aimed.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
-    let of_left = first_coat(scene).filter(|_| !pass.coats);
-    let of_left = of_left.map(|object| line("surfaces that are smooth only in part", object, sent_on));
+    let of_left = |smooth: Smoothness, ways: &str| {
+        let left = targets(scene, &[smooth]).into_iter().find(|_| !pass.to.contains(&smooth))?;
+        Some(line(ways, left, sent_on))
+    };
+    let of_left = [
+        of_left(Smoothness::Whole, "smooth ones"),
+        of_left(Smoothness::Partial, "surfaces that are smooth only in part"),
+    ];
+    let of_left = of_left.into_iter().flatten();
     of_aimed.into_iter().chain(of_left).collect()
 }
 

@@ -6,8 +6,8 @@ use super::words::{in_number, percent};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{
-    GatheredWorth, LightPass, MapPasses, Method, RAYS_OF_A_LOOK, Transport, World, gathered_worth, photons_within,
-    reached_places,
+    GatheredWorth, LightPass, MapPasses, Method, RAYS_OF_A_LOOK, Smoothness, Transport, World, gathered_worth,
+    photons_within, reached_places,
 };
 
 /// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen
@@ -42,8 +42,8 @@ pub(super) fn with_map(
     let method = untaught.method();
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AutoText::Off;
-    // What coats throw and the camera would not see straight is not worth photons of its own.
-    let is_aimed = shown.is_some() || !targets(scene, false).is_empty();
+    // What coats and narrow lobes throw and the camera would not see straight is not worth photons of its own.
+    let is_aimed = shown.is_some() || !targets(scene, &[Smoothness::Whole]).is_empty();
     if is_off || settled || !is_aimed {
         return as_shown();
     }
@@ -61,7 +61,7 @@ pub(super) fn with_map(
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
         photons: (PHOTONS * samples).ceil() as u64,
         lights: small_lights(untaught, &places, SMALL),
-        coats: false,
+        to: vec![Smoothness::Whole],
         map: None,
     });
     if pass.lights.is_empty() {

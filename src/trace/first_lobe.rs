@@ -31,7 +31,8 @@ impl FirstLobe {
         if crosses {
             return Self::Transmitted;
         }
-        let diffuse = match (lobes.intersects(Lobes::DIFFUSE_REFLECTION), lobes.intersects(Lobes::GLOSSY_REFLECTION)) {
+        let glossy = Lobes::GLOSSY_REFLECTION.union(Lobes::NARROW_REFLECTION);
+        let diffuse = match (lobes.intersects(Lobes::DIFFUSE_REFLECTION), lobes.intersects(glossy)) {
             (false, _) => [0.0; 3],
             (true, false) => [1.0; 3],
             (true, true) => white.map_or([1.0; 3], |white| diffuse_share(white, material, arrival, wi)),

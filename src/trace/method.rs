@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BrightPlaces, SampleDensity, Sunlit};
+use super::{BrightPlaces, SampleDensity, Smoothness, Sunlit};
 use crate::light::LightId;
 use crate::spectrum::Basis;
 
@@ -109,8 +109,8 @@ pub struct LightPass {
     /// The lights that send them: points, spots, suns, what is bright in an image of the sky, and finite `emissive`
     /// surfaces.
     pub lights: Vec<LightId>,
-    /// Whether they are sent to objects that are smooth only in part as well, such as those with a clear coat.
-    pub coats: bool,
+    /// How smooth the objects are that they are sent to.
+    pub to: Vec<Smoothness>,
     /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and
     /// chance.
     pub map: Option<MapPasses>,

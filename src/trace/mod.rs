@@ -69,7 +69,7 @@ pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use path_start::Sunlit;
-pub use photon_focus::{Smoothness, photon_target};
+pub use photon_focus::Smoothness;
 pub use probe::{
     Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight, adaptive,
     branching, bright_places, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise, piloted,

@@ -1,7 +1,9 @@
 //! Which part of a large smooth surface throws light onto what the camera sees: of a sea, only a bay.
 
+use serde::{Deserialize, Serialize};
+
 use crate::light::{Light, LightId};
-use crate::material::Material;
+use crate::material::{Lobes, Material};
 use crate::math::{Bounds, DVec2, DVec3, Ray};
 use crate::scene::{Primitive, Scene};
 use crate::shape::Ball;
@@ -31,12 +33,35 @@ const EVERYWHERE: f64 = 0.1;
 const REACH: f64 = 6.0;
 
 /// How smooth an object is that photons can be sent to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Smoothness {
     /// Wherever light goes on from it.
     Whole,
     /// It scatters light widely as well, as what lies under a clear coat does.
     Partial,
+    /// It mirrors light nearly as smooth ones do: by a narrow lobe.
+    Narrow,
+    /// It does that, and scatters light widely as well.
+    NarrowPartial,
+}
+
+impl Smoothness {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::Whole, Self::Partial, Self::Narrow, Self::NarrowPartial];
+
+    /// That of an object; none if photons cannot be sent to it.
+    pub fn of<S>(scene: &Scene<S>, object: usize) -> Option<Self> {
+        let material = scene.material_of(object as u32);
+        let (lobes, is_smooth) = (material.lobes(), material.is_smooth_somewhere());
+        match lobes.intersects(Lobes::BROAD) {
+            true if is_smooth => Some(Self::Partial),
+            true => lobes.has_narrow_apart().then_some(Self::NarrowPartial),
+            false if is_smooth || !lobes.is_wide() => {
+                (!matches!(material, Material::Emissive(_))).then_some(Self::Whole)
+            }
+            false => Some(Self::Narrow),
+        }
+    }
 }
 
 /// A place on a smooth surface by way of which light may come to what the camera sees.
@@ -57,17 +82,6 @@ pub(super) struct Part {
     pub(super) share: f64,
 }
 
-/// How smooth an object is, if a light pass sends photons to it; `coats` says whether it sends them to what is smooth
-/// only in part.
-pub fn photon_target<S>(scene: &Scene<S>, object: usize, coats: bool) -> Option<Smoothness> {
-    let material = scene.material_of(object as u32);
-    if material.lobes().is_wide() {
-        (coats && material.is_smooth_somewhere()).then_some(Smoothness::Partial)
-    } else {
-        (!matches!(material, Material::Emissive(_))).then_some(Smoothness::Whole)
-    }
-}
-
 /// Whether the camera may see a small part of what lies in a ball: it is wider than the image there.
 fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
     let distance = (ball.center - scene.camera.position()).length();
@@ -77,8 +91,9 @@ fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
 
 /// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
 /// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
-pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> Vec<Place> {
-    let targets = (0..scene.objects.len()).filter(|&object| photon_target(scene, object, coats).is_some());
+pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], to: &[Smoothness]) -> Vec<Place> {
+    let is_target = |&object: &usize| Smoothness::of(scene, object).is_some_and(|smooth| to.contains(&smooth));
+    let targets = (0..scene.objects.len()).filter(is_target);
     let mut balls = targets.map(|object| scene.objects[object].shape.ball());
     let mut found = Vec::new();
     if lights.is_empty() || balls.all(|ball| ball.is_some_and(|ball| !is_large(scene, &ball))) {
@@ -86,11 +101,11 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> V
     }
     for [x, y] in scene.film.whole().middles_of_cells(SIDE) {
         let ray = scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-        let Some((receiver, primitive)) = walk(scene, coats, ray, f64::INFINITY, None, &mut found) else { continue };
+        let Some((receiver, primitive)) = walk(scene, to, ray, f64::INFINITY, None, &mut found) else { continue };
         for &light in lights.iter().take(LIGHTS) {
             let way = way_to(&scene.lights[light], receiver);
             if let Some(direction) = way.try_normalize() {
-                walk(scene, coats, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
+                walk(scene, to, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
             }
         }
     }
@@ -101,7 +116,7 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], coats: bool) -> V
 /// smooth only in part. A ray that has left no surface is the camera's.
 fn walk(
     scene: &Scene<Table>,
-    coats: bool,
+    to: &[Smoothness],
     mut ray: Ray,
     mut distance: f64,
     mut left: Option<Primitive>,
@@ -116,7 +131,7 @@ fn walk(
         if distance < 0.0 {
             return None;
         }
-        let smoothness = photon_target(scene, hit.object as usize, coats);
+        let smoothness = Smoothness::of(scene, hit.object as usize).filter(|smooth| to.contains(smooth));
         if let Some(smoothness) = smoothness {
             let distance = (point.position - scene.camera.position()).length();
             found.push(Place { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{Part, Place, Smoothness, parts, photon_target, reach};
+use super::photon_focus::{Part, Place, Smoothness, parts, reach};
 use crate::light::{Beam, LeSample, LightId};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
@@ -60,24 +60,25 @@ const EVENLY: f64 = 0.1;
 const MIRRORED: f64 = 0.05;
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, to all objects that photons can be sent to, those with coats too
-    /// or not, of large ones mostly to places that matter; none if there is none, or none of the lights shines there.
+    /// From some lights, given with their luminances, to all objects of some kinds of smoothness, of large ones mostly
+    /// to places that matter; none if there is none, or none of the lights shines there.
     pub(super) fn new(
         scene: &Scene<Table>,
         lights: &[(LightId, f64)],
         places: &[Place],
-        coats: bool,
+        to: &[Smoothness],
         photons: u64,
     ) -> Option<Self> {
         let reach = reach(places);
         let of_object = |object: usize| {
             let has_end = scene.objects[object].shape.is_bounded();
-            photon_target(scene, object, coats).filter(|_| has_end || reach.is_some())
+            let smoothness = Smoothness::of(scene, object).filter(|smooth| to.contains(smooth));
+            smoothness.filter(|_| has_end || reach.is_some())
         };
         let objects: Vec<Option<Smoothness>> = (0..scene.objects.len()).map(of_object).collect();
         let most = (MOST_AIMS / lights.len().max(1)).clamp(1, MOST);
         let mut balls = Vec::new();
-        for smooth in [Smoothness::Whole, Smoothness::Partial] {
+        for smooth in Smoothness::ALL {
             let of_all = || objects.iter().zip(scene.objects.iter()).filter(|(found, _)| **found == Some(smooth));
             let finite = gathered(of_all().filter_map(|(_, object)| object.shape.ball()).collect(), most);
             balls.extend(finite.into_iter().map(|ball| (smooth, ball)));
@@ -215,7 +216,10 @@ fn of_light(
 ) -> Vec<PhotonTarget> {
     let target = |smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
         let beam = scene.lights[light].beam(ball)?;
-        let goes_on = if smoothness == Smoothness::Whole { 1.0 } else { MIRRORED };
+        let goes_on = match smoothness {
+            Smoothness::Whole | Smoothness::Narrow => 1.0,
+            Smoothness::Partial | Smoothness::NarrowPartial => MIRRORED,
+        };
         let flux = beam.flux * luminance * goes_on;
         let guide = if beam.is_apart { disc.clone() } else { even.clone() };
         (flux > 0.0).then_some(PhotonTarget { light, smoothness, photons: 0, share, is_part, beam, guide, flux })

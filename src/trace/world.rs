@@ -208,9 +208,9 @@ impl World {
         let Some(pass) = &self.method.light_pass else { return };
         let sends = |&light: &LightId| self.scene.lights[light].sends_photons();
         let senders: Vec<LightId> = pass.lights.iter().copied().filter(sends).collect();
-        let places = places(&self.scene, &senders, pass.coats);
+        let places = places(&self.scene, &senders, &pass.to);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
-        let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, pass.coats, photons);
+        let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, &pass.to, photons);
         let map = pass.map.and_then(|map| targets_of(map.photons));
         (self.photon_targets, self.map_targets) = (targets_of(pass.photons), map);
     }

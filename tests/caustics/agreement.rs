@@ -4,7 +4,7 @@ use abbe::film::Film;
 use abbe::plan::plan;
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
-use abbe::trace::{LightPass, MapPasses, Method};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use crate::support::larger::larger;
 use crate::support::scenes::{SPLITTING, films_of, moments, object, scene, standard_errors};
@@ -44,8 +44,12 @@ fn films(
     seeds: u64,
 ) -> Vec<Film> {
     let lights = (0..scene.lights.len()).collect();
-    let light_pass =
-        pass.then_some(LightPass { photons: u64::from(samples) * (SIDE * SIDE) as u64, lights, coats: true, map });
+    let light_pass = pass.then_some(LightPass {
+        photons: u64::from(samples) * (SIDE * SIDE) as u64,
+        lights,
+        to: Smoothness::ALL.to_vec(),
+        map,
+    });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
     films_of(scene, &asked, 0..seeds)
 }

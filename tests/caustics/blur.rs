@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use abbe::film::Film;
-use abbe::trace::{Estimate, LightPass, MapPasses, Method, Report, Stop, Stopped, prepare, render};
+use abbe::trace::{Estimate, LightPass, MapPasses, Method, Report, Smoothness, Stop, Stopped, prepare, render};
 use rayon::prelude::*;
 
 use super::agreement::{glass, seen_by, with_method};
@@ -47,8 +47,12 @@ fn moved(x: f64, y: f64, radius: f64) -> f64 {
 /// Renders of eight replicates, with a map of so many photons for each of their passes and a radius in pixels.
 fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) -> Vec<(Film, Report)> {
     let (scene, method) = with_method(text);
-    let light_pass =
-        Some(LightPass { photons: 8192, lights: (0..scene.lights.len()).collect(), coats: false, map: Some(map) });
+    let light_pass = Some(LightPass {
+        photons: 8192,
+        lights: (0..scene.lights.len()).collect(),
+        to: vec![Smoothness::Whole],
+        map: Some(map),
+    });
     let asked = Method { samples, transport: SPLITTING, stop: Some(stop.clone()), light_pass, ..method };
     let one = |seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ());
     (0..count).into_par_iter().map(one).collect()

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use abbe::plan::plan;
-use abbe::trace::{LightPass, Method};
+use abbe::trace::{LightPass, Method, Smoothness};
 
 use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
 use super::gathered::NARROW;
@@ -51,8 +51,12 @@ fn what_a_varnished_floor_mirrors_of_a_spot_has_its_closed_form() {
             );
         let scene = scene(&text);
         let planned = plan(&scene);
-        assert!(planned.method.light_pass.as_ref().is_some_and(|pass| pass.coats), "{:?}", planned.because);
-        let pass = LightPass { photons: 65_536, lights: vec![0], coats: true, map: None };
+        assert!(
+            planned.method.light_pass.as_ref().is_some_and(|pass| pass.to.contains(&Smoothness::Partial)),
+            "{:?}",
+            planned.because
+        );
+        let pass = LightPass { photons: 65_536, lights: vec![0], to: Smoothness::ALL.to_vec(), map: None };
         let method = Method { samples: 1, transport: SPLITTING, light_pass: Some(pass), ..planned.method };
         let films = films_of(&scene, &method, 0..SEEDS);
         let (found, variance) = moments(films.iter().map(|film| mean_color(film)[1]));
@@ -134,7 +138,8 @@ fn photons_to_glass_alone_leave_varnish_to_chance() {
     let scene = scene(&text);
     let planned = plan(&scene).method;
     let by = |coats: bool, photons: u64| {
-        let light_pass = Some(LightPass { photons, lights: vec![0], coats, map: None });
+        let to = if coats { vec![Smoothness::Whole, Smoothness::Partial] } else { vec![Smoothness::Whole] };
+        let light_pass = Some(LightPass { photons, lights: vec![0], to, map: None });
         let method = Method { samples: 32, transport: SPLITTING, light_pass, ..planned.clone() };
         moments(films_of(&scene, &method, 0..16).iter().map(|film| mean_color(film)[1]))
     };

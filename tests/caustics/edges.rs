@@ -2,7 +2,7 @@
 
 use abbe::film::Window;
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use super::agreement::{blocks, seen_by, with_method};
 use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene, standard_errors};
@@ -135,7 +135,8 @@ fn k5_a_thin_table_that_is_lit_from_below_does_not_glow_above() {
     let table = object("matte", "cube = { center = [-0.2, 0, 0], size = [2, 1e-4, 2] }");
     let seen = |height: f64| {
         let scene = scene(&by_mirror(&table, height));
-        let light_pass = Some(LightPass { photons: 32_768, lights: vec![0], coats: false, map: Some(WIDE) });
+        let light_pass =
+            Some(LightPass { photons: 32_768, lights: vec![0], to: vec![Smoothness::Whole], map: Some(WIDE) });
         let method = Method { samples: 4, transport: SPLITTING, light_pass, ..plan(&scene).method };
         mean_color(&film_of(&scene, method))[1]
     };

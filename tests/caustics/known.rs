@@ -2,7 +2,7 @@
 
 use abbe::film::Film;
 use abbe::plan::{Plan, plan};
-use abbe::trace::{LightPass, MapPasses, Method};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use super::agreement::{LAMP, agree, seen_by};
 use crate::support::run::{Answer, Folder, render};
@@ -11,7 +11,8 @@ use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene};
 /// The method of a scene's plan with all lights and so many photons.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
-    let light_pass = Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), coats: false, map: None });
+    let light_pass =
+        Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), to: vec![Smoothness::Whole], map: None });
     let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
     film_of(&scene, method)
 }

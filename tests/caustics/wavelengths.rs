@@ -1,7 +1,7 @@
 //! A map of photons leaves every camera sample the wavelengths that it has without one.
 
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use super::agreement::{ABOVE, FLOOR, agree_with, glass, seen_by};
 use crate::support::scenes::{SPLITTING, film_of, object, scene};
@@ -17,7 +17,12 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
     let scene = scene(&text);
     for samples in [1, 4, 16, 64] {
         let image = |map: Option<MapPasses>| {
-            let light_pass = map.map(|map| LightPass { photons: 4096, lights: vec![1], coats: false, map: Some(map) });
+            let light_pass = map.map(|map| LightPass {
+                photons: 4096,
+                lights: vec![1],
+                to: vec![Smoothness::Whole],
+                map: Some(map),
+            });
             let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
             film_of(&scene, method).pixels
         };

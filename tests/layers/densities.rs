@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use abbe::material::{Material, Scatter};
+use abbe::material::{Arrival, Lobes, Material, Scatter};
 use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 
@@ -18,21 +18,27 @@ const TEXTS: [&str; 6] = [
     "mix = { materials = [\"rough\", \"silver\"], amount = { rgb = [0.1, 0.5, 0.6] } }",
     "mask = { material = \"rough\", opacity = 0.3 }",
 ];
+/// Materials of a narrow lobe and another one.
+const APART: [&str; 3] = [
+    "plastic = { reflectance = { rgb = [0.9, 0.1, 0.5] }, roughness = 0.31 }",
+    "mix = { materials = [\"satin\", \"white\"], amount = { rgb = [0.1, 0.5, 0.6] } }",
+    "mask = { material = \"satin\", opacity = 0.3 }",
+];
 const VIEWS: [f64; 3] = [0.95, 0.5, 0.1];
 const CELLS: [usize; 2] = [12, 16];
-const FINER: usize = 24;
+/// How many times as fine the density is summed, that of narrow lobes alone finer.
+const FINER: [usize; 2] = [24, 60];
 const DRAWS: u64 = 100_000;
 
 /// The share of directions in every cell of cosine and azimuth by their density.
-fn probabilities(material: &Material<Table>, cos: f64) -> Vec<f64> {
-    let draw = Draw::<4>::fixed(3);
-    let arrival = arrival(&draw, toward(cos, 0.0), 1.0);
-    let [up, around] = CELLS.map(|cells| cells * FINER);
+fn probabilities(material: &Material<Table>, arrival: &Arrival<4>) -> Vec<f64> {
+    let finer = FINER[usize::from(arrival.lobes == Lobes::NARROW_REFLECTION)];
+    let [up, around] = CELLS.map(|cells| cells * finer);
     let mut cells = vec![0.0; CELLS[0] * CELLS[1]];
     for (i, j) in (0..up).flat_map(|i| (0..around).map(move |j| (i, j))) {
         let (z, azimuth) = ((i as f64 + 0.5) / up as f64, TAU * (j as f64 + 0.5) / around as f64);
-        let pdf = material.evaluate(&arrival, toward(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
-        cells[i / FINER * CELLS[1] + j / FINER] += pdf * TAU / (up * around) as f64;
+        let pdf = material.evaluate(arrival, toward(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
+        cells[i / finer * CELLS[1] + j / finer] += pdf * TAU / (up * around) as f64;
     }
     cells
 }
@@ -40,11 +46,15 @@ fn probabilities(material: &Material<Table>, cos: f64) -> Vec<f64> {
 #[test]
 fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
     let frame = Frame::about(NORMAL);
-    for (number, text) in TEXTS.into_iter().enumerate() {
+    let of_all = TEXTS.map(|text| (text, Lobes::ALL));
+    let parts = [Lobes::DIFFUSE_REFLECTION, Lobes::NARROW_REFLECTION];
+    let of_parts = APART.into_iter().flat_map(|text| parts.map(|lobes| (text, lobes)));
+    let cases: Vec<_> = of_all.into_iter().chain(of_parts).collect();
+    for (number, &(text, lobes)) in cases.iter().enumerate() {
         let material = material(text);
         for cos in VIEWS {
             let draw = Draw::<4>::fixed(3);
-            let arrival = arrival(&draw, toward(cos, 0.0), 1.0);
+            let arrival = Arrival { lobes, ..arrival(&draw, toward(cos, 0.0), 1.0) };
             let (mut random, mut counts, mut missed) = (Random::new(number as u64), vec![0; CELLS[0] * CELLS[1]], 0);
             let mut branches = Vec::new();
             for _ in 0..DRAWS {
@@ -69,7 +79,7 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
                 }
             }
             // What lies below the surface is the last cell.
-            let mut expected = probabilities(&material, cos);
+            let mut expected = probabilities(&material, &arrival);
             let sum: f64 = expected.iter().sum();
             assert!(sum < 1.0 + 1e-3, "{text}, cos {cos}: the density sums to {sum}");
             if missed == 0 {
@@ -77,8 +87,30 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
             }
             expected.push((1.0 - sum).max(0.0));
             counts.push(missed);
-            let tests = (TEXTS.len() * VIEWS.len()) as u32;
+            let tests = (cases.len() * VIEWS.len()) as u32;
             chi_squared::check(&format!("{text}, cos {cos}"), &counts, &expected, tests);
+        }
+    }
+}
+
+/// What lobes scatter that are asked for one by one is what all of them scatter.
+#[test]
+fn lobes_told_apart_make_up_the_whole() {
+    let draw = Draw::<4>::fixed(3);
+    for text in APART {
+        let material = material(text);
+        assert!(material.lobes().has_narrow_apart(), "{text}");
+        for (cos, z, azimuth) in [(0.95, 0.9, 0.5), (0.5, 0.55, 0.51), (0.1, 0.2, 0.4), (0.7, 0.3, 0.0)] {
+            let of = |lobes: Lobes| {
+                let arrival = Arrival { lobes, ..arrival(&draw, toward(cos, 0.0), 1.0) };
+                material.evaluate(&arrival, toward(z, TAU * azimuth)).expect("both are above the surface").0
+            };
+            let [all, base, narrow] = [Lobes::ALL, Lobes::DIFFUSE_REFLECTION, Lobes::NARROW_REFLECTION].map(of);
+            for lane in 0..3 {
+                let sum = base[lane] + narrow[lane];
+                assert!((sum / all[lane] - 1.0).abs() < 1e-6, "{text}: {sum} for {}", all[lane]);
+                assert!(base[lane] > 0.0 && narrow[lane] > 0.0, "{text}");
+            }
         }
     }
 }

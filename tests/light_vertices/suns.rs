@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use abbe::math::DVec3;
-use abbe::trace::{LightPass, MapPasses, Method, Sunlit, World};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness, Sunlit, World};
 
 use super::{LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, room, screen, smooth, walls};
 use crate::support::scenes::{body, environment, quad, view};
@@ -14,6 +14,8 @@ fn sun(more: &str) -> String {
     SUN.replace(" }\n", &format!(", {more} }}\n"))
 }
 
+const METAL: &str = "conductor = { metal = \"Au\", roughness = 0.3 }";
+const GLOSSY: &str = "plastic = { reflectance = 0.6, index = 1.5, roughness = 0.3 }";
 const PLASTIC: &str = "plastic = { reflectance = 0.6, index = 1.5 }";
 
 /// Mirrors throw its light to where paths from the camera find it by chance often enough to tell a mean.
@@ -147,7 +149,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
     let map = LightPass {
         photons: 8192,
         lights: vec![0],
-        coats: true,
+        to: Smoothness::ALL.to_vec(),
         map: Some(MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 }),
     };
     type Looking = Box<dyn Fn(&World) -> World>;
@@ -202,11 +204,24 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
         ("plastic under a lamp", open("", &[lamp(), plastic(), cubes()]), vec![0], Some(map)),
         ("a smooth mesh of plastic", open("", &[SUN.into(), lamp(), smooth(PLASTIC)]), vec![0, 1], Some(map)),
         ("plastic, and photons that are shown", open("", &[wide(), environment(0.5), plastic()]), vec![0], None),
+        (
+            "metal in the sun",
+            open("", &[SUN.into(), environment(0.5), ball("metal", METAL), cubes()]),
+            vec![0],
+            Some(map),
+        ),
+        ("glossy plastic", open("", &[lamp(), ball("glossy", GLOSSY), cubes()]), vec![0], Some(map)),
+        ("glossy plastic, shown", open("", &[lamp(), ball("glossy", GLOSSY), cubes()]), vec![0], None),
+        ("a smooth mesh of metal", open("", &[SUN.into(), lamp(), smooth(METAL)]), vec![0, 1], Some(map)),
+        ("a smooth mesh of glossy plastic", open("", &[SUN.into(), lamp(), smooth(GLOSSY)]), vec![0, 1], Some(map)),
+        ("metal in a closed room", room(WHITE, "", &[lamp(), ball("metal", METAL)]), vec![0], Some(map)),
+        ("glossy plastic in a closed room", room(WHITE, "", &[lamp(), ball("glossy", GLOSSY)]), vec![0], Some(map)),
         ("photons of the lamp alone", open("", &[SUN.into(), lamp(), environment(0.5), glass()]), vec![1], Some(map)),
     ];
     for (what, text, lights, map) in &rooms {
         let photons = |method: &mut Method| {
-            method.light_pass = Some(LightPass { photons: 8192, lights: lights.clone(), coats: true, map: *map });
+            method.light_pass =
+                Some(LightPass { photons: 8192, lights: lights.clone(), to: Smoothness::ALL.to_vec(), map: *map });
         };
         let worst = assert_same(what, text, &photons, &looking, rooms.len());
         println!("{what}: at most {worst:.1} sigma");

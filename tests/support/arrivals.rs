@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use abbe::material::{Arrival, Index, Material, Scatter};
+use abbe::material::{Arrival, Index, Lobes, Material, Scatter};
 use abbe::math::{DVec3, Frame};
 use abbe::spectrum::{Basis, ColorSpace, Draw, Table, Waves};
 use abbe::trace::prepare;
@@ -15,6 +15,7 @@ pub const PARTS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
     [material.pane]\nthin = { index = 1.5 }\n\
     [material.smooth]\nplastic = { reflectance = 1 }\n\
     [material.rough]\nplastic = { reflectance = 1, roughness = 0.4 }\n\
+    [material.satin]\nplastic = { reflectance = { rgb = [0.9, 0.1, 0.5] }, roughness = 0.31 }\n\
     [material.silver]\nconductor = { n = 1e-6, k = 100, roughness = 0.6 }\n";
 
 /// A metal that takes less than 1e-9 of the light at right angles.
@@ -42,6 +43,7 @@ static WAVES: LazyLock<Waves> = LazyLock::new(|| Basis::rgb(ColorSpace::Rec709).
 pub fn arrival<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Arrival<'_, N> {
     let [incident, beyond] = [Index::Same(index); 2];
     Arrival {
+        lobes: Lobes::ALL,
         wo,
         normal: NORMAL,
         uv: [0.0; 2],

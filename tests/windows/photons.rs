@@ -1,6 +1,6 @@
 //! Photons and panes: each path is found once, by the light pass or by the camera's paths.
 
-use abbe::trace::{LightPass, MapPasses, Method};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use crate::support::scenes::{Mean, SPLITTING, body, films_of, method, scene, view};
 
@@ -31,7 +31,7 @@ fn mean(text: &str, light_pass: bool, map: bool) -> Mean {
     let scene = scene(text);
     let map = map.then_some(MapPasses { count: 4, photons: 20_000, radius: 1.0, chance: 1.0 });
     let lights = (0..scene.lights.len()).collect();
-    let light_pass = light_pass.then_some(LightPass { photons: 60_000, lights, coats: false, map });
+    let light_pass = light_pass.then_some(LightPass { photons: 60_000, lights, to: vec![Smoothness::Whole], map });
     let asked = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
     Mean::over_seeds(&films_of(&scene, &asked, 0..8))
 }

@@ -42,7 +42,7 @@ pub struct DirectLighting<'a, const N: usize, P> {
 
 /// A side of the surface, from which lights are sampled.
 #[derive(Clone, Copy)]
-struct Side {
+struct Side<'s, const N: usize> {
     /// The surface's own unit normal on that side.
     normal: DVec3,
     /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
@@ -51,6 +51,8 @@ struct Side {
     inside: Option<MaterialId>,
     /// Whether lanes have parted on the way from the light to the camera.
     parted: bool,
+    /// The surface without the lobe that is left to photons, if one is, for lights that send them.
+    beside_photons: Option<&'s Interaction<'s, N>>,
 }
 
 /// A ray to a light, and what is left to know of its light once the ray is known to be free.
@@ -74,7 +76,10 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     /// one of them chosen by chance.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) -> f64 {
         let (at, parted) = (self.at, self.path.parted);
-        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted };
+        let is_left = self.path.leaves_narrow_to_photons(self.world, at);
+        let beside_photons = is_left.then(|| at.of_lobes(Lobes::DIFFUSE_REFLECTION));
+        let beside_photons = beside_photons.as_ref();
+        let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted, beside_photons };
         if !at.lobes.intersects(Lobes::GLOSSY_TRANSMISSION) {
             self.gather_side(&near, sampler, sensor);
             return 1.0;
@@ -92,7 +97,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         chance
     }
 
-    fn gather_side(&self, side: &Side, sampler: &Sampler, sensor: &mut Sensor<N>) {
+    fn gather_side(&self, side: &Side<N>, sampler: &Sampler, sensor: &mut Sensor<N>) {
         let (lights, key) = (&self.world.scene.lights, self.path.key);
         let mut take = |drawn: SampledLight, [u, v]: [f64; 2]| {
             let u = if lights[drawn.light].has_parts() { finer(u, sampler.four_plain(key, MORE_DIGITS)[1]) } else { u };
@@ -120,33 +125,45 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     }
 
     /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
-    fn shadow_ray(&self, side: &Side, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
-        let (normal, arrival) = (side.normal, &self.at.arrival);
+    fn shadow_ray(&self, side: &Side<N>, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
+        let normal = side.normal;
         let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
-        let wi = sample.ray.direction;
+        let at = self.lit_by(side, drawn.light, &sample.ray);
+        let (arrival, wi) = (&at.arrival, sample.ray.direction);
         let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
         if wi.dot(normal) <= 0.0 || self.found_at.is_some_and(is_found) {
             return None;
         }
         let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
-        let (bsdf_cos, bsdf_pdf) = shading::evaluate(self.at.material, arrival, flat, wi)?;
+        let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(at.material, arrival, flat, wi)?;
+        if !std::ptr::eq(at, self.at) {
+            // Where photons bring what the path meets, it finds no light by itself.
+            bsdf_pdf = 0.0;
+        }
         let (light, probability) = (drawn.light, drawn.probability * side.chance.unwrap_or(1.0));
         let factor = self.factor(&sample, probability, bsdf_pdf);
         factor.is_finite().then_some(ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor })
     }
 
+    /// The surface, as a light may light it along a ray.
+    fn lit_by<'s>(&'s self, side: &Side<'s, N>, light: LightId, ray: &Ray) -> &'s Interaction<'s, N> {
+        side.beside_photons.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.at)
+    }
+
     /// Hands what comes by a ray to the sensor, unless something occludes the light.
-    fn trace(&self, side: &Side, shadow_ray: &ShadowRay<N>, sensor: &mut Sensor<N>) {
-        let (world, arrival) = (self.world, &self.at.arrival);
+    fn trace(&self, side: &Side<N>, shadow_ray: &ShadowRay<N>, sensor: &mut Sensor<N>) {
+        let world = self.world;
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
+        let at = self.lit_by(side, *light, ray);
+        let arrival = &at.arrival;
         let ends = Ends { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
         let passage = Passage { ray, distance, ends, inside, past: Past::Objects(self.path.among), last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
-        let toward = || self.path.polarization.toward(self.at, wi, &mut bsdf_cos);
+        let toward = || self.path.polarization.toward(at, wi, &mut bsdf_cos);
         let arriving = passage.arriving(world, arrival.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
         let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
@@ -161,7 +178,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: side.parted };
         let met = MetLight::new(world, &arrived, self.excitation);
         let (rgb, dispersed) = (met.rgb, met.dispersed);
-        let moved = self.path.polarization.moved(self.at, wi, on_its_way, &met);
+        let moved = self.path.polarization.moved(at, wi, on_its_way, &met);
         let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
         let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);

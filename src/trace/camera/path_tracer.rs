@@ -389,7 +389,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let lighting =
                 DirectLighting { world, path, at, excitation, goes_on, all_lights, last_occluder, u, aiming, found_at };
             let chance = lighting.gather(sampler, &mut self.sensor);
-            if gathers && goes_on && path.kind != PathKind::Camera {
+            if gathers && goes_on && path.kind != PathKind::Camera && !path.leaves_all_to_photons(world, at) {
                 self.gather_photons(path, at, sampler);
             }
             let resampled = goes_on && self.resample(path, at, sampler);
@@ -485,8 +485,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Whether the light of the path's way to a light is found by photons, or was looked for at light vertices.
     fn is_found_otherwise(&self, path: &Path<N, P>, light: LightId) -> bool {
         let world = self.walker.world;
-        let is_smooth = path.kind == PathKind::Smooth { aimed: true } && path.among == Among::All;
-        (is_smooth && world.is_found_by_photons(light, &path.ray))
+        let is_left = path.left_to_photons && path.among == Among::All;
+        (is_left && world.is_found_by_photons(light, &path.ray))
             || self.found_at(path).is_some_and(|at| at.carry(world, light, &path.ray))
     }
 

@@ -3,15 +3,19 @@
 use std::f64::consts::PI;
 
 use crate::light::{LeSample, LightId};
-use crate::material::{Arrival, Branch, Material, Scatter};
+use crate::material::{Arrival, Branch, Lobes, Material, Scatter};
 use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::walk::{Departure, Interaction, Onward, Path, PathKind, Polarization, Polarized, Walker, shading};
-use crate::trace::{Smoothness, World, photon_target};
+use crate::trace::{Smoothness, World};
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
+/// That of what a narrow lobe sends on by itself.
+const BY_NARROW: usize = 65;
+/// How often a material draws where a photon goes that meets it at a shading normal of its own, unless it is diffuse.
+const BY_MATERIAL: f64 = 0.5;
 /// Use of the random numbers where a photon leaves a surface, and where it passes one or not.
 const SCATTER: u32 = 4;
 const STRAIGHT: u32 = 9;
@@ -52,8 +56,8 @@ impl<const N: usize, P> Landing<'_, N, P> {
 /// Which surfaces a photon goes on from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surfaces {
-    /// Smooth ones. The first must be one that photons are sent to: paths by way of others are left to the camera's
-    /// rays.
+    /// Smooth ones, and by narrow lobes such as have no other. The first must be one that photons are sent to, and may
+    /// have others: paths by way of others are left to the camera's rays.
     Smooth,
     /// All.
     All,
@@ -97,20 +101,16 @@ fn advance<const N: usize, P: Polarization<N>>(
     {
         return;
     }
-    let mut is_left_to_photons = false;
-    if path.vertices == 0 {
-        let is_target = world.is_photon_target(meeting.hit.object, meeting.point.position);
-        match over {
-            Surfaces::Smooth if !is_target => return,
-            Surfaces::AllButPhotons if is_target && world.sends_photons(photon.light) => {
-                if photon_target(&world.scene, meeting.hit.object as usize, true) == Some(Smoothness::Whole) {
-                    return;
-                }
-                is_left_to_photons = true;
-            }
-            Surfaces::All | Surfaces::AllButPhotons if !is_target => path.kind = PathKind::Wide,
-            _ => {}
-        }
+    let is_first = path.vertices == 0;
+    let is_smooth = is_first || path.kind == PathKind::Other;
+    let is_target = is_smooth && world.is_photon_target(meeting.hit.object, meeting.point.position);
+    // Whether gathered photons bring what smooth lobes send on.
+    let is_left = is_target && over != Surfaces::Smooth && world.has_map() && world.sends_photons(photon.light);
+    match over {
+        Surfaces::Smooth if is_first && !is_target => return,
+        Surfaces::AllButPhotons if is_left && leaves_all(world, meeting.hit.object) => return,
+        Surfaces::All | Surfaces::AllButPhotons if is_first && !is_target => path.kind = PathKind::Wide,
+        _ => {}
     }
     let boundary = match walker.boundary(path, &meeting) {
         Ok(boundary) => boundary,
@@ -129,14 +129,29 @@ fn advance<const N: usize, P: Polarization<N>>(
     // As often as light may leave surfaces on its way from the camera.
     let allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
-    if at.lobes.is_wide() && allowed && shown {
+    if at.lobes.is_wide() && allowed && shown && !(path.is_narrow && at.lobes.is_narrow()) {
         land(walker, &Landing { path, at: &at, photon });
+    }
+    let goes_on = path.surfaces() < world.method.max_bounces;
+    let is_narrow = at.lobes.is_narrow() || (is_first && at.lobes.has_narrow_apart());
+    let tells_narrow = is_target && is_narrow && (over == Surfaces::Smooth || is_left);
+    if tells_narrow && goes_on && over != Surfaces::AllButPhotons {
+        let path = Path { key: path.key.child(BY_NARROW), ..*path };
+        scatter(walker, &path, &at.of_lobes(Lobes::NARROW_REFLECTION), sampler);
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
-    } else if allowed && path.surfaces() < world.method.max_bounces {
-        scatter(walker, path, &at, sampler, is_left_to_photons);
+    } else if allowed && goes_on {
+        let delta = if is_left && over == Surfaces::AllButPhotons { Lobes::DELTA } else { Lobes::NONE };
+        let narrow = if tells_narrow { Lobes::NARROW_REFLECTION } else { Lobes::NONE };
+        scatter(walker, path, &at.of_lobes(Lobes::ALL.without(delta.union(narrow))), sampler);
     }
+}
+
+/// Whether all light that goes on from an object is left to photons that are sent there.
+fn leaves_all(world: &World, object: u32) -> bool {
+    let smoothness = Smoothness::of(&world.scene, object as usize);
+    matches!(smoothness, Some(Smoothness::Whole | Smoothness::Narrow))
 }
 
 /// Lets a photon go straight on, and answers whether it does not meet the surface as well. One that carries little does
@@ -166,34 +181,44 @@ fn passes<const N: usize, P: Polarization<N>>(
     false
 }
 
-/// Lets a photon go on from a surface that scatters widely, with the share that the camera would see of the way back,
-/// or only where it is scattered widely.
+/// Lets a photon go on from a surface that scatters widely, by the lobes that are asked for, with the share that the
+/// camera would see of the way back.
 fn scatter<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
     at: &Interaction<N>,
     sampler: &Sampler,
-    is_only_wide: bool,
 ) {
     let Interaction { material, point, arrival, flat, .. } = at;
     let u = sampler.four(path.key, SCATTER);
     walker.branches.clear();
     if point.shading == point.normal {
         material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
-        walker.branches.retain(|branch| branch.pdf.is_some() || !is_only_wide);
         walker.polarize(path, at);
         if !matches!(material, Material::Diffuse(_)) {
             walker.branches.iter_mut().filter(|branch| branch.pdf.is_some()).for_each(|branch| turn_back(at, branch));
         }
         send_forward(arrival, &mut walker.branches);
     } else {
-        // By shading normals that depend on the viewer, not every direction is drawn from which light arrives.
-        let local = cosine_hemisphere([u[0], u[1]]);
-        let wi = unit(Frame::about(*flat).to_world(local));
-        let share = seen_from(at, wi).map(|bsdf_cos| bsdf_cos * (PI / arrival.wo.dot(*flat)) as f32);
-        let wide =
-            |share| Branch { wi, share, pdf: Some(local.z / PI), crosses: false, eta_scale: 1.0, polarization: 0.0 };
-        walker.branches.extend(share.map(wide));
+        // By shading normals that depend on the viewer, not every direction is drawn from which light arrives: of those
+        // that the material draws, only a part.
+        let by_material = if at.lobes.is_diffuse() { 0.0 } else { BY_MATERIAL };
+        if u[2] < by_material {
+            shading::scatter(material, arrival, *flat, [u[0], u[1]], &mut walker.branches);
+        } else {
+            let wi = unit(Frame::about(*flat).to_world(cosine_hemisphere([u[0], u[1]])));
+            walker.branches.push(Branch::drawn(wi, Lanes::ZERO, 0.0));
+        }
+        walker.branches.retain_mut(|branch| {
+            let (is_wide, cos) = (branch.pdf.is_some() && !branch.crosses, branch.wi.dot(*flat));
+            let Some(seen) = seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
+            let of_material = || shading::evaluate(material, arrival, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
+            let of_material = if by_material > 0.0 { of_material() } else { 0.0 };
+            let pdf = by_material * of_material + (1.0 - by_material) * cos / PI;
+            branch.share = seen * (cos / (arrival.wo.dot(*flat) * pdf)) as f32;
+            branch.pdf = Some(pdf);
+            true
+        });
         walker.polarize(path, at);
     }
     walker.follow(&mut Departure::new(walker.world, path, at).of_light_path(), sampler);

@@ -73,7 +73,7 @@ pub fn probe(world: &World) -> Probe {
 fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let places: Vec<_> = world.scene.film.window().middles_of_cells(SIDE).collect();
     // Tables that are computed when first needed are no part of a sample's time.
-    let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness > 0.0);
+    let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness.value() > 0.0);
     if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
         let mut tracer = PathTracer::<N, P>::new(world);
         for &[x, y] in &places[..SIDE as usize] {

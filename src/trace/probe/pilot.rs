@@ -68,7 +68,7 @@ pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
 fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     let mut world = whole.of_the_format();
     let Some(targets) = &whole.photon_targets else { return Vec::new() };
-    let smooth = [Smoothness::Whole, Smoothness::Partial].into_iter().filter(|&smooth| targets.aim_at(smooth));
+    let smooth = Smoothness::ALL.into_iter().filter(|&smooth| targets.aim_at(smooth));
     let lights = whole.photon_light_groups();
     let groups: Vec<_> = smooth.flat_map(|smooth| lights.iter().map(move |lights| (lights.clone(), smooth))).collect();
     let photons = (ALL / groups.len().max(1) as u64).min(PHOTONS);

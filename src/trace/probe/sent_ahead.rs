@@ -137,7 +137,7 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
     use crate::spectrum::{Basis, ColorSpace};
-    use crate::trace::{Method, Transport};
+    use crate::trace::{Method, Smoothness, Transport};
 
     /// A scene whose first light sends so many photons.
     fn sending(photons: u64, text: &str) -> World {
@@ -147,7 +147,7 @@ mod tests {
         World::new(&scene, method).with_light_pass(Some(LightPass {
             photons,
             lights: vec![0],
-            coats: false,
+            to: vec![Smoothness::Whole],
             map: None,
         }))
     }

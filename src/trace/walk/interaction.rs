@@ -89,6 +89,11 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { arrival, parts, ..self }
     }
 
+    /// With some of its lobes alone.
+    pub fn of_lobes(&self, lobes: Lobes) -> Self {
+        Self { arrival: Arrival { lobes, ..self.arrival }, ..*self }
+    }
+
     /// As the light sees it that excites a dye: white, in lanes that stand for what excites.
     pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let arrival = Arrival { draw, present: draw.start(), ..self.arrival };
@@ -126,5 +131,6 @@ pub fn arrival<'a, const N: usize>(
         beyond: media::index_around(&world.scene, sides[1]),
         direction_indices: media::direction_indices(&world.scene, sides),
         together: world.method.together,
+        lobes: Lobes::ALL,
     }
 }

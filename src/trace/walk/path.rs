@@ -36,6 +36,11 @@ pub struct Path<const N: usize, P = Polarized> {
     pub length: f64,
     /// What kind of path it is so far.
     pub kind: PathKind,
+    /// Whether photons bring the light that comes straight along its ray from lights that send them.
+    pub left_to_photons: bool,
+    /// Whether the surface that last scattered it in every direction did so by a narrow lobe alone. Photons do not land
+    /// there after a narrow lobe: what one such surface shows of another, the camera's rays find soon.
+    pub is_narrow: bool,
     /// How often the path may still leave a diffuse surface.
     pub diffuse_left: u32,
     /// How the last direction was sampled; none after the camera or a smooth surface.
@@ -77,8 +82,8 @@ pub enum PathKind {
     PastHidden,
     /// Scattered widely by a surface from which photons are shown to the camera or gathered.
     Wide,
-    /// After that over smooth surfaces alone; `aimed` says whether photons are sent to the last one.
-    Smooth { aimed: bool },
+    /// After that over smooth surfaces alone.
+    Smooth,
     /// Another way.
     Other,
 }
@@ -89,23 +94,28 @@ impl PathKind {
         matches!(self, Self::Camera | Self::PastHidden)
     }
 
-    /// After the surface of a body that is hidden inside another; `aimed` as below.
-    pub fn past_hidden(self, aimed: impl FnOnce() -> bool) -> Self {
+    /// Whether photons may have brought its light to the last surface that scattered it widely.
+    pub fn is_of_photons(self) -> bool {
+        matches!(self, Self::Wide | Self::Smooth)
+    }
+
+    /// After the surface of a body that is hidden inside another.
+    pub fn past_hidden(self) -> Self {
         match self {
             Self::Camera | Self::PastHidden => Self::PastHidden,
-            Self::Wide | Self::Smooth { .. } => Self::Smooth { aimed: aimed() },
+            Self::Wide | Self::Smooth => Self::Smooth,
             Self::Other => Self::Other,
         }
     }
 
-    /// After one more surface; `wide` says whether light left it by a density of directions, `aimed` whether photons
-    /// are sent to its object; none if light cannot be followed forward the same way. Photons are shown from the first
-    /// surface alone, and gathered from all others if they are at all.
-    pub fn then(self, gathers: bool, wide: bool, aimed: impl FnOnce() -> Option<bool>) -> Self {
+    /// After one more surface; `wide` says whether light left it by a density of directions, and `followed` whether it
+    /// can be followed forward the same way. Photons are shown from the first surface alone, and gathered from all
+    /// others if they are at all.
+    pub fn then(self, gathers: bool, wide: bool, followed: impl Fn() -> bool) -> Self {
         match (self, wide) {
             (Self::Camera, true) => Self::Wide,
             (_, true) if gathers => Self::Wide,
-            (Self::Wide | Self::Smooth { .. }, false) => aimed().map_or(Self::Other, |aimed| Self::Smooth { aimed }),
+            (Self::Wide | Self::Smooth, false) if followed() => Self::Smooth,
             _ => Self::Other,
         }
     }
@@ -181,6 +191,8 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             hidden: 0,
             length: 0.0,
             kind,
+            left_to_photons: false,
+            is_narrow: false,
             diffuse_left: world.method.diffuse_bounces,
             scatter: None,
             polarization,
@@ -227,6 +239,20 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
             return self.first;
         }
         Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, arrival, wi, crosses))
+    }
+
+    /// Whether photons bring what a narrow lobe of a surface sends on to it of the light that lights which send photons
+    /// shine there straight.
+    #[inline]
+    pub fn leaves_narrow_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
+        let has_landed = self.kind.is_of_photons() && !self.is_narrow && self.among == Among::All;
+        has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
+    }
+
+    /// Whether the surface scatters widely by that lobe alone: then photons go on from it as from smooth ones.
+    #[inline]
+    pub fn leaves_all_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
+        at.lobes.is_narrow() && self.leaves_narrow_to_photons(world, at)
     }
 
     /// Its ray, as it arrives at a surface.

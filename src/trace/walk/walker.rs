@@ -4,13 +4,13 @@ use std::cell::Cell;
 
 use super::audit::Audit;
 use super::interaction::{Interaction, Meeting};
-use super::path::{Among, Path, ScatterSample};
+use super::path::{Among, Path, PathKind, ScatterSample};
 use super::polarization::{Onward, Polarization};
 use super::polarized::Polarized;
 use super::roulette::{LONG, survival};
 use super::slots::Slots;
 use super::{shading, straight};
-use crate::material::{Branch, Straight};
+use crate::material::{Branch, Lobes, Straight};
 use crate::math::Sampler;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
@@ -113,10 +113,13 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// Makes the path pending that goes on through a hidden surface as if nothing were there.
     #[cold]
     pub fn go_on_past(&mut self, path: &Path<N, P>, meeting: &Meeting, Hidden(boundary): &Hidden) {
-        let kind = path.kind.past_hidden(|| self.world.is_photon_target(meeting.hit.object, meeting.point.position));
+        let kind = path.kind.past_hidden();
+        let left_to_photons =
+            kind == PathKind::Smooth && self.world.is_photon_target(meeting.hit.object, meeting.point.position);
         let next = self.pending.add(|| *path);
         // No light was sampled through this surface, so what the path meets beyond counts in full.
-        *next = Path { scatter: None, key: path.key.child(0), media: path.media.beyond(boundary), kind, ..*path };
+        let (key, media) = (path.key.child(0), path.media.beyond(boundary));
+        *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
         next.ray = meeting.point.leave(path.ray.direction);
         (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
     }
@@ -336,10 +339,11 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
             return;
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
-        let aimed = || {
-            let followed = shading::is_plain(at.point, at.arrival.wo, branch.wi, crosses);
-            followed.then(|| world.is_photon_target(at.object, at.point.position))
-        };
+        let followed = || shading::is_plain(at.point, at.arrival.wo, branch.wi, crosses);
+        let left_to_photons = wide && path.leaves_narrow_to_photons(world, at);
+        let goes_on_smoothly = left_to_photons && at.lobes.is_narrow();
+        // A photon that leaves by the lobe that is left to photons has come over smooth surfaces alone.
+        let lands = wide && at.arrival.lobes != Lobes::NARROW_REFLECTION;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
         next.left = path.left;
@@ -350,7 +354,18 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         next.key = path.key.child(number);
         (next.vertices, next.hidden) = (path.vertices, path.hidden);
         next.length = path.length;
-        next.kind = path.kind.then(world.has_map(), wide, aimed);
+        next.kind = match goes_on_smoothly {
+            true => PathKind::Smooth,
+            false => path.kind.then(world.has_map(), lands, followed),
+        };
+        next.left_to_photons = match wide {
+            true => left_to_photons,
+            false => next.kind == PathKind::Smooth && world.is_photon_target(at.object, at.point.position),
+        };
+        next.is_narrow = match wide && !goes_on_smoothly {
+            true => at.lobes.intersection(at.arrival.lobes).is_narrow(),
+            false => path.is_narrow,
+        };
         next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_count) && at.lobes.is_diffuse());
         next.scatter = branch.pdf.and_then(|pdf| self.scatter.map(|scatter| scatter.toward(pdf, crosses)));
         next.polarization.become_along(&path.polarization, at, branch, way);

@@ -1,0 +1,91 @@
+//! Caustics of surfaces that are nearly smooth: what polished metal and glossy coats reflect by a narrow lobe.
+
+use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
+use super::gathered::NARROW;
+use super::materials::{BENT, ROUND_LAMP};
+use crate::support::scenes::object;
+
+const METAL: &str = "[material.metal]\nconductor = { metal = \"Au\", roughness = 0.3 }\n";
+const GLOSSY: &str =
+    "[material.glossy]\nplastic = { reflectance = { rgb = [0.4, 0.3, 0.2] }, index = 1.5, roughness = 0.3 }\n";
+/// Half mirror, half glossy plastic; two thirds of that.
+const MIX: &str = "[material.mirror]\nmirror = { reflectance = 0.9 }\n\
+                   [material.half]\nmix = { materials = [\"mirror\", \"glossy\"], amount = 0.5 }\n\
+                   [material.mixed]\nmask = { material = \"half\", opacity = 0.67 }\n";
+
+#[test]
+fn a_ball_under_a_lamp() {
+    for (what, material) in [("metal", METAL), ("glossy", GLOSSY), ("mixed", &(GLOSSY.to_owned() + MIX))] {
+        let text = seen_by(ABOVE, "") + FLOOR + LAMP + material + &object(what, BALL) + &object("lamp", ROUND_LAMP);
+        agree(what, &text, 32);
+    }
+}
+
+/// What one mirrors lands on the others: on matte ones and, from smooth surfaces alone, on metal.
+#[test]
+fn all_kinds_in_the_sun_on_a_glossy_floor() {
+    let text = seen_by(ABOVE, "")
+        + GLOSSY
+        + MIX
+        + METAL
+        + &glass("index = 1.5")
+        + &object("glossy", "plane = { point = [0, 0, 0], normal = [0, 1, 0] }")
+        + &object("metal", "quad = { center = [-0.9, 0.5, 0], u = [0, 0, 1], v = [0.2, 0.5, 0] }")
+        + &object("metal", "sphere = { center = [0.2, 0.3, 0.6], radius = 0.3 }")
+        + &object("mixed", "cube = { center = [0.6, 0.5, -0.6], size = [0.6, 1, 0.6] }")
+        + &object("glass", "sphere = { center = [0.5, 0.4, 0.1], radius = 0.3 }")
+        + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 20, irradiance = 3 }\n";
+    agree("all kinds", &text, 32);
+    let few = |bounces: u32| text.clone() + &format!("[render]\nmax_bounces = {bounces}\n");
+    agree("all kinds, two bounces", &few(2), 32);
+    agree_with("all kinds, gathered", &few(4), [32; 2], Some(NARROW));
+}
+
+#[test]
+fn bent_normals_and_a_polarizer_before_the_wall() {
+    for material in [METAL, &GLOSSY.replace("glossy", "metal")] {
+        let text = seen_by(ABOVE, "")
+            + LAMP
+            + material
+            + "[material.wall]\ndiffuse = { reflectance = 0.8 }\n[material.sheet]\npolarizer = { axis = [0, 1, 0] }\n"
+            + &object("metal", BENT)
+            + &object("wall", "quad = { center = [-0.9, 0.5, 0], u = [0, 0, 1], v = [0, 0.5, 0] }")
+            + &object("sheet", "quad = { center = [-0.7, 0.5, 0.4], u = [0, 0, 0.4], v = [0, 0.5, 0] }")
+            + &object("lamp", ROUND_LAMP);
+        agree("bent", &text, 32);
+    }
+}
+
+/// In water that the camera sees or does not see, whose surface the light crosses first.
+#[test]
+fn a_ball_in_water() {
+    for seen in ["", "visible_to_camera = false\n"] {
+        let text = seen_by(ABOVE, "")
+            + FLOOR
+            + LAMP
+            + &glass("index = 1.33")
+            + METAL
+            + &object("glass", "cube = { center = [0, 0.3, 0], size = 1.4 }")
+            + seen
+            + &object("metal", "sphere = { center = [0.2, 0.5, 0], radius = 0.3 }")
+            + &object("metal", "sphere = { center = [-0.9, 0.4, 0], radius = 0.15 }")
+            + &object("lamp", "sphere = { center = [0, 4, 0], radius = 0.8 }");
+        agree("in water", &text, 64);
+        agree_with("in water, gathered", &text, [64; 2], Some(NARROW));
+    }
+}
+
+#[test]
+fn what_metal_throws_is_seen_in_a_mirror() {
+    let text = seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
+        + FLOOR
+        + LAMP
+        + METAL
+        + GLOSSY
+        + MIX
+        + &object("mirror", "quad = { center = [0, 2, -2], u = [3, 0, 0], v = [0, 2, 0.3] }")
+        + &object("metal", BALL)
+        + &object("glossy", "cube = { center = [1.2, 0.4, 0.3], size = 0.8 }")
+        + &object("lamp", "sphere = { center = [0.5, 5, 0], radius = 0.6 }");
+    agree_with("in a mirror", &text, [64; 2], Some(NARROW));
+}
