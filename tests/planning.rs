@@ -7,6 +7,7 @@
 mod caustics;
 mod chains;
 mod choices;
+mod ordinary;
 mod rooms;
 mod small;
 mod stokes;

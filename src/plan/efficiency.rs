@@ -4,7 +4,7 @@ use crate::light::{Light, LightId, Point, Spot};
 use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Emission, apply};
-use crate::trace::{PhotonWorth, SampleWorth, Smoothness, World, photons_worth, samples_worth};
+use crate::trace::{PhotonWorth, Smoothness, World, photons_worth, pilot_noise};
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
@@ -24,49 +24,37 @@ pub(super) struct Worth {
 
 /// Weighs photons of some lights, which the world sends, against chance.
 ///
-/// An image of n_p camera samples and n_l photons has the variance A / n_p + sum B_i / n_i in the time C_p n_p + sum
-/// C_i n_i; their product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A C_p) + sum sqrt(B_i
-/// C_i))^2. A light that is left to chance adds K to A: a camera sample that meets the lamp sees f of its radiance, and
-/// does so as often as makes the mean right, so that its second moment is f times the mean. Rays followed stand for
-/// time, so that the plan is the same everywhere. How many photons there are is found when all else is decided.
+/// A light that is left to chance adds to the noise of camera samples: one that meets the lamp sees f of its radiance,
+/// and does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there
+/// are is found when all else is decided.
 pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> Worth {
-    let samples = samples_worth(world);
-    let film = scene.film;
-    let pixels = f64::from(film.width) * f64::from(film.height);
     let mut colors = Distinct::default();
-    let with_chance = |photons: PhotonWorth| {
+    let mut spike = |photons: &PhotonWorth| {
         let to = Sent::new(scene, photons.to);
-        let of_light = |light: &LightId| match to.shows(*light, size(*light), &mut colors) {
-            Some(shown) => (0..3).map(|i| LEFT * shown[i] * photons.brings[i]).sum::<f64>().abs() * pixels,
-            None => f64::INFINITY,
-        };
-        let left = photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64;
-        (photons, left)
+        let of_light = |light: &LightId| to.shows(*light, size(*light), &mut colors).unwrap_or(f64::INFINITY);
+        LEFT * photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64
     };
-    let mut known: Vec<(PhotonWorth, f64)> = photons_worth(world).into_iter().map(with_chance).collect();
+    let mut known: Vec<_> = photons_worth(world).into_iter().map(|photons| (spike(&photons), photons)).collect();
     // Those first whose photons save most.
-    known.sort_by(|(a, of_a), (b, of_b)| (of_b * a.variance * a.rays).total_cmp(&(of_a * b.variance * b.rays)));
-    let total = |sent: usize| product(&samples, &known, sent);
-    let best = (0..=known.len()).min_by(|&a, &b| total(a).total_cmp(&total(b))).unwrap_or(0);
-    let best = if total(0) > CLEARLY * total(best) { best } else { 0 };
-    let gain = total(0) / total(if best == 0 { known.len() } else { best });
-    let gain = (gain.is_finite() && !known.is_empty()).then_some(gain);
-    let of_smooth = known.iter().any(|(photons, _)| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
-    Worth { of_smooth, photons: known.into_iter().take(best).map(|light| light.0).collect(), gain }
+    let saves = |(spike, photons): &(f64, PhotonWorth)| spike * photons.brings.iter().sum::<f64>().abs();
+    let costs = |photons: &PhotonWorth| photons.variance * photons.rays;
+    known.sort_by(|a, b| (saves(b) * costs(&a.1)).total_cmp(&(saves(a) * costs(&b.1))));
+    let of_smooth = known.iter().any(|(_, photons)| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
+    let (spikes, mut photons): (Vec<f64>, Vec<PhotonWorth>) = known.into_iter().unzip();
+    let noise = pilot_noise(world);
+    let totals: Vec<f64> = (0..=photons.len()).map(|sent| noise.least_work(&photons, &spikes, sent)).collect();
+    let best = (0..totals.len()).min_by(|&a, &b| totals[a].total_cmp(&totals[b])).unwrap_or(0);
+    let best = if totals[0] > CLEARLY * totals[best] { best } else { 0 };
+    let gain = totals[0] / totals[if best == 0 { photons.len() } else { best }];
+    let gain = (gain.is_finite() && !photons.is_empty()).then_some(gain);
+    photons.truncate(best);
+    Worth { photons, gain, of_smooth }
 }
 
 /// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an
 /// image.
 pub(super) fn rounded(photons: f64) -> f64 {
     libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
-}
-
-/// The least product of time and variance where the first lights send photons.
-fn product(samples: &SampleWorth, known: &[(PhotonWorth, f64)], sent: usize) -> f64 {
-    let left: f64 = known[sent..].iter().map(|light| light.1).sum();
-    let photons: f64 = known[..sent].iter().map(|(photons, _)| (photons.variance * photons.rays).sqrt()).sum();
-    let root = ((samples.variance + left) * samples.rays).sqrt() + photons;
-    root * root
 }
 
 /// Objects that photons are sent to.
@@ -89,11 +77,11 @@ impl<'a> Sent<'a> {
         (0..self.scene.objects.len()).filter(|&object| Smoothness::of(self.scene, object) == Some(self.to))
     }
 
-    /// XYZ of the radiance of a light of a solid angle as they show it: of one that is smaller than what they spread it
-    /// into, about its irradiance over that. None of one that has no extent where they spread nothing.
-    fn shows(&self, light: LightId, size: f64, colors: &mut Distinct<[f64; 3]>) -> Option<[f64; 3]> {
+    /// X + Y + Z of the radiance of a light of a solid angle as they show it: of one that is smaller than what they
+    /// spread it into, about its irradiance over that. None of one that has no extent where they spread nothing.
+    fn shows(&self, light: LightId, size: f64, colors: &mut Distinct<[f64; 3]>) -> Option<f64> {
         let light = &self.scene.lights[light];
-        let blurred = size / (size + self.spread);
+        let blurred = if self.spread > 0.0 { size / (size + self.spread) } else { 1.0 };
         let factor = match light {
             Light::Area(area) => area.brightness() * blurred,
             Light::Environment(environment) => environment.bright()?.radiance() * blurred,
@@ -106,7 +94,7 @@ impl<'a> Sent<'a> {
         };
         let space = self.scene.film.color_space;
         let color = colors.of(light.emission(), |curve| Emission::new(curve, space).color());
-        Some(apply(&space.to_xyz(), color.map(|x| x * factor)))
+        Some(apply(&space.to_xyz(), color).iter().sum::<f64>() * factor)
     }
 
     /// From a place to the nearest of them.

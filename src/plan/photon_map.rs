@@ -110,7 +110,7 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
 /// same everywhere.
 fn photons(worth: &GatheredWorth) -> f64 {
     let samples = worth.samples;
-    let best = (worth.variance * samples.rays / (samples.common_variance * worth.rays)).sqrt();
+    let best = (worth.variance * samples.rays / (samples.variance * worth.rays)).sqrt();
     if best.is_nan() { PHOTONS } else { rounded(best.clamp(FEWEST, PHOTONS)) }
 }
 
@@ -119,6 +119,6 @@ fn photons(worth: &GatheredWorth) -> f64 {
 /// Where a share q gathers, the second moment M of what a sample gathers adds at most M / q to its variance A, and the
 /// time is 1 + q t of one that gathers nowhere; the product is least for q = sqrt(M / (A t)).
 fn chance(worth: &GatheredWorth) -> f64 {
-    let best = (worth.second_moment / (worth.samples.common_variance * GATHERING)).sqrt();
+    let best = (worth.second_moment / (worth.samples.variance * GATHERING)).sqrt();
     if best.is_nan() { 1.0 } else { rounded(best.clamp(RAREST, 1.0)) }
 }

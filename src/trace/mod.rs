@@ -73,7 +73,7 @@ pub use photon_focus::Smoothness;
 pub use probe::{
     Adaptive, Branching, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight, adaptive,
     branching, bright_places, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise, piloted,
-    polarization_error, prepare, prepare_unguided, probe, reached_places, samples_worth, seen_light, seen_photons,
+    polarization_error, prepare, prepare_unguided, probe, reached_places, seen_light, seen_photons,
     with_light_vertices,
 };
 pub use replicates::REPLICATES;

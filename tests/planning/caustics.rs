@@ -3,6 +3,7 @@
 use abbe::plan::{Plan, plan};
 use abbe::trace::{LightPass, Smoothness, World, photons_within};
 
+use super::ordinary;
 use super::twenty::{Room, rooms};
 use crate::support::scenes::{GROUND, SPLITTING, body, method, scene, view};
 
@@ -10,7 +11,18 @@ use crate::support::scenes::{GROUND, SPLITTING, body, method, scene, view};
 #[test]
 fn of_twenty_rooms_the_plan_asks_for_photons_in_those_that_gain_and_says_why_not_in_the_others() {
     let rooms = rooms();
-    assert_eq!([true, false].map(|asks| rooms.iter().filter(|room| room.asks == asks).count()), [9, 11]);
+    assert_eq!([true, false].map(|asks| rooms.iter().filter(|room| room.asks == asks).count()), [10, 10]);
+    assert_as_measured(rooms);
+}
+
+/// In the mean of all pixels, noise is mostly that of a lamp's edge, which no photon mends. Counted so, photons did not
+/// pay in most of these rooms.
+#[test]
+fn photons_are_weighed_by_what_most_pixels_gain() {
+    assert_as_measured(ordinary::rooms());
+}
+
+fn assert_as_measured(rooms: Vec<Room>) {
     let mut wrong = Vec::new();
     for Room { name, text, asks, words } in rooms {
         let plan = plan(&scene(&text));

@@ -1,12 +1,9 @@
-//! What photons and camera samples are worth, learned from a few of both; in XYZ, so that it is the same in every color
-//! space.
+//! What photons are worth, learned from a few; in XYZ, so that it is the same in every color space.
 
 use super::cost::photons_within;
 use crate::light::LightId;
-use crate::math::Sampler;
 use crate::scene::FilmSettings;
 use crate::spectrum::apply;
-use crate::trace::camera::PathTracer;
 use crate::trace::image::splats;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
@@ -39,10 +36,9 @@ pub(super) struct Shown {
 /// What camera samples bring beside photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleWorth {
-    /// Variance of an image of n camera samples in all, summed over pixels and channels, times n.
+    /// Variance of an image of n camera samples in all, summed over pixels and channels, times n; without the hundredth
+    /// of the pixels that has most of it.
     pub variance: f64,
-    /// The same without the hundredth of the pixels that has most of it.
-    pub common_variance: f64,
     /// Rays that one follows, without those to lights.
     pub rays: f64,
 }
@@ -51,9 +47,8 @@ pub struct SampleWorth {
 const PHOTONS: u64 = 4096;
 const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
-/// Cells along each side of the format. Samples of the pixel in the middle of each are compared, and how many of it.
+/// Cells along each side of the format.
 pub(super) const SIDE: u32 = 24;
-const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
 
@@ -146,33 +141,6 @@ fn summed<const COUNT: usize>(mut values: Vec<(u32, [f64; COUNT])>) -> Vec<(u32,
     values
 }
 
-/// What camera samples are worth.
-pub fn samples_worth(world: &World) -> SampleWorth {
-    in_lanes!(&world.method.basis, N => weigh_samples::<N>(world))
-}
-
-fn weigh_samples<const N: usize>(world: &World) -> SampleWorth {
-    let mut tracer = PathTracer::<N>::new(world);
-    let film = world.scene.film;
-    let to_xyz = film.color_space.to_xyz();
-    let seed = world.method.seed ^ SEED;
-    let mut variances = Vec::new();
-    for [x, y] in film.whole().middles_of_cells(SIDE) {
-        let taken = (0..SAMPLES).map(|number| {
-            let sampler = Sampler::of_pixel(seed.wrapping_add(u64::from(number)), [x, y], 0);
-            apply(&to_xyz, tracer.sample(&sampler, [x, y]).rgb)
-        });
-        let taken: Vec<[f64; 3]> = taken.filter(|xyz| xyz.iter().all(|x| x.is_finite())).collect();
-        let of_channel = |channel: usize| mean_and_variance(taken.iter().map(move |xyz| xyz[channel]));
-        variances.push((0..3).fold(0.0, |sum, channel| sum + of_channel(channel)[1]));
-        if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
-            break;
-        }
-    }
-    let rays = tracer.walker.stats.rays as f64 / (variances.len() as f64 * f64::from(SAMPLES));
-    SampleWorth::of(variances, film.whole().pixels() as f64, rays)
-}
-
 /// The mean of some values, and the variance of one; 0 where there are too few to tell.
 pub(super) fn mean_and_variance(values: impl ExactSizeIterator<Item = f64> + Clone) -> [f64; 2] {
     let count = values.len();
@@ -185,12 +153,10 @@ impl SampleWorth {
     /// Of the variances of single samples in some of an image's pixels, summed over channels.
     pub fn of(mut variances: Vec<f64>, pixels: f64, rays: f64) -> Self {
         variances.sort_by(f64::total_cmp);
-        let places = variances.len() as f64;
-        // Of n samples, each pixel has n / pixels.
-        let of_image = |variances: &[f64]| variances.iter().sum::<f64>() / places * pixels * pixels;
         let common = variances.len() - variances.len().div_ceil(100);
-        let (variance, common_variance) = (of_image(&variances), of_image(&variances[..common]));
-        Self { variance, common_variance, rays }
+        // Of n samples, each pixel has n / pixels.
+        let variance = variances[..common].iter().sum::<f64>() / variances.len() as f64 * pixels * pixels;
+        Self { variance, rays }
     }
 }
 

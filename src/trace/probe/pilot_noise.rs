@@ -94,20 +94,29 @@ impl PilotNoise {
     /// How many times as long an equal error takes with other samples, both beside as many photons as are best for
     /// them; none where there is no noise. Variances are relative to the squares of the means.
     pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<f64> {
-        let mean = others.pixels.iter().map(|pixel| pixel.seen(photons)).sum::<f64>() / others.pixels.len() as f64;
-        let least = |noise: &Self| {
-            let work = noise.work(photons, |pixel| pixel.seen(photons).powi(2) + DARK * mean * mean);
-            let of_photons: f64 = work.photons.iter().map(|of_light| of_light.sqrt()).sum();
-            (work.samples.sqrt() + of_photons).powi(2)
-        };
+        let mean = others.mean(photons);
+        let least = |noise: &Self| noise.work(photons, |_| 0.0, |pixel| pixel.square(photons, mean)).least();
         let gain = least(others) / least(self);
         gain.is_finite().then_some(gain)
+    }
+
+    /// The least product of time and variance where the first few of some photons are sent, and light of the others is
+    /// left to chance. A camera sample finds little of it, as spikes: of what photons bring, the second moment is so
+    /// many times the mean. Variances are relative to the squares of the means.
+    pub fn least_work(&self, photons: &[PhotonWorth], spikes: &[f64], sent: usize) -> f64 {
+        let left = || photons.iter().zip(spikes).skip(sent);
+        if left().any(|(_, spike)| spike.is_infinite()) {
+            return f64::INFINITY;
+        }
+        let mean = self.mean(photons);
+        let by_chance = |pixel: &Pixel| left().map(|(photons, spike)| spike * photons.cells[pixel.cell].mean).sum();
+        self.work(&photons[..sent], by_chance, |pixel| pixel.square(photons, mean)).least()
     }
 
     /// How many photons for each of the samples make the time to an error least. Variances are not relative: else what
     /// photons show, which is bright, would be noisier than all around it.
     pub fn photons_of_a_sample(&self, photons: &[PhotonWorth]) -> f64 {
-        let work = self.work(photons, |_| 1.0);
+        let work = self.work(photons, |_| 0.0, |_| 1.0);
         let of_light = |(photons, of_photons): (&PhotonWorth, &f64)| {
             let times = (of_photons / work.samples).sqrt() * self.rays / photons.rays;
             if times.is_nan() { 0.0 } else { times }
@@ -115,14 +124,26 @@ impl PilotNoise {
         photons.iter().zip(&work.photons).map(of_light).sum()
     }
 
-    /// Variances over squares of pixels. The hundredth of the pixels in which samples vary most is left out of theirs.
-    fn work(&self, photons: &[PhotonWorth], squares: impl Fn(&Pixel) -> f64) -> Work {
-        let mut of_samples: Vec<f64> = self.pixels.iter().map(|pixel| pixel.variance / squares(pixel)).collect();
-        of_samples.sort_by(f64::total_cmp);
+    /// The mean of the pixels with what photons show.
+    fn mean(&self, photons: &[PhotonWorth]) -> f64 {
+        self.pixels.iter().map(|pixel| pixel.seen(photons)).sum::<f64>() / self.pixels.len() as f64
+    }
+
+    /// Variances over squares of pixels, with what is found by chance in those of samples. The hundredth of the pixels
+    /// in which samples vary most beside photons is left out of theirs: no photon mends it.
+    fn work(
+        &self,
+        photons: &[PhotonWorth],
+        by_chance: impl Fn(&Pixel) -> f64,
+        squares: impl Fn(&Pixel) -> f64,
+    ) -> Work {
+        let of_pixel = |pixel: &Pixel| [pixel.variance, by_chance(pixel)].map(|variance| variance / squares(pixel));
+        let mut of_samples: Vec<[f64; 2]> = self.pixels.iter().map(of_pixel).collect();
+        of_samples.sort_by(|[a, _], [b, _]| a.total_cmp(b));
         let most = of_samples.len() - of_samples.len().div_ceil(100);
         // Of n samples, each pixel has as many times fewer as there are pixels.
         let count = of_samples.len() as f64;
-        let samples = of_samples[..most].iter().sum::<f64>() / count * self.rays * self.format;
+        let samples = of_samples[..most].as_flattened().iter().sum::<f64>() / count * self.rays * self.format;
         let of_light = |photons: &PhotonWorth| {
             let of_pixel = |pixel: &Pixel| photons.cells[pixel.cell].variance / squares(pixel);
             self.pixels.iter().map(of_pixel).sum::<f64>() / count * photons.rays
@@ -131,7 +152,20 @@ impl PilotNoise {
     }
 }
 
+impl Work {
+    /// The least product of time and variance.
+    fn least(&self) -> f64 {
+        let of_photons: f64 = self.photons.iter().map(|of_light| of_light.sqrt()).sum();
+        (self.samples.sqrt() + of_photons).powi(2)
+    }
+}
+
 impl Pixel {
+    /// What variances are relative to, in an image of such a mean.
+    fn square(&self, photons: &[PhotonWorth], mean: f64) -> f64 {
+        self.seen(photons).powi(2) + DARK * mean * mean
+    }
+
     /// Its mean with what photons show.
     fn seen(&self, photons: &[PhotonWorth]) -> f64 {
         self.mean + photons.iter().map(|photons| photons.cells[self.cell].mean).sum::<f64>()
