@@ -56,8 +56,9 @@ fn the_floor_of_a_pool_seen_through_its_water() {
 #[test]
 fn the_bias_of_the_plans_radius_is_less_than_a_hundredth() {
     let pool = with_method(&pool(""));
-    let wide = MapPasses { radius: 1.0, ..NARROW };
-    let [narrow, wide] = [NARROW, wide].map(|map| blocks(&pool, true, Some(map), 128));
+    let narrow = MapPasses { photons: 2 * NARROW.photons, ..NARROW };
+    let wide = MapPasses { radius: 1.0, ..narrow };
+    let [narrow, wide] = [narrow, wide].map(|map| blocks(&pool, true, Some(map), 256));
     let limit = 1.25 * standard_errors(narrow.len());
     let (mut moved, mut whole, mut variance) = (0.0, 0.0, 0.0);
     for (a, b) in narrow.iter().zip(&wide) {
