@@ -8,8 +8,8 @@ use crate::trace::{PhotonWorth, Smoothness, World, photons_worth, pilot_noise};
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
-/// A gain below this is none: a pilot does not know better.
-const CLEARLY: f64 = 1.1;
+/// A gain below this is none: a pilot does not know better, and a photon map may come with photons.
+const CLEARLY: f64 = 1.25;
 
 /// What photons of some lights are worth beside camera samples.
 pub(super) struct Worth {
