@@ -246,8 +246,7 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
 
 /// Objects of some kinds of smoothness.
 pub(super) fn targets(scene: &Scene<Curve>, smooth: &[Smoothness]) -> Vec<usize> {
-    let is_so = |&object: &usize| Smoothness::of(scene, object).is_some_and(|of| smooth.contains(&of));
-    (0..scene.objects.len()).filter(is_so).collect()
+    (0..scene.objects.len()).filter(|&object| Smoothness::sent_to(scene, object, smooth).is_some()).collect()
 }
 
 /// Whether the camera sees any surface straight on which a caustic may lie.
@@ -294,8 +293,7 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
     let unseen = ", seen in a mirror or through glass or by way of another surface";
-    let is_aimed = |object: usize| Smoothness::of(scene, object).is_some_and(|smooth| pass.to.contains(&smooth));
-    let of_aimed = smooth().find(|&object| is_aimed(object));
+    let of_aimed = smooth().find(|&object| Smoothness::sent_to(scene, object, &pass.to).is_some());
     let of_aimed = of_aimed.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
     let of_left = |smooth: Smoothness, ways: &str| {
         let left = targets(scene, &[smooth]).into_iter().find(|_| !pass.to.contains(&smooth))?;

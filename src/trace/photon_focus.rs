@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::light::{Light, LightId};
-use crate::material::{Lobes, Material};
+use crate::material::Lobes;
 use crate::math::{Bounds, DVec2, DVec3, Ray};
 use crate::scene::{Primitive, Scene};
 use crate::shape::Ball;
@@ -52,15 +52,18 @@ impl Smoothness {
     /// That of an object; none if photons cannot be sent to it.
     pub fn of<S>(scene: &Scene<S>, object: usize) -> Option<Self> {
         let material = scene.material_of(object as u32);
-        let (lobes, is_smooth) = (material.lobes(), material.is_smooth_somewhere());
-        match lobes.intersects(Lobes::BROAD) {
-            true if is_smooth => Some(Self::Partial),
-            true => lobes.has_narrow_apart().then_some(Self::NarrowPartial),
-            false if is_smooth || !lobes.is_wide() => {
-                (!matches!(material, Material::Emissive(_))).then_some(Self::Whole)
-            }
-            false => Some(Self::Narrow),
+        let lobes = material.lobes();
+        match (material.is_smooth_somewhere(), lobes.intersects(Lobes::BROAD)) {
+            (true, false) => Some(Self::Whole),
+            (true, true) => Some(Self::Partial),
+            (false, false) => lobes.is_narrow().then_some(Self::Narrow),
+            (false, true) => lobes.has_narrow_apart().then_some(Self::NarrowPartial),
         }
+    }
+
+    /// That of an object, if photons are sent to what is so smooth.
+    pub fn sent_to<S>(scene: &Scene<S>, object: usize, to: &[Self]) -> Option<Self> {
+        Self::of(scene, object).filter(|smoothness| to.contains(smoothness))
     }
 }
 
@@ -92,7 +95,7 @@ fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
 /// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
 /// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
 pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], to: &[Smoothness]) -> Vec<Place> {
-    let is_target = |&object: &usize| Smoothness::of(scene, object).is_some_and(|smooth| to.contains(&smooth));
+    let is_target = |&object: &usize| Smoothness::sent_to(scene, object, to).is_some();
     let targets = (0..scene.objects.len()).filter(is_target);
     let mut balls = targets.map(|object| scene.objects[object].shape.ball());
     let mut found = Vec::new();
@@ -131,7 +134,7 @@ fn walk(
         if distance < 0.0 {
             return None;
         }
-        let smoothness = Smoothness::of(scene, hit.object as usize).filter(|smooth| to.contains(smooth));
+        let smoothness = Smoothness::sent_to(scene, hit.object as usize, to);
         if let Some(smoothness) = smoothness {
             let distance = (point.position - scene.camera.position()).length();
             found.push(Place { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });

@@ -72,8 +72,7 @@ impl PhotonTargets {
         let reach = reach(places);
         let of_object = |object: usize| {
             let has_end = scene.objects[object].shape.is_bounded();
-            let smoothness = Smoothness::of(scene, object).filter(|smooth| to.contains(smooth));
-            smoothness.filter(|_| has_end || reach.is_some())
+            Smoothness::sent_to(scene, object, to).filter(|_| has_end || reach.is_some())
         };
         let objects: Vec<Option<Smoothness>> = (0..scene.objects.len()).map(of_object).collect();
         let most = (MOST_AIMS / lights.len().max(1)).clamp(1, MOST);

@@ -123,6 +123,15 @@ fn photons_are_sent_to_clear_coats() {
     let left = "left to chance: caustics of object 4, which is smooth only in part";
     assert!(glass.because.iter().any(|line| line == left), "{:?}", glass.because);
     assert!(glass.method.light_pass.is_some_and(|pass| !pass.to.contains(&Smoothness::Partial)));
+    // A sheet that only lets light straight on throws none.
+    let sheet = body(
+        "sheet",
+        "polarizer = { axis = [1, 0, 0] }",
+        &["disc = { center = [2, 1, 0], normal = [0, 0, 1], radius = 0.3 }"],
+    );
+    let Plan { because, left_out, .. } = plan(&scene(&(text(coat, &point) + &sheet)));
+    assert!(because.iter().all(|line| !line.starts_with("left to chance")), "{because:?}");
+    assert!(left_out.iter().all(|line| !line.contains("sheet")), "{left_out:?}");
     let window =
         body("lamp", "emissive = { radiance = 2 }", &["quad = { center = [0, 5, 0], u = [4, 0, 0], v = [0, 0, 4] }"]);
     assert!(said(coat, &window).contains("large enough for rays to meet by chance"));
