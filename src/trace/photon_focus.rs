@@ -134,12 +134,13 @@ fn walk(
         if distance < 0.0 {
             return None;
         }
-        let smoothness = Smoothness::sent_to(scene, hit.object as usize, to);
-        if let Some(smoothness) = smoothness {
+        let (smoothness, material) = (Smoothness::of(scene, hit.object as usize), scene.material_of(hit.object));
+        if let Some(smoothness) = smoothness.filter(|smooth| to.contains(smooth)) {
             let distance = (point.position - scene.camera.position()).length();
             found.push(Place { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });
         }
-        if smoothness != Some(Smoothness::Whole) {
+        let lets_through = material.is_see_through() && material.lobes() == Lobes::NONE;
+        if smoothness != Some(Smoothness::Whole) && !lets_through {
             return Some((point.position, hit.primitive()));
         }
         (ray, left) = (point.leave(ray.direction), Some(hit.primitive()));
