@@ -26,7 +26,7 @@ impl Lobes {
     pub const DELTA: Self = Self::DELTA_REFLECTION.union(Self::DELTA_TRANSMISSION);
     /// All that leaves in every direction.
     pub const NON_DELTA: Self = Self::BROAD.union(Self::NARROW_REFLECTION);
-    /// All of that but what is narrow.
+    /// All that leaves in every direction but by a narrow lobe.
     pub const BROAD: Self = Self::DIFFUSE_REFLECTION.union(Self::GLOSSY_REFLECTION).union(Self::GLOSSY_TRANSMISSION);
     /// All that crosses the surface.
     pub const TRANSMISSION: Self = Self::GLOSSY_TRANSMISSION.union(Self::DELTA_TRANSMISSION);

@@ -49,7 +49,7 @@ impl Smoothness {
     /// All kinds.
     pub const ALL: [Self; 4] = [Self::Whole, Self::Partial, Self::Narrow, Self::NarrowPartial];
 
-    /// That of an object; none if photons cannot be sent to it.
+    /// How smooth an object is; none if photons cannot be sent to it.
     pub fn of<S>(scene: &Scene<S>, object: usize) -> Option<Self> {
         let material = scene.material_of(object as u32);
         let lobes = material.lobes();
@@ -61,7 +61,7 @@ impl Smoothness {
         }
     }
 
-    /// That of an object, if photons are sent to what is so smooth.
+    /// How smooth an object is, if that is among the kinds of smoothness that photons are sent to.
     pub fn sent_to<S>(scene: &Scene<S>, object: usize, to: &[Self]) -> Option<Self> {
         Self::of(scene, object).filter(|smoothness| to.contains(smoothness))
     }
@@ -115,8 +115,8 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], to: &[Smoothness]
     found
 }
 
-/// Walks straight through smooth surfaces, adds where they are met, and answers where another one is, or one that is
-/// smooth only in part. A ray that has left no surface is the camera's.
+/// Walks straight through smooth surfaces and sheets, adds where photons are sent to on the way, and answers where
+/// another surface is, or one that is smooth only in part. A ray that has left no surface is the camera's.
 fn walk(
     scene: &Scene<Table>,
     to: &[Smoothness],

@@ -89,7 +89,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { arrival, parts, ..self }
     }
 
-    /// With some of its lobes alone.
+    /// As a surface that has some of its material's lobes alone.
     pub fn of_lobes(&self, lobes: Lobes) -> Self {
         Self { arrival: Arrival { lobes, ..self.arrival }, ..*self }
     }
