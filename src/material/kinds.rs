@@ -87,9 +87,7 @@ impl<S> Material<S> {
             Self::Mirror(_) => Lobes::DELTA_REFLECTION,
             Self::Thin(_) => Lobes::DELTA,
             Self::Conductor(conductor) => conductor.roughness.reflection(),
-            Self::Dielectric(dielectric) if dielectric.roughness.is_smooth() => Lobes::DELTA,
-            // Between equal indices light goes straight on, however rough the surface is.
-            Self::Dielectric(_) => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
+            Self::Dielectric(dielectric) => dielectric.roughness.of_interface(),
             Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => Lobes::NONE,
             Self::Plastic(plastic) => Lobes::DIFFUSE_REFLECTION.union(plastic.coat.roughness().reflection()),
             Self::Mix(_) | Self::Mask(_) => {
@@ -105,6 +103,15 @@ impl<S> Material<S> {
             Self::Dielectric(dielectric) => dielectric.roughness.is_smooth(),
             Self::Mix(_) | Self::Mask(_) => self.parts().iter().any(|part| part.material().is_smooth_somewhere()),
             _ => self.lobes().has_delta(),
+        }
+    }
+
+    /// Whether it answers alike to light that goes either way, but for what media make of radiance: exactly.
+    pub fn is_reciprocal(&self) -> bool {
+        match self {
+            Self::Diffuse(_) => true,
+            Self::Dielectric(dielectric) => dielectric.coating.is_none(),
+            _ => false,
         }
     }
 

@@ -19,17 +19,23 @@ impl Lobes {
     pub const DELTA_TRANSMISSION: Self = Self(16);
     /// Light is reflected in every direction, but hardly beyond some degrees from the mirror image.
     pub const NARROW_REFLECTION: Self = Self(32);
+    /// Light crosses the surface in every direction, but hardly beyond some degrees from the refracted one.
+    pub const NARROW_TRANSMISSION: Self = Self(64);
     /// All kinds.
-    pub const ALL: Self = Self(63);
+    pub const ALL: Self = Self(127);
 
     /// All that leaves in single directions.
     pub const DELTA: Self = Self::DELTA_REFLECTION.union(Self::DELTA_TRANSMISSION);
     /// All that leaves in every direction.
-    pub const NON_DELTA: Self = Self::BROAD.union(Self::NARROW_REFLECTION);
+    pub const NON_DELTA: Self = Self::BROAD.union(Self::NARROW);
+    /// All narrow ones.
+    pub const NARROW: Self = Self::NARROW_REFLECTION.union(Self::NARROW_TRANSMISSION);
     /// All that leaves in every direction but by a narrow lobe.
     pub const BROAD: Self = Self::DIFFUSE_REFLECTION.union(Self::GLOSSY_REFLECTION).union(Self::GLOSSY_TRANSMISSION);
     /// All that crosses the surface.
-    pub const TRANSMISSION: Self = Self::GLOSSY_TRANSMISSION.union(Self::DELTA_TRANSMISSION);
+    pub const TRANSMISSION: Self = Self::NON_DELTA_TRANSMISSION.union(Self::DELTA_TRANSMISSION);
+    /// All that crosses it in every direction.
+    pub const NON_DELTA_TRANSMISSION: Self = Self::GLOSSY_TRANSMISSION.union(Self::NARROW_TRANSMISSION);
 
     /// The kinds of both.
     pub const fn union(self, other: Self) -> Self {
@@ -61,16 +67,16 @@ impl Lobes {
         self.intersection(Self::NON_DELTA).0 == Self::DIFFUSE_REFLECTION.0
     }
 
-    /// Whether a narrow lobe is told apart from what else leaves in every direction: where that is diffuse, if there is
-    /// anything.
+    /// Whether narrow lobes are told apart from what else leaves in every direction: where that is diffuse, if there is
+    /// anything, and nothing crosses.
     pub const fn has_narrow_apart(self) -> bool {
-        self.intersects(Self::NARROW_REFLECTION)
-            && !self.intersects(Self::GLOSSY_REFLECTION.union(Self::GLOSSY_TRANSMISSION))
+        let beside = self.intersection(Self::NON_DELTA).without(Self::NARROW_REFLECTION).0;
+        self.is_narrow() || (self.intersects(Self::NARROW_REFLECTION) && beside == Self::DIFFUSE_REFLECTION.0)
     }
 
-    /// Whether nothing leaves in every direction but by a narrow lobe.
+    /// Whether nothing leaves in every direction but by narrow lobes.
     pub const fn is_narrow(self) -> bool {
-        self.intersection(Self::NON_DELTA).0 == Self::NARROW_REFLECTION.0
+        self.intersects(Self::NARROW) && !self.intersects(Self::BROAD)
     }
 
     /// Whether light crosses the surface in some way.

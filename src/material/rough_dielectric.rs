@@ -204,7 +204,9 @@ impl RoughBoundary<'_> {
     /// follows, as one that is chosen with a probability is divided by it.
     pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
-        self.pass_equal_indices(arrival, tint, branches);
+        if arrival.lobes.has_delta() {
+            self.pass_equal_indices(arrival, tint, branches);
+        }
         let mut meeting = Meeting::new(self, arrival);
         let total: f64 = meeting.kinds.iter().map(|kind| kind.count).sum();
         let mut at = u[0] * total;

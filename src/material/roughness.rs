@@ -19,6 +19,8 @@ const SMOOTH: f64 = 1e-4;
 /// Width below which what it reflects is narrow: photons find the light that it sends on sooner than chance does, by
 /// twice or more (`benches/README.md`).
 const NARROW: f64 = 0.1;
+/// The same of what a boundary between clear media reflects and refracts.
+const NARROW_INTERFACE: f64 = 0.07;
 
 impl Roughness {
     /// A surface of roughness `value`: the slopes of its facets are as wide as its square.
@@ -37,6 +39,16 @@ impl Roughness {
             ..SMOOTH => Lobes::DELTA_REFLECTION,
             ..NARROW => Lobes::NARROW_REFLECTION,
             _ => Lobes::GLOSSY_REFLECTION,
+        }
+    }
+
+    /// The lobes by which a boundary between clear media reflects and refracts. Between equal indices light goes
+    /// straight on, however rough it is.
+    pub fn of_interface(&self) -> Lobes {
+        match self.alpha() {
+            ..SMOOTH => Lobes::DELTA,
+            ..NARROW_INTERFACE => Lobes::NARROW.union(Lobes::DELTA),
+            _ => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
         }
     }
 

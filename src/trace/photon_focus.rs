@@ -39,9 +39,9 @@ pub enum Smoothness {
     Whole,
     /// It scatters light widely as well, as what lies under a clear coat does.
     Partial,
-    /// It mirrors light nearly as smooth ones do: by a narrow lobe.
+    /// It mirrors or refracts light nearly as smooth ones do: by narrow lobes.
     Narrow,
-    /// It does that, and scatters light widely as well.
+    /// It mirrors some of it so, and scatters light widely as well.
     NarrowPartial,
 }
 
@@ -53,9 +53,13 @@ impl Smoothness {
     pub fn of<S>(scene: &Scene<S>, object: usize) -> Option<Self> {
         let material = scene.material_of(object as u32);
         let lobes = material.lobes();
+        let object = &scene.objects[object];
+        let is_bent = || object.shape.is_smooth() || object.relief.is_some();
         match (material.is_smooth_somewhere(), lobes.intersects(Lobes::BROAD)) {
             (true, false) => Some(Self::Whole),
             (true, true) => Some(Self::Partial),
+            // By normals other than a surface's own, what crosses it widely cannot be followed forward alike.
+            (false, false) if lobes.intersects(Lobes::NARROW_TRANSMISSION) && is_bent() => None,
             (false, false) => lobes.is_narrow().then_some(Self::Narrow),
             (false, true) => lobes.has_narrow_apart().then_some(Self::NarrowPartial),
         }

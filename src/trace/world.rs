@@ -254,7 +254,7 @@ impl World {
         let object = &self.scene.objects[object as usize];
         let lobes = self.lobes[object.material as usize];
         let smooth = object.shape.is_smooth() || object.relief.is_some();
-        lobes.intersects(Lobes::GLOSSY_TRANSMISSION) || (smooth && lobes.has_delta())
+        lobes.intersects(Lobes::NON_DELTA_TRANSMISSION) || (smooth && lobes.has_delta())
     }
 
     /// How much light there is in a film color: X + Y + Z.

@@ -80,7 +80,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let beside_photons = is_left.then(|| at.of_lobes(Lobes::DIFFUSE_REFLECTION));
         let beside_photons = beside_photons.as_ref();
         let near = Side { normal: at.flat, chance: None, inside: at.boundary.here, parted, beside_photons };
-        if !at.lobes.intersects(Lobes::GLOSSY_TRANSMISSION) {
+        if !at.lobes.intersects(Lobes::NON_DELTA_TRANSMISSION) {
             self.gather_side(&near, sampler, sensor);
             return 1.0;
         }

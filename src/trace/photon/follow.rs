@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::light::{LeSample, LightId};
-use crate::material::{Arrival, Branch, Lobes, Material, Scatter};
+use crate::material::{Arrival, Branch, Lobes, Scatter};
 use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
@@ -137,13 +137,13 @@ fn advance<const N: usize, P: Polarization<N>>(
     let tells_narrow = is_target && is_narrow && (over == Surfaces::Smooth || is_left);
     if tells_narrow && goes_on && over != Surfaces::AllButPhotons {
         let path = Path { key: path.key.child(BY_NARROW), ..*path };
-        scatter(walker, &path, &at.of_lobes(Lobes::NARROW_REFLECTION), sampler);
+        scatter(walker, &path, &at.of_lobes(Lobes::NARROW), sampler);
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
     } else if allowed && goes_on {
         let delta = if is_left && over == Surfaces::AllButPhotons { Lobes::DELTA } else { Lobes::NONE };
-        let narrow = if tells_narrow { Lobes::NARROW_REFLECTION } else { Lobes::NONE };
+        let narrow = if tells_narrow { Lobes::NARROW } else { Lobes::NONE };
         scatter(walker, path, &at.of_lobes(Lobes::ALL.without(delta.union(narrow))), sampler);
     }
 }
@@ -195,10 +195,11 @@ fn scatter<const N: usize, P: Polarization<N>>(
     if point.shading == point.normal {
         material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
         walker.polarize(path, at);
-        if !matches!(material, Material::Diffuse(_)) {
-            walker.branches.iter_mut().filter(|branch| branch.pdf.is_some()).for_each(|branch| turn_back(at, branch));
-        }
-        send_forward(arrival, &mut walker.branches);
+        let is_reciprocal = material.is_reciprocal();
+        let (backward, forward): (Vec<_>, Vec<_>) =
+            walker.branches.iter_mut().partition(|branch| !is_reciprocal && branch.pdf.is_some());
+        backward.into_iter().for_each(|branch| turn_back(at, branch));
+        send_forward(arrival, forward.into_iter());
     } else {
         // By shading normals that depend on the viewer, not every direction is drawn from which light arrives: of those
         // that the material draws, only a part.
@@ -211,7 +212,7 @@ fn scatter<const N: usize, P: Polarization<N>>(
         }
         walker.branches.retain_mut(|branch| {
             let (is_wide, cos) = (branch.pdf.is_some() && !branch.crosses, branch.wi.dot(*flat));
-            let Some(seen) = seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
+            let Some(seen) = seen_from(at, branch.wi, false).filter(|_| is_wide && cos > 0.0) else { return false };
             let of_material = || shading::evaluate(material, arrival, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
             let of_material = if by_material > 0.0 { of_material() } else { 0.0 };
             let pdf = by_material * of_material + (1.0 - by_material) * cos / PI;
@@ -224,22 +225,25 @@ fn scatter<const N: usize, P: Polarization<N>>(
     walker.follow(&mut Departure::new(walker.world, path, at).of_light_path(), sampler);
 }
 
-/// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
-fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
+/// What the camera would see of a photon in the direction in which it leaves, beyond the surface where it `crosses`,
+/// times the cosine of its arrival.
+fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3, crosses: bool) -> Option<Lanes<N>> {
     let [side, normal] = shading::normals_of(at.lobes, at.point, direction);
-    let viewed = Arrival { wo: direction, normal, ..at.arrival };
+    let from = if crosses { at.arrival.turned_around() } else { at.arrival };
+    let viewed = Arrival { wo: direction, normal, ..from };
     shading::evaluate(at.material, &viewed, side, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }
 
 /// Replaces the share of a branch by that of light the other way: materials need not answer alike to both.
 fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
     let onward = shading::evaluate(at.material, &at.arrival, at.flat, branch.wi);
-    let (Some((onward, _)), Some(back)) = (onward, seen_from(at, branch.wi)) else {
+    let (Some((onward, _)), Some(back)) = (onward, seen_from(at, branch.wi, branch.crosses)) else {
         branch.share = Lanes::ZERO;
         return;
     };
-    let cosines = (branch.wi.dot(at.flat) / at.arrival.wo.dot(at.flat)).abs() as f32;
-    let ratio = |i: usize| if onward[i] == 0.0 { 0.0 } else { back[i] * cosines / onward[i] };
+    // Radiance changes between media, and flux does not.
+    let cosines = (branch.wi.dot(at.flat) / at.arrival.wo.dot(at.flat)).abs() * branch.eta_scale;
+    let ratio = |i: usize| if onward[i] == 0.0 { 0.0 } else { back[i] * cosines as f32 / onward[i] };
     branch.share = branch.share * Lanes::from_fn(ratio);
 }
 
@@ -266,13 +270,13 @@ fn bounce<const N: usize, P: Polarization<N>>(
     for branch in &mut walker.branches {
         branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
     }
-    send_forward(arrival, &mut walker.branches);
+    send_forward(arrival, walker.branches.iter_mut());
     walker.follow(&mut Departure::new(walker.world, path, &at), sampler);
 }
 
 /// Makes shares of radiance that cross a smooth surface shares of flux.
-fn send_forward<const N: usize>(arrival: &Arrival<N>, branches: &mut [Branch<N>]) {
+fn send_forward<'a, const N: usize>(arrival: &Arrival<N>, branches: impl Iterator<Item = &'a mut Branch<N>>) {
     if let Some(forward) = arrival.forward() {
-        branches.iter_mut().filter(|branch| branch.crosses).for_each(|branch| branch.share = branch.share * forward);
+        branches.filter(|branch| branch.crosses).for_each(|branch| branch.share = branch.share * forward);
     }
 }

@@ -47,6 +47,8 @@ struct Place<'a> {
     flat: DVec3,
     /// Whether that is the front.
     front: bool,
+    /// Whether light crosses the surface: then what lies close beyond it is another.
+    crosses: bool,
     radius: f64,
 }
 
@@ -142,12 +144,14 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     let Gathering { world, path, at, .. } = around;
     let (point, flat) = (at.point, at.flat);
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
-    let Some(map) = world.method.map().filter(|map| whether < map.chance) else {
+    let crosses = at.lobes.is_transmissive();
+    let has_any = photons.crosses || !crosses;
+    let Some(map) = world.method.map().filter(|map| has_any && whether < map.chance) else {
         return Gathered { all: around.all([0.0; 3], 0.0), parts: apart.then(Vec::new) };
     };
     let radius = kernel.radius * world.scene.camera.pixel_width(path.length);
     let front = flat.dot(point.normal) > 0.0;
-    let place = Place { world, position: point.position, flat, front, radius };
+    let place = Place { world, position: point.position, flat, front, crosses, radius };
     let search = Search { around, kernel, place };
     let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
     photons.together.near(point.position, radius, &mut |position, photon| {
@@ -287,7 +291,7 @@ impl Place<'_> {
         photon: &Landed<T, L>,
     ) -> Option<f64> {
         let short = path.surfaces() + photon.surfaces - 1 <= self.world.method.max_bounces;
-        if !short || !self.goes_on(position, photon.flat, photon.front) {
+        if !short || photon.crosses != self.crosses || !self.goes_on(position, photon.flat, photon.front) {
             return None;
         }
         let (way, squared_radius) = (position - self.position, self.radius * self.radius);

@@ -27,6 +27,8 @@ pub struct Landed<T, L = Polarized> {
     pub flat: DVec3,
     /// Whether that is the front.
     pub front: bool,
+    /// Whether light crosses the surface.
+    pub crosses: bool,
     /// Surfaces it met, the last one included.
     pub surfaces: u32,
     /// How its light is polarized.
@@ -57,6 +59,8 @@ pub struct Alone {
 pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
     pub together: KdTree<Landed<Together<N>, P::Landed>>,
     pub alone: KdTree<Landed<Alone, P::Landed>>,
+    /// Whether any of them landed on a surface that light crosses.
+    pub crosses: bool,
     pub kernel: Kernel<N>,
     /// One that blurs half as much, where the blur is to be told.
     pub half: Option<Kernel<N>>,
@@ -95,9 +99,10 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
         }
     }
     let sent = batches.iter().map(|batch| batch.count).sum();
+    let crosses = together.iter().any(|(_, photon)| photon.crosses) || alone.iter().any(|(_, photon)| photon.crosses);
     let (together, alone) = (KdTree::new(together), KdTree::new(alone));
     let half = pass.replicate.map(|_| kernel.half(world));
-    Some(PhotonMap { together, alone, kernel, half, sent, stats })
+    Some(PhotonMap { together, alone, crosses, kernel, half, sent, stats })
 }
 
 /// Sends one batch.
@@ -122,6 +127,7 @@ fn keep<const N: usize, P: Polarization<N>>(
         back: arrival.wo,
         flat: *flat,
         front: flat.dot(point.normal) > 0.0,
+        crosses: at.lobes.is_transmissive(),
         surfaces: path.surfaces(),
         polarization: path.polarization.landed(at),
         carries: (),
@@ -142,8 +148,8 @@ fn keep<const N: usize, P: Polarization<N>>(
 
 impl<L> Landed<(), L> {
     fn with<T>(&self, polarization: L, carries: T) -> Landed<T, L> {
-        let Self { back, flat, front, surfaces, .. } = *self;
-        Landed { back, flat, front, surfaces, polarization, carries }
+        let Self { back, flat, front, crosses, surfaces, .. } = *self;
+        Landed { back, flat, front, crosses, surfaces, polarization, carries }
     }
 }
 

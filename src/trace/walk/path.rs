@@ -38,7 +38,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub kind: PathKind,
     /// Whether photons bring the light that comes straight along its ray from lights that send them.
     pub left_to_photons: bool,
-    /// Whether the surface that last scattered it in every direction did so by a narrow lobe alone. Photons do not land
+    /// Whether the surface that last scattered it in every direction did so by narrow lobes alone. Photons do not land
     /// there after a narrow lobe: what one such surface shows of another, the camera's rays find soon.
     pub is_narrow: bool,
     /// How often the path may still leave a diffuse surface.

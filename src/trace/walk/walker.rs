@@ -343,7 +343,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         let left_to_photons = wide && path.leaves_narrow_to_photons(world, at);
         let goes_on_smoothly = left_to_photons && at.lobes.is_narrow();
         // A photon that leaves by the lobe that is left to photons has come over smooth surfaces alone.
-        let lands = wide && at.arrival.lobes != Lobes::NARROW_REFLECTION;
+        let lands = wide && at.arrival.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
         next.left = path.left;
