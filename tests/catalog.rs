@@ -40,6 +40,8 @@ fn everything_is_listed() {
     assert!(found(&["glass"]).len() > 1700);
     assert!(found(&["metal"]).len() > 40);
     assert_eq!((found(&["illuminant"]).len(), found(&["reflectance"]).len()), (49, 24));
+    assert_eq!((found(&["lights"]), found(&["colors"])), (found(&["illuminant"]), found(&["reflectance"])));
+    assert_eq!((found(&["glasses", "sf11"]), found(&["metals"])), (found(&["glass", "sf11"]), found(&["metal"])));
     let all: usize = ["glass", "metal", "illuminant", "reflectance"].iter().map(|kind| found(&[kind]).len()).sum();
     assert_eq!(found(&[]).len(), all);
 }

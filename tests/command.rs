@@ -145,6 +145,7 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     flag("--width", "write --set film.width=640");
     flag("-o", "write --exr frame.exr");
     flag("--frames", "write --frame 1-24");
+    flag("--gpu", "write --threads 8, or nothing: it renders on all processors, and on them alone");
     flag("--denoise", "write --layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr");
     let spaced = "error: names of layers are joined by commas, without spaces\nhelp: write --layers lights,N,P\n";
     assert_refuses(&["ball.toml", "--layers", "lights", "N", "P"], 2, spaced);

@@ -34,6 +34,8 @@ pub struct Query {
 struct Kind {
     /// What it is called: the title of the column of names.
     name: &'static str,
+    /// What all that it has is called too.
+    all: &'static [&'static str],
     /// The titles of the others.
     titles: &'static [&'static str],
     lines: fn(&[String]) -> Vec<Vec<String>>,
@@ -44,24 +46,28 @@ struct Kind {
 const KINDS: [Kind; 4] = [
     Kind {
         name: "glass",
+        all: &["glasses"],
         titles: &["n_d", "V_d", "known", "absorption", "source"],
         lines: glass_lines,
         names: || data::known_as().collect(),
     },
     Kind {
         name: "metal",
+        all: &["metals"],
         titles: &["also", "measured", "source"],
         lines: metal_lines,
         names: || data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat()).collect(),
     },
     Kind {
         name: "illuminant",
+        all: &["illuminants", "lights"],
         titles: &["tabulated", "source"],
         lines: |words| grid_lines(data::illuminants(), words),
         names: || data::illuminants().map(|light| light.name).collect(),
     },
     Kind {
         name: "reflectance",
+        all: &["reflectances", "colors"],
         titles: &["tabulated", "source"],
         lines: |words| grid_lines(data::reflectances(), words),
         names: || data::reflectances().map(|chip| chip.name).collect(),
@@ -85,7 +91,8 @@ impl Kind {
 /// Nothing is found; the help holds the nearest names.
 pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
     let mut words: Vec<_> = query.words.iter().map(|word| word.to_lowercase()).collect();
-    let one = words.first().and_then(|word| KINDS.iter().position(|kind| kind.name == word));
+    let one =
+        words.first().and_then(|word| KINDS.iter().position(|kind| kind.name == word || kind.all.contains(&&**word)));
     let kinds = one.map_or(&KINDS[..], |i| &KINDS[i..=i]);
     words.drain(..usize::from(one.is_some()));
     let found: Vec<_> = kinds.iter().flat_map(|kind| kind.found(&words, titled)).collect();

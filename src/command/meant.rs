@@ -11,7 +11,7 @@ const FLAGS: [(&str, &str); 5] =
     [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("version", "--version"), ("render", "--exr")];
 
 /// Arguments of other renderers, and what does the same here.
-const ELSEWHERE: [(&[&str], &str); 10] = [
+const ELSEWHERE: [(&[&str], &str); 11] = [
     (&["--spp"], "--samples 64"),
     (&["--output", "-o"], "--exr frame.exr"),
     (&["--width"], "--set film.width=640"),
@@ -21,6 +21,7 @@ const ELSEWHERE: [(&[&str], &str); 10] = [
     (&["--aov", "--aovs"], "--layers albedo,N"),
     (&["--frames"], "--frame 1-24"),
     (&["--start", "--end", "--frame-start", "--frame-end"], "--frame 1-24"),
+    (&["--gpu", "--device", "--cpu"], "--threads 8, or nothing: it renders on all processors, and on them alone"),
     (&["--denoise"], "--layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr"),
 ];
 

@@ -214,7 +214,9 @@ impl ExrFile {
     pub fn no_layer(&self, wanted: &str, shown: &str, others: &[&str]) -> Error {
         let layers = self.layers();
         let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).chain(others.iter().copied()).collect();
-        let near = nearest(wanted, names.iter().copied()).map(|near| format!("did you mean {near}? "));
+        let elsewhere = called_elsewhere(wanted).filter(|here| names.contains(here));
+        let near = elsewhere.or_else(|| nearest(wanted, names.iter().copied()));
+        let near = near.map(|near| format!("did you mean {near}? "));
         let help = near.unwrap_or_default() + "it has " + &names.join(", ");
         Error::Arguments { message: format!("{shown} has no layer {wanted}"), help: Some(help) }
     }
@@ -223,6 +225,17 @@ impl ExrFile {
     pub fn attribute(&self, name: &str) -> Option<&str> {
         let all = self.parts.iter().flat_map(|part| &part.attributes);
         all.into_iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
+    }
+}
+
+/// The layer that other renderers have by this name.
+fn called_elsewhere(name: &str) -> Option<&'static str> {
+    match name.to_lowercase().as_str() {
+        "depth" => Some("Z"),
+        "normal" | "normals" => Some("N"),
+        "position" | "positions" => Some("P"),
+        "rgb" | "rgba" | "color" | "image" => Some("beauty"),
+        _ => None,
     }
 }
 

@@ -190,7 +190,11 @@ fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
         p => format!("{p:.1e} %"),
     };
     let lit = format!("{} pixels", pixels(dispersion.lit_pixels));
-    let shown = if dispersion.dark {
+    let shown = if dispersion.dark && dispersion.lit_pixels == 0.0 {
+        format!(
+            "no ray of the probe saw anything through the dispersive glass in {share} of the view, where it is assumed"
+        )
+    } else if dispersion.dark {
         format!(
             "no ray of the probe saw anything through the dispersive glass in {share} of the view, which pulls {from} and {to} nm up to \
              {lit} apart where it lights surfaces"

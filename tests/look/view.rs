@@ -185,6 +185,10 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     let has = "it has beauty, Z, N, Nd, P, albedo\n";
     let refusal = format!("error: a.exr has no layer albdo\nhelp: did you mean albedo? {has}");
     view(&["a.exr", "albdo", "--png", "b.png"]).assert_refused(2, &refusal);
+    for (elsewhere, here) in [("depth", "Z"), ("normals", "N"), ("position", "P"), ("rgb", "beauty")] {
+        let refusal = format!("error: a.exr has no layer {elsewhere}\nhelp: did you mean {here}? {has}");
+        view(&["a.exr", elsewhere]).assert_refused(2, &refusal);
+    }
     view(&["a.exr", "variance"]).assert_refused(2, &format!("error: a.exr has no layer variance\nhelp: {has}"));
     let png = "error: --png writes a file that ends in .png, not b.jpg\nhelp: for instance: --png look.png\n";
     view(&["a.exr", "--png", "b.jpg"]).assert_refused(2, png);

@@ -3,7 +3,7 @@
 use std::ops::Bound;
 
 use super::context::Context;
-use super::measures::{MAX_LENGTH, direction, length, point};
+use super::measures::{MAX_LENGTH, direction, length, narrow, point};
 use crate::math::DVec3;
 use crate::scene::text::{Fields, Value, above_0_to, at, shown};
 use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};
@@ -92,12 +92,7 @@ fn projection(context: &mut Context, camera: &mut Fields, kind: Option<Projectio
         (ProjectionKind::Perspective, Some(value), None) => {
             let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
             let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
-            if vertical_fov < NARROW {
-                // Whoever meant radians did not mean less than a degree.
-                let radians = match vertical_fov.to_degrees() {
-                    degrees if degrees < NARROW => String::new(),
-                    degrees => format!("; if radians are meant, write {degrees:.1}"),
-                };
+            if let Some(radians) = narrow(vertical_fov) {
                 context.warn_at(value, format!("{vertical_fov} degrees see very little{radians}"));
             }
             Some(Projection::Perspective { vertical_fov })
@@ -134,9 +129,6 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
         _ => value.advise("only a perspective camera has a focal length, which its sensor tells", "leave it out"),
     }
 }
-
-/// A field of view in degrees below which it may be one in radians.
-const NARROW: f64 = 1.0;
 
 const HEIGHT: &str = "give the height of the view in scene units: height = 2";
 

@@ -204,6 +204,11 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
     let Some([first, _]) = samples.first() else {
         return Err(Refusal::new("a table of samples holds at least one [wavelength in nm, value]"));
     };
+    if are_swapped(samples) {
+        let [value, nm] = samples[0].map(shown);
+        let refusal = Refusal::new(format!("a first wavelength of {value} nm is far from visible light"));
+        return Err(refusal.help(format!("the wavelength stands before its value: write [{nm}, {value}]")).at(0));
+    }
     if let Some(i) = samples.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
         let [before, after] = [samples[i][0], samples[i + 1][0]];
         let refusal = Refusal::new(format!("wavelengths increase from sample to sample ({after} after {before})"));
@@ -216,6 +221,15 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
     let help = unit_of_wavelength(*first, 100.0).unwrap_or("wavelengths are in nm".into());
     Err(Refusal::new(format!("a first wavelength of {first} nm is far from visible light")).help(help).at(0))
 }
+
+/// Whether pairs are values and wavelengths in nm, which increase as those of a spectrum do, in this order.
+fn are_swapped(samples: &[[f64; 2]]) -> bool {
+    let is_value = |[value, nm]: &[f64; 2]| *value < 100.0 && (100.0..=MOST_NM).contains(nm);
+    samples.len() > 1 && samples.iter().all(is_value) && samples.is_sorted_by(|a, b| a[1] < b[1])
+}
+
+/// The longest wavelength in nm that tables of visible light end at.
+const MOST_NM: f64 = 2500.0;
 
 /// The unit that a wavelength seems to be in, if it would be `least` to 830 nm in that.
 fn unit_of_wavelength(given: f64, least: f64) -> Option<String> {

@@ -93,7 +93,9 @@ fn illuminants() -> impl Iterator<Item = &'static str> {
 
 fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> Refusal {
     let number = name.replace(',', ".").replace('\u{2212}', "-");
-    let help = match (elsewhere(name), nearest(name, names)) {
+    let names: Vec<&str> = names.collect();
+    let near = || nearest(name, names.iter().copied()).or_else(|| begun(name, &names));
+    let help = match (elsewhere(name), near()) {
         (Some(other), _) => format!("it is {other}"),
         _ if number.parse().is_ok_and(f64::is_finite) => format!("write the number {number}"),
         (None, Some(near)) => format!("did you mean \"{near}\"?"),
@@ -103,6 +105,12 @@ fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> 
         }
     };
     Refusal::new(format!("there is no {what} named {name:?}")).help(help)
+}
+
+/// The first of some names of several words that begins with these, such as `neutral 8 (.23 D)` with `neutral 8`.
+fn begun<'a>(words: &str, names: &[&'a str]) -> Option<&'a str> {
+    let start = format!("{} ", words.to_lowercase());
+    names.iter().copied().find(|name| name.to_lowercase().starts_with(&start))
 }
 
 /// What a name stands for where it is known.

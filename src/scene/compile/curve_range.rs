@@ -91,6 +91,9 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
         100.0..=255.0 if is_share => {
             refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
         }
+        0.55..=0.8 if quantity == Quantity::Index => {
+            refusal.help(format!("the index around it over its own? Then write {}", shown(1.0 / value)))
+        }
         _ => refusal,
     })
 }

@@ -5,7 +5,7 @@ use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
 use super::image::{BRIGHT_IMAGE, factor_on_image, read_file};
 use super::image_file::read_image;
-use super::measures::{direction, point};
+use super::measures::{direction, narrow, point};
 use super::object;
 use super::radiometry;
 use super::transform::{Step, map_of, steps};
@@ -146,8 +146,13 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         let position = light.need("position", point);
         let toward = light.maybe("toward", at(direction));
         let target = light.maybe("look_at", at(point));
-        let cone_angle = light
-            .need("cone_angle", |value| value.within(above_0_to(180.0), "a cone is above 0 to 180 degrees wide", None));
+        let cone_angle = light.need("cone_angle", |value| {
+            let cone_angle = value.within(above_0_to(180.0), "a cone is above 0 to 180 degrees wide", None)?;
+            if let Some(radians) = narrow(cone_angle) {
+                context.warn_at(value, format!("a cone of {cone_angle} degrees lights very little{radians}"));
+            }
+            Some(cone_angle)
+        });
         let blend =
             light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a part of the cone, 0 to 1", None));
         let intensity = light.need("intensity", |value| intensity(context, value));

@@ -28,7 +28,14 @@ pub(super) enum Draft<'d, S> {
 /// From 0, smooth, to 1; 0 if it is wrong, which is told.
 fn roughness(fields: &mut Fields) -> f64 {
     let what = "a roughness lies between 0, smooth, and 1";
-    fields.or("roughness", 0.0, |value| value.within(0.0..=1.0, what, None)).unwrap_or_default()
+    let read = |value: Value| match value.number()? {
+        percent if (2.0..=100.0).contains(&percent) => {
+            let help = format!("in percent? Then write {}", shown(percent / 100.0));
+            value.advise(format!("{what}, not {percent}"), help)
+        }
+        _ => value.within(0.0..=1.0, what, None),
+    };
+    fields.or("roughness", 0.0, read).unwrap_or_default()
 }
 
 /// What reads a kind of material, given its table as a whole and by its keys.

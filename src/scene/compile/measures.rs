@@ -7,6 +7,8 @@ use crate::scene::text::Value;
 pub(super) const MAX_LENGTH: f64 = 1e30;
 /// Smallest size, for the same reason.
 pub(super) const MIN_LENGTH: f64 = 1e-30;
+/// An angle in degrees below which it may be one in radians.
+const NARROW: f64 = 1.0;
 /// What the numbers of points are called.
 pub(super) const COORDINATE: &str = "a coordinate";
 
@@ -59,4 +61,13 @@ pub(super) fn long(value: Value, what: &str, length: f64) -> Option<f64> {
     } else {
         value.refuse(format!("{what} is a length above 0, not {length}"))
     }
+}
+
+/// What is added to a warning of an angle so narrow that radians may be meant; none of one that is not.
+pub(super) fn narrow(degrees: f64) -> Option<String> {
+    // Whoever meant radians did not mean less than a degree.
+    (degrees < NARROW).then(|| match degrees.to_degrees() {
+        meant if meant < NARROW => String::new(),
+        meant => format!("; if radians are meant, write {meant:.1}"),
+    })
 }

@@ -9,7 +9,7 @@ use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 43] = [
+const ELSEWHERE: [(&str, &[&str]); 49] = [
     ("index", &["ior", "eta", "int_ior"]),
     ("reflectance", &["albedo", "color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
@@ -22,11 +22,17 @@ const ELSEWHERE: [(&str, &[&str]); 43] = [
     ("irradiance", &["intensity", "illuminance", "strength", "power"]),
     ("radiance", &["intensity", "power", "strength", "brightness", "color"]),
     ("look_at", &["target", "to"]),
+    ("vertical_fov", &["fov_y", "fovy", "yfov", "vfov", "fov_vertical"]),
     ("position", &["from", "eye", "origin", "location"]),
     ("file", &["path", "filename"]),
     ("center", &["position"]),
     ("point", &["position", "center"]),
     ("degrees", &["angle"]),
+    ("translate", &["move", "position", "offset", "shift"]),
+    ("depth", &["strength", "height", "amount"]),
+    ("transmittance", &["transmission"]),
+    ("film", &["image", "output"]),
+    ("render", &["integrator", "sampler", "settings"]),
     ("axis", &["angle"]),
     ("angular_diameter", &["angle", "angular_size"]),
     ("blend", &["penumbra"]),
@@ -57,7 +63,7 @@ const ELSEWHERE: [(&str, &[&str]); 43] = [
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 63] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -104,7 +110,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 63] = [
     (&["bit_depth", "bits"], "color_space", "write precision = \"half\" for 16 bits; it is 32 if absent"),
     (&["wavelengths", "bands"], "diffuse_bounces", "write model = { bands = 16 }"),
     (
-        &["horizontal_fov", "fov_x", "focal_length"],
+        &["horizontal_fov", "fov_horizontal", "fov_x", "fovx", "xfov", "hfov", "focal_length"],
         "vertical_fov",
         "write vertical_fov, in degrees: 27 sees as much as a lens of 50 mm before film of 36 x 24 mm",
     ),
@@ -187,12 +193,15 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 63] = [
         "instances",
         "write it into the braces of a mesh: shape.mesh = { file = \"cup.obj\", smooth = true }",
     ),
+    (&["cast_shadow", "cast_shadows", "casts_shadows"], "instances", "every object throws a shadow: leave it out"),
+    (&["scale", "rotate", "translate"], "smooth", "write it beside `shape`, as in transform = [{ scale = 2 }]"),
     (&["priority"], "instances", "write it into the material: dielectric = { index = 1.5, priority = 1 }"),
     (
         &["rotate", "rotation"],
         "wrap",
         "an image of the sky is turned by `transform` beside `radiance`, any other with its object",
     ),
+    (&["exposure"], "wrap", "write `scale`, which multiplies the light: 4 is two stops"),
     (&["color_space", "colorspace", "gamma"], "wrap", "write encoding = \"srgb\" or encoding = \"linear\""),
     (
         &["elevation", "azimuth", "altitude"],

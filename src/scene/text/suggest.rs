@@ -49,7 +49,8 @@ pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a 
     let part_of = || known.iter().copied().find(|name| is_part(name));
     let elsewhere = || called_here(word).find(|here| known.contains(here));
     let space = || (key == "color_space").then(|| ColorSpace::called(word)).flatten().map(ColorSpace::interop_id);
-    nearest(word, known.iter().copied()).or_else(part_of).or_else(elsewhere).or_else(space)
+    // `tile` is a word of others for `repeat`, though one letter makes it `file`.
+    elsewhere().or_else(|| nearest(word, known.iter().copied())).or_else(part_of).or_else(space)
 }
 
 /// Tables of which people write the one value that matters most, and its key.
@@ -145,6 +146,12 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             "rgb" => Some(without_braces(written)),
             _ => None,
         },
+        DeValue::Float(_) if key == "crop" => Some("a crop is in pixels: [left, top, width, height]".into()),
+        DeValue::Integer(_) if key == "precision" => match written {
+            "16" => Some("write \"half\"".into()),
+            "32" => Some("write \"float\"".into()),
+            _ => None,
+        },
         DeValue::Float(float) if number => {
             let float: f64 = float.as_str().parse().ok()?;
             let most = wanted.rsplit(' ').next().and_then(|most| most.parse::<f64>().ok());
@@ -154,6 +161,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::Integer(_) if wanted == "a number" => Some(format!("write it with a decimal point: {written}.0")),
         DeValue::String(text) if wanted == "true or false" && matches!(&**text, "true" | "false") => {
             Some(format!("write it without quotes: {text}"))
+        }
+        DeValue::Integer(_) if wanted == "true or false" && matches!(written, "0" | "1") => {
+            Some(format!("write {}", written == "1"))
         }
         DeValue::String(_) if wanted == TABLE && key == "mesh" => Some(format!("write {{ file = {written} }}")),
         DeValue::String(_) if wanted == TABLE && key.ends_with("_map") => {
@@ -168,6 +178,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some("write [x, y, z]".into())
         }
         _ if wanted == TABLE && SHORT.iter().any(|short| short.0 == key) => in_short(key, value, written),
+        DeValue::Array(_) if wanted == TABLE && key == "sellmeier" => {
+            Some("write { b = [1.0396, 0.2318, 1.0105], c = [0.006, 0.02, 103.56] }, c in um^2".into())
+        }
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
         DeValue::Array(_) if key == "scale" && wanted == "a number" => {
             Some("`scale` multiplies the values; copies of an image are set by `repeat`".into())

@@ -209,6 +209,9 @@ fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     if line.starts_with('[') && matches!(key, "object" | "light") {
         return (format!("`{key}` is a list of tables"), Some(format!("write [[{key}]] for each")));
     }
+    if line.starts_with("[[") && key == "material" {
+        return ("`material` is a table, not a list".into(), Some("write [material.NAME] for each".into()));
+    }
     let help =
         first_line(key, before, line).map(|first| format!("it stands in line {first} as well: keep one of them"));
     (format!("`{key}` is given twice"), help)
