@@ -6,6 +6,7 @@
 
 mod criterion;
 mod degrees;
+mod folded;
 mod furnaces;
 mod plates;
 

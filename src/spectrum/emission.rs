@@ -176,16 +176,18 @@ fn colored(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
     (spectrum, correction)
 }
 
-/// A sampled emission on the grid: 0 beyond its ends. Where samples lie closer than the grid, or where light ends at
-/// once, each step gets the light around it, weighed by the hat function of its step: no narrow line is lost, and no
-/// table is wider than it is.
+/// A sampled emission on the grid: 0 beyond its ends. Where samples lie beside the grid, or where light ends at once,
+/// each step gets the light around it, weighed by the hat function of its step: narrow lines keep their power wherever
+/// they peak, and no table is wider than it is.
 fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return 0.0 };
     let at = |nm: f64| if (first[0]..=last[0]).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
     // What is even over the visible range has its light in every step of it.
     let is_whole = |nm: f64| [visible::START_NM, visible::FIRST_NM, visible::LAST_NM].contains(&nm);
     let ends_at_once = |end: &[f64; 2]| end[1] != 0.0 && !is_whole(end[0]) && (end[0] - wavelength_nm).abs() < 1.0;
-    if ![first, last].into_iter().any(ends_at_once) && samples.windows(2).all(|pair| pair[1][0] - pair[0][0] >= 1.0) {
+    let is_end = |end: &[f64; 2]| end[0] == wavelength_nm && is_whole(end[0]);
+    let is_of_steps = samples.iter().all(|sample| sample[0].fract() == 0.0);
+    if [first, last].into_iter().any(is_end) || is_of_steps && ![first, last].into_iter().any(ends_at_once) {
         return at(wavelength_nm);
     }
     let (from, to) = (wavelength_nm - 1.0, wavelength_nm + 1.0);
@@ -220,7 +222,15 @@ mod tests {
             let sum: f64 = visible::wavelengths().map(|nm| on_grid(&samples, nm)).sum();
             assert!((sum - 2.0 * (to - from)).abs() < 1e-6, "{from} to {to} nm: {sum}");
         }
-        // A table that ends dark has no jump: each step has the light at its wavelength.
+        // So has a narrow line between the steps.
+        for [peak, width] in [[450.0, 1.0], [450.5, 1.0], [459.66, 1.3], [546.1, 1.7], [402.5, 2.5], [611.3, 4.2]] {
+            let line = [[peak - width, 0.0], [peak, 3.0], [peak + width, 0.0]];
+            let sum: f64 = visible::wavelengths().map(|nm| on_grid(&line, nm)).sum();
+            assert!((sum - 3.0 * width).abs() < 1e-6, "{peak} nm: {sum} for {}", 3.0 * width);
+        }
+        let even = [[300.0, 2.0], [500.5, 2.0], [830.0, 2.0]];
+        assert!(visible::wavelengths().all(|nm| (on_grid(&even, nm) - 2.0).abs() < 1e-12));
+        // A table of whole wavelengths that ends dark has no jump: each step has the light at its wavelength.
         let peak = [[540.0, 0.0], [550.0, 1.0], [560.0, 0.0]];
         for nm in visible::wavelengths() {
             let expected = (1.0 - 0.1 * (nm - 550.0).abs()).max(0.0);

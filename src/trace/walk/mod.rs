@@ -1,6 +1,7 @@
 //! A path from surface to surface: what it meets, how it goes on, and what it knows of its light.
 
 mod audit;
+mod change;
 mod excitation;
 mod exciting;
 mod interaction;
@@ -12,6 +13,7 @@ mod rows;
 pub mod shading;
 mod slots;
 pub mod straight;
+mod turn;
 mod walker;
 
 pub use audit::Audit;

@@ -9,10 +9,12 @@
 
 use std::array::from_fn;
 
+use super::change::{Change, Weights};
 use super::interaction::Interaction;
 use super::polarization::{MetLight, Polarization, SeenPhoton};
 use super::shading;
 use super::slots::Slots;
+use super::turn::{Turn, across};
 use crate::light::Light;
 use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
 use crate::math::{DVec3, Frame, Ray};
@@ -36,43 +38,12 @@ pub struct Rows<const N: usize, const K: usize> {
     compares: bool,
 }
 
-/// Of each of K rows the weight of S0, then those of S1, S2 and S3.
-type Weights<const K: usize> = [[f32; K]; 4];
-
 /// How light that a photon brings is polarized.
 #[derive(Clone, Debug)]
 pub struct Column<const N: usize> {
     x: DVec3,
     /// S0 to S3 over what light would be that is taken for unpolarized.
     stokes: [Lanes<N>; 4],
-}
-
-/// Cosine and sine of twice the angle from one reference direction to another, about the direction z of the light.
-#[derive(Clone, Copy, Debug)]
-struct Turn(f32, f32);
-
-impl Turn {
-    const NONE: Self = Self(1.0, 0.0);
-
-    /// From `x`, of any length; none where either direction has no part across z.
-    fn new(z: DVec3, x: DVec3, to: DVec3) -> Option<Self> {
-        let (c, t) = (x.dot(to), z.cross(x).dot(to));
-        let length = c * c + t * t;
-        let inverse = 1.0 / length;
-        (length > 0.0).then_some(Self(((c * c - t * t) * inverse) as f32, (2.0 * c * t * inverse) as f32))
-    }
-
-    /// Of the linear components, 1 and 2.
-    #[inline(always)]
-    fn of<const K: usize>(self, one: [f32; K], two: [f32; K]) -> [[f32; K]; 2] {
-        let Self(c, s) = self;
-        [from_fn(|k| one[k] * c + two[k] * s), from_fn(|k| two[k] * c - one[k] * s)]
-    }
-}
-
-/// A unit vector across z, near a direction.
-fn across(z: DVec3, near: DVec3) -> DVec3 {
-    (near - z * z.dot(near)).try_normalize().unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
 }
 
 /// One over a number, 0 where there is nothing to divide by, or so little that what is left of it has no digits.
@@ -100,70 +71,22 @@ pub struct Way<const N: usize> {
     change: Change<N>,
     /// The unit normal of the plane at which a shading normal folds the light.
     folded_at: Option<DVec3>,
+    /// What comes folded to a direction to which light comes straight as well.
+    besides: Option<Box<Besides<N>>>,
+}
+
+/// What becomes of rows by light that is folded to the direction of other light.
+#[derive(Debug)]
+struct Besides<const N: usize> {
+    mueller: Mueller<N>,
+    change: Change<N>,
+    /// What leaves of the path's light: of the other light, and of this one.
+    lights: [Lanes<N>; 2],
 }
 
 impl<const N: usize> Way<N> {
     fn new() -> Self {
-        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None }
-    }
-}
-
-/// How a Mueller matrix changes rows.
-#[derive(Clone, Debug)]
-struct Change<const N: usize> {
-    /// What leaves of unpolarized light.
-    value: Lanes<N>,
-    /// What makes rows shares of the throughput beyond.
-    scale: Lanes<N>,
-    /// From the frame before to that of the block.
-    met: Turn,
-    /// The same to that of the base, and from there to the frame beyond.
-    base: [Turn; 2],
-    /// The x of the frame beyond.
-    x: DVec3,
-    /// The only lane that goes this way, where it is alone: to change it alone takes a fraction of the time.
-    alone: Option<usize>,
-}
-
-impl<const N: usize> Change<N> {
-    const NONE: Self = Self {
-        value: Lanes::ZERO,
-        scale: Lanes::ZERO,
-        met: Turn::NONE,
-        base: [Turn::NONE; 2],
-        x: DVec3::ZERO,
-        alone: None,
-    };
-
-    /// Rows of one lane beyond the surface, not yet shares of what leaves.
-    #[inline(always)]
-    fn of_block<const K: usize>(&self, block: &Block<Lanes<N>>, i: usize, weights: Weights<K>) -> Weights<K> {
-        let [q0, q1, q2, q3] = weights;
-        let [r1, r2] = self.met.of(q1, q2);
-        let (value, a, d, c, q) = (self.value[i], block.a[i], block.d[i], block.c[i], block.q[i]);
-        [
-            from_fn(|k| value * q0[k] + d * r1[k]),
-            from_fn(|k| d * q0[k] + a * r1[k]),
-            from_fn(|k| c * r2[k] + q * q3[k]),
-            from_fn(|k| c * q3[k] - q * r2[k]),
-        ]
-    }
-
-    /// The same with what comes from below a coat.
-    #[inline(always)]
-    fn of_both<const K: usize>(&self, mueller: &Mueller<N>, i: usize, weights: Weights<K>) -> Weights<K> {
-        let mut after = self.of_block(&mueller.block, i, weights);
-        if let Some(base) = &mueller.base {
-            let ([q0, q1, q2, _], [turn, back]) = (weights, self.base);
-            let [u1, _] = turn.of(q1, q2);
-            let [v1, v2] = back.of(from_fn(|k| base.arriving[i] * q0[k] + base.both[i] * u1[k]), [0.0; K]);
-            for k in 0..K {
-                after[0][k] += base.leaving[i] * u1[k];
-                after[1][k] += v1[k];
-                after[2][k] += v2[k];
-            }
-        }
-        after
+        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None, besides: None }
     }
 }
 
@@ -308,6 +231,57 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
     }
 
+    /// From where light arrives that a shading normal folds to a direction to which it sends light straight as well.
+    #[inline(always)]
+    fn folded_to(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
+        if at.flat == at.arrival.normal || incoming.single {
+            return None;
+        }
+        let folded = shading::folded(incoming.wi, at.flat);
+        let comes = |wi: DVec3| (wi.dot(at.arrival.normal) < 0.0) == incoming.crosses;
+        (comes(incoming.wi) && comes(folded)).then_some(Incoming { wi: folded, ..incoming })
+    }
+
+    /// Takes in rows of light that comes to the same direction, which is z, by the lights of both.
+    fn take_in(&mut self, other: &Self, z: DVec3, [own, others]: &[Lanes<N>; 2]) {
+        let turn = Turn::new(z, other.x, self.x).unwrap_or(Turn::NONE);
+        for (i, weights) in self.weights.iter_mut().enumerate() {
+            let [p0, p1, p2, p3] = other.weights[i];
+            let [r1, r2] = turn.of(p1, p2);
+            let share = others[i] * inverse(own[i] + others[i]);
+            for (part, other) in weights.iter_mut().zip([p0, r1, r2, p3]) {
+                *part = from_fn(|k| part[k] + share * (other[k] - part[k]));
+            }
+        }
+    }
+
+    /// What becomes of the rows by light that is folded to the direction of other light, of which `straight` leaves of
+    /// unpolarized light and `left` of the path's; makes `share` what leaves of the path's of both.
+    #[inline(never)]
+    fn besides(
+        &self,
+        at: &Interaction<N>,
+        folded: Incoming,
+        [straight, left]: [Lanes<N>; 2],
+        share: &mut Lanes<N>,
+    ) -> Besides<N> {
+        let (value, mut mueller, mut change) = (evaluated(at, folded.wi), Mueller::NONE, Change::NONE);
+        let (passing, mut light) = (Self::meet(at, folded, value, &mut mueller), value);
+        self.find_change(&mueller, &passing, &mut change, &mut light);
+        if !self.compares {
+            *share = Lanes::from_fn(|i| share[i] * (left[i] + light[i]) * inverse(straight[i] + value[i]));
+        }
+        Besides { mueller, change, lights: [left, light] }
+    }
+
+    /// Takes in what comes folded to the direction of the rows' light, which is z; they were `before` at the surface.
+    fn take_in_besides(&mut self, before: &Self, besides: &Besides<N>, z: DVec3, flat: DVec3) {
+        let mut other = *before;
+        other.go(before, &besides.mueller, &besides.change);
+        other.fold(flat);
+        self.take_in(&other, z, &besides.lights);
+    }
+
     /// After a surface, along a direction, which shading normals may have folded; makes `bsdf_cos` that of the path's
     /// light.
     fn after(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
@@ -322,6 +296,13 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         let (asked, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
         let value = value.unwrap_or_else(|| evaluated(at, asked.wi));
         let passing = Self::meet(at, asked, value, &mut mueller);
+        if let Some(folded) = Self::folded_to(at, incoming) {
+            let mut left = value;
+            after.pass(&mueller, &passing, &mut left);
+            let besides = self.besides(at, folded, [value, left], bsdf_cos);
+            after.take_in_besides(self, &besides, -wi, at.flat);
+            return after;
+        }
         after.pass(&mueller, &passing, bsdf_cos);
         if drawn.is_some() {
             after.fold(at.flat);
@@ -421,19 +402,30 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
                 Some(_) => evaluated(at, asked.wi),
             };
             let passing = Self::meet(at, asked, value, &mut way.mueller);
-            self.find_change(&way.mueller, &passing, &mut way.change, &mut branch.share);
             way.folded_at = drawn.map(|_| at.flat);
+            way.besides = None;
+            if let Some(folded) = Self::folded_to(at, incoming) {
+                let mut left = value;
+                self.find_change(&way.mueller, &passing, &mut way.change, &mut left);
+                let besides = self.besides(at, folded, [value, left], &mut branch.share);
+                way.besides = Some(Box::new(besides));
+                continue;
+            }
+            self.find_change(&way.mueller, &passing, &mut way.change, &mut branch.share);
         }
     }
 
-    fn become_along(&mut self, before: &Self, _: &Interaction<N>, _: &Branch<N>, way: Option<&Way<N>>) {
-        let Way { is_any_left, mueller, change, folded_at } = way.expect("`split` tells of all branches");
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Way<N>>) {
+        let Way { is_any_left, mueller, change, folded_at, besides } = way.expect("`split` tells of all branches");
         if !is_any_left {
             return self.lose(before, change.x);
         }
         self.go(before, mueller, change);
         if let Some(flat) = folded_at {
             self.fold(*flat);
+        }
+        if let Some(besides) = besides {
+            self.take_in_besides(before, besides, -branch.wi, at.flat);
         }
     }
 

@@ -1,0 +1,70 @@
+//! What a surface makes of rows of Stokes weights.
+
+use std::array::from_fn;
+
+use super::turn::Turn;
+use crate::material::{Block, Mueller};
+use crate::math::DVec3;
+use crate::spectrum::Lanes;
+
+/// Of each of K rows the weight of S0, then those of S1, S2 and S3.
+pub type Weights<const K: usize> = [[f32; K]; 4];
+
+/// How a Mueller matrix changes rows.
+#[derive(Clone, Debug)]
+pub struct Change<const N: usize> {
+    /// What leaves of unpolarized light.
+    pub value: Lanes<N>,
+    /// What makes rows shares of the throughput beyond.
+    pub scale: Lanes<N>,
+    /// From the frame before to that of the block.
+    pub met: Turn,
+    /// The same to that of the base, and from there to the frame beyond.
+    pub base: [Turn; 2],
+    /// The x of the frame beyond.
+    pub x: DVec3,
+    /// The only lane that goes this way, where it is alone: to change it alone takes a fraction of the time.
+    pub alone: Option<usize>,
+}
+
+impl<const N: usize> Change<N> {
+    pub const NONE: Self = Self {
+        value: Lanes::ZERO,
+        scale: Lanes::ZERO,
+        met: Turn::NONE,
+        base: [Turn::NONE; 2],
+        x: DVec3::ZERO,
+        alone: None,
+    };
+
+    /// Rows of one lane beyond the surface, not yet shares of what leaves.
+    #[inline(always)]
+    pub fn of_block<const K: usize>(&self, block: &Block<Lanes<N>>, i: usize, weights: Weights<K>) -> Weights<K> {
+        let [q0, q1, q2, q3] = weights;
+        let [r1, r2] = self.met.of(q1, q2);
+        let (value, a, d, c, q) = (self.value[i], block.a[i], block.d[i], block.c[i], block.q[i]);
+        [
+            from_fn(|k| value * q0[k] + d * r1[k]),
+            from_fn(|k| d * q0[k] + a * r1[k]),
+            from_fn(|k| c * r2[k] + q * q3[k]),
+            from_fn(|k| c * q3[k] - q * r2[k]),
+        ]
+    }
+
+    /// The same with what comes from below a coat.
+    #[inline(always)]
+    pub fn of_both<const K: usize>(&self, mueller: &Mueller<N>, i: usize, weights: Weights<K>) -> Weights<K> {
+        let mut after = self.of_block(&mueller.block, i, weights);
+        if let Some(base) = &mueller.base {
+            let ([q0, q1, q2, _], [turn, back]) = (weights, self.base);
+            let [u1, _] = turn.of(q1, q2);
+            let [v1, v2] = back.of(from_fn(|k| base.arriving[i] * q0[k] + base.both[i] * u1[k]), [0.0; K]);
+            for k in 0..K {
+                after[0][k] += base.leaving[i] * u1[k];
+                after[1][k] += v1[k];
+                after[2][k] += v2[k];
+            }
+        }
+        after
+    }
+}
