@@ -219,16 +219,15 @@ fn scatter<const N: usize, P: Polarization<N>>(
             branch.pdf = Some(pdf);
             true
         });
-        walker.polarize(path, at);
+        walker.polarize_forward(path, at);
     }
     walker.follow(&mut Departure::new(walker.world, path, at).of_light_path(), sampler);
 }
 
 /// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
 fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
-    let [side, normal] = shading::normals_of(at.lobes, at.point, direction);
-    let viewed = Arrival { wo: direction, normal, ..at.arrival };
-    shading::evaluate(at.material, &viewed, side, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
+    let viewed = at.viewed_from(direction);
+    shading::evaluate(at.material, &viewed.arrival, viewed.flat, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }
 
 /// Replaces the share of a branch by that of light the other way: materials need not answer alike to both.
