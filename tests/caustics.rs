@@ -5,6 +5,7 @@
 //! ```
 
 mod agreement;
+mod bent;
 mod blur;
 mod coats;
 mod edges;

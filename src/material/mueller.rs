@@ -254,6 +254,13 @@ impl<const N: usize> Mueller<N> {
         }
     }
 
+    /// Becomes that of the way back, Q M^T Q with Q = diag(1, 1, -1, 1): of a block it is the same.
+    pub fn turn_back(&mut self) {
+        if let Some(base) = &mut self.base {
+            (base.leaving, base.arriving) = (base.arriving, base.leaving);
+        }
+    }
+
     /// Takes in another one; where both have a plane of incidence it is the same.
     pub fn add(&mut self, other: &Self) {
         if self.axis == DVec3::ZERO {

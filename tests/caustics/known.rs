@@ -283,8 +283,12 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
                   shape.cube = { center = [2, 0.5, 0], size = 1 }\n";
     asks(format!("{ball}{coated}{point}"), "photons from a point toward 2 smooth objects");
     asks(format!("{coated}{point}"), "photons from a point toward object ");
-    let frosted = "[material.frosted]\ndielectric = { index = 1.5, roughness = 0.25 }\n".to_owned();
-    let plan = room(&(frosted + &ball.replace("\"glass\"", "\"frosted\"") + point));
+    let frosted = |roughness: f64| {
+        let ball = ball.replace("\"glass\"", "\"frosted\"");
+        format!("[material.frosted]\ndielectric = {{ index = 1.5, roughness = {roughness} }}\n{ball}{point}")
+    };
+    asks(frosted(0.2), "photons from a point toward ball");
+    let plan = room(&frosted(0.3));
     let all = because(&plan);
     assert!(all.contains("no caustics: no surface is smooth") && !all.contains("left out: light of point"), "{all}");
     leaves(format!("{ball}{}", lamp(2.0)), "large enough for rays to meet by chance");

@@ -212,7 +212,7 @@ fn scatter<const N: usize, P: Polarization<N>>(
         }
         walker.branches.retain_mut(|branch| {
             let (is_wide, cos) = (branch.pdf.is_some() && !branch.crosses, branch.wi.dot(*flat));
-            let Some(seen) = seen_from(at, branch.wi, false).filter(|_| is_wide && cos > 0.0) else { return false };
+            let Some(seen) = seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
             let of_material = || shading::evaluate(material, arrival, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
             let of_material = if by_material > 0.0 { of_material() } else { 0.0 };
             let pdf = by_material * of_material + (1.0 - by_material) * cos / PI;
@@ -220,24 +220,21 @@ fn scatter<const N: usize, P: Polarization<N>>(
             branch.pdf = Some(pdf);
             true
         });
-        walker.polarize(path, at);
+        walker.polarize_forward(path, at);
     }
     walker.follow(&mut Departure::new(walker.world, path, at).of_light_path(), sampler);
 }
 
-/// What the camera would see of a photon in the direction in which it leaves, beyond the surface where it `crosses`,
-/// times the cosine of its arrival.
-fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3, crosses: bool) -> Option<Lanes<N>> {
-    let [side, normal] = shading::normals_of(at.lobes, at.point, direction);
-    let from = if crosses { at.arrival.turned_around() } else { at.arrival };
-    let viewed = Arrival { wo: direction, normal, ..from };
-    shading::evaluate(at.material, &viewed, side, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
+/// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
+fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
+    let viewed = at.viewed_from(direction);
+    shading::evaluate(at.material, &viewed.arrival, viewed.flat, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }
 
 /// Replaces the share of a branch by that of light the other way: materials need not answer alike to both.
 fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
     let onward = shading::evaluate(at.material, &at.arrival, at.flat, branch.wi);
-    let (Some((onward, _)), Some(back)) = (onward, seen_from(at, branch.wi, branch.crosses)) else {
+    let (Some((onward, _)), Some(back)) = (onward, seen_from(at, branch.wi)) else {
         branch.share = Lanes::ZERO;
         return;
     };

@@ -6,7 +6,7 @@ use super::batch::{Batch, Sent, send};
 use super::follow::{Landing, Photon};
 use crate::light::LightId;
 use crate::material::Arrival;
-use crate::math::{DVec2, DVec3, Ray};
+use crate::math::{DVec2, Ray};
 use crate::scene::{Ends, FilmSettings, Seen, Sight};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::arrived::Arrived;
@@ -110,11 +110,9 @@ struct View<'v, 'a, const N: usize, P: Polarization<N>> {
     seen: Seen,
     /// Where on the film, near enough to the window.
     places: Vec<DVec2>,
-    /// Whether the camera is on the side where the photon has arrived; the surface as it sees it, and its own unit
-    /// normal there.
+    /// Whether the camera is on the side where the photon has arrived; the surface as it sees it.
     same: bool,
-    viewed: Arrival<'v, N>,
-    side: DVec3,
+    viewed: Interaction<'v, N>,
     sight: Sight,
 }
 
@@ -137,7 +135,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
     /// None where the camera does not see the place.
     fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>) -> Option<Self> {
         let Landing { path, at, photon } = landing;
-        let Interaction { arrival, flat, point, lobes, .. } = at;
+        let Interaction { flat, point, .. } = at;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
         let sight = world.sight(at.object);
@@ -155,10 +153,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
             return None;
         }
         let same = seen.direction.dot(*flat) > 0.0;
-        let [side, normal] = shading::normals_of(*lobes, point, seen.direction);
-        let turned = Arrival { wo: seen.direction, normal, ..*arrival };
-        let viewed = if same { turned } else { turned.turned_around() };
-        Some(Self { walker, landing, seen, places, same, viewed, side, sight })
+        let viewed = at.viewed_from(seen.direction);
+        Some(Self { walker, landing, seen, places, same, viewed, sight })
     }
 
     /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
@@ -205,19 +201,19 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
 
     /// What the surface scatters toward the camera.
     fn scattered(&self) -> Option<Splat> {
-        let Self { landing, viewed, side, same, .. } = self;
+        let Self { landing, viewed, same, .. } = self;
         let Landing { path, at, .. } = landing;
         let Interaction { arrival, material, .. } = at;
         let world = self.walker.world;
-        let (mut bsdf_cos, _) = shading::evaluate(material, viewed, *side, arrival.wo)?;
-        let parted = path.parted || (!same && parts(at.lobes, material, viewed));
-        let start = || path.polarization.shown(at, self.seen.direction, &mut bsdf_cos);
+        let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.arrival, viewed.flat, arrival.wo)?;
+        let parted = path.parted || (!same && parts(at.lobes, material, &viewed.arrival));
+        let start = || path.polarization.forward(viewed, arrival.wo, &mut bsdf_cos);
         let (shone, on_its_way) = self.arriving(arrival.draw, start, || landing.shone(world))?;
-        let polarized = path.polarization.seen(at, viewed, &on_its_way, world, &self.back());
+        let polarized = path.polarization.seen(at, &viewed.arrival, &on_its_way, world, &self.back());
         let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let white = world.layers.white.as_ref();
-        let lobe = || FirstLobe::scattered(white, material, at.lobes, viewed, arrival.wo, !same);
+        let lobe = || FirstLobe::scattered(white, material, at.lobes, &viewed.arrival, arrival.wo, !same);
         let first = world.layers.lobes_apart.then(lobe);
         let arrived = Arrived { source: landing.photon.light, draw: arrival.draw, lanes, parted };
         Some(self.splat(&arrived, &polarized, parted, first))
@@ -225,26 +221,26 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
 
     /// What a dye, one of its material by a number, shines toward the camera.
     fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
-        let Self { landing, viewed, side, .. } = self;
+        let Self { landing, viewed, .. } = self;
         let Landing { path, at, photon } = landing;
         let world = self.walker.world;
         if !self.same {
             return None;
         }
-        let (bsdf_cos, _) = shading::evaluate(&dyes.white, viewed, *side, at.arrival.wo)?;
+        let (bsdf_cos, _) = shading::evaluate(&dyes.white, &viewed.arrival, viewed.flat, at.arrival.wo)?;
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * landing.shone(world));
         let parted = path.parted;
         let brightness = dyes.excited(dye, &Arrived { source: photon.light, draw: at.arrival.draw, lanes, parted });
         // Its light is of other wavelengths than that of the photon, whose lanes may have parted.
         let draw = &world.method.basis.draw(photon.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
         let mut shares = Vec::new();
-        at.material.shares_of_dyes(&Arrival { draw, ..*viewed }, Lanes::ONE, &mut shares);
-        let at = &at.of_dye(&dyes.white, draw);
+        at.material.shares_of_dyes(&Arrival { draw, ..viewed.arrival }, Lanes::ONE, &mut shares);
         let polarization = path.polarization.exciting();
         let mut unpolarized = Lanes::ONE;
-        let start = || polarization.shown(at, self.seen.direction, &mut unpolarized);
+        let start = || polarization.forward(&viewed.of_dye(&dyes.white, draw), at.arrival.wo, &mut unpolarized);
         let (arriving, on_its_way) = self.arriving(draw, start, || draw.start())?;
-        let polarized = polarization.seen(at, viewed, &on_its_way, world, &self.back());
+        let polarized =
+            polarization.seen(&at.of_dye(&dyes.white, draw), &viewed.arrival, &on_its_way, world, &self.back());
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
         let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };

@@ -89,6 +89,14 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { arrival, parts, ..self }
     }
 
+    /// The surface as it is viewed from another direction, on either side; the media are still those of this one.
+    pub fn viewed_from(&self, wo: DVec3) -> Self {
+        let [flat, normal] = shading::normals_of(self.lobes, self.point, wo);
+        let turned = Arrival { wo, normal, ..self.arrival };
+        let arrival = if wo.dot(self.flat) > 0.0 { turned } else { turned.turned_around() };
+        Self { flat, arrival, ..*self }
+    }
+
     /// As a surface that has some of its material's lobes alone.
     pub fn of_lobes(&self, lobes: Lobes) -> Self {
         Self { arrival: Arrival { lobes, ..self.arrival }, ..*self }

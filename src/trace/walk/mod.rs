@@ -15,6 +15,7 @@ mod slots;
 pub mod straight;
 mod turn;
 mod walker;
+mod way;
 
 pub use audit::Audit;
 pub use excitation::Excitation;

@@ -78,7 +78,8 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// of them into `ways`. Nothing is put there where that can wait until one is chosen.
     fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::Way>);
 
-    /// Becomes what it is along a branch, of which `split` may have told already, when it was `before`.
+    /// Becomes what it is along a branch when it was `before`; `split` has told of those that are followed back to the
+    /// lights, and none has of those that `forward` follows.
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::Way>);
 
     /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
@@ -99,11 +100,11 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// be that is not, what the path takes of it. None where the light is not polarized.
     fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
 
-    /// On the way from a surface, where a photon has landed, along a unit vector to the camera; makes `bsdf_cos` that
-    /// of the photon's light.
-    fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
+    /// Of light that is followed forward: beyond a surface to which it has come from the unit vector `wi`, on its way
+    /// to who views that; makes `bsdf_cos`, by the surface as it is viewed, that of the path's light.
+    fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `shown`
+    /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `forward`
     /// and panes, `viewed` the surface as the camera sees it.
     fn seen(
         &self,

@@ -129,7 +129,7 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline(always)]
-    fn shown(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
+    fn forward(&self, _: &Interaction<N>, _: DVec3, _: &mut Lanes<N>) -> Self {
         Self::NOT
     }
 

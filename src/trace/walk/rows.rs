@@ -15,10 +15,11 @@ use super::polarization::{MetLight, Polarization, SeenPhoton};
 use super::shading;
 use super::slots::Slots;
 use super::turn::{Turn, across};
+use super::way::{Besides, Passing, Way};
 use crate::light::Light;
 use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
 use crate::math::{DVec3, Frame, Ray};
-use crate::spectrum::{LaneSet, Lanes, Table};
+use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
 use crate::trace::arrived::Arrived;
 use crate::trace::method::Polarizing;
@@ -50,44 +51,6 @@ pub struct Column<const N: usize> {
 #[inline(always)]
 fn inverse(x: f32) -> f32 {
     if x >= f32::MIN_POSITIVE { 1.0 / x } else { 0.0 }
-}
-
-/// One way by which light leaves a surface.
-struct Passing<const N: usize> {
-    /// What leaves of unpolarized light.
-    value: Lanes<N>,
-    /// The lanes that do.
-    lanes: LaneSet,
-    /// The direction of the light on both sides of the surface, to the viewer and before it arrives.
-    z: [DVec3; 2],
-}
-
-/// What becomes of rows along a branch.
-#[derive(Debug)]
-pub struct Way<const N: usize> {
-    /// Whether any polarization is left: what there is beside `change.x` otherwise has no meaning.
-    is_any_left: bool,
-    mueller: Mueller<N>,
-    change: Change<N>,
-    /// The unit normal of the plane at which a shading normal folds the light.
-    folded_at: Option<DVec3>,
-    /// What comes folded to a direction to which light comes straight as well.
-    besides: Option<Box<Besides<N>>>,
-}
-
-/// What becomes of rows by light that is folded to the direction of other light.
-#[derive(Debug)]
-struct Besides<const N: usize> {
-    mueller: Mueller<N>,
-    change: Change<N>,
-    /// What leaves of the path's light: of the other light, and of this one.
-    lights: [Lanes<N>; 2],
-}
-
-impl<const N: usize> Way<N> {
-    fn new() -> Self {
-        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None, besides: None }
-    }
 }
 
 /// What leaves a surface of unpolarized light from a direction, by the normal by which it scatters.
@@ -310,6 +273,19 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         after
     }
 
+    /// Beyond a surface, of light that is followed forward by one way to the viewer, and folded before it arrives or
+    /// not; makes `share`, what leaves of unpolarized light, that of the path's.
+    fn sent(&self, at: &Interaction<N>, incoming: Incoming, is_folded: bool, share: &mut Lanes<N>) -> Self {
+        let (mut after, mut mueller) = (*self, Mueller::NONE);
+        if is_folded {
+            after.fold(at.flat);
+        }
+        let passing = Self::meet(at, incoming, *share, &mut mueller).turned_back();
+        mueller.turn_back();
+        after.pass(&mueller, &passing, share);
+        after
+    }
+
     /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
     fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
         let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
@@ -416,7 +392,12 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     }
 
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Way<N>>) {
-        let Way { is_any_left, mueller, change, folded_at, besides } = way.expect("`split` tells of all branches");
+        let Some(Way { is_any_left, mueller, change, folded_at, besides }) = way else {
+            // The branch's share is that of the path's light by now.
+            let mut share = branch.share;
+            *self = before.forward(&at.viewed_from(branch.wi), at.arrival.wo, &mut share);
+            return;
+        };
         if !is_any_left {
             return self.lose(before, change.x);
         }
@@ -453,8 +434,29 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Some(lit)
     }
 
-    fn shown(&self, at: &Interaction<N>, direction: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
-        self.after(at, direction, None, bsdf_cos)
+    fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
+        let z = -viewed.arrival.wo;
+        if let Material::Diffuse(_) = viewed.material {
+            let mut after = *self;
+            after.lose(self, across(z, self.x));
+            return after;
+        }
+        let lanes = viewed.arrival.present.not_zero();
+        let incoming = Incoming { wi, crosses: wi.dot(viewed.flat) < 0.0, single: false, lanes };
+        let drawn = Self::unfolded(viewed, incoming);
+        let asked = drawn.unwrap_or(incoming);
+        let value = evaluated(viewed, asked.wi);
+        let (mut left, mut others) = (value, [Lanes::ZERO; 2]);
+        let mut after = self.sent(viewed, asked, drawn.is_some(), &mut left);
+        if let Some(folded) = Self::folded_to(viewed, incoming) {
+            others = [evaluated(viewed, folded.wi); 2];
+            let other = self.sent(viewed, folded, true, &mut others[1]);
+            after.take_in(&other, z, &[left, others[1]]);
+        }
+        if !self.compares {
+            *bsdf_cos = Lanes::from_fn(|i| bsdf_cos[i] * (left[i] + others[1][i]) * inverse(value[i] + others[0][i]));
+        }
+        after
     }
 
     fn seen(&self, _: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {

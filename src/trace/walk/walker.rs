@@ -137,6 +137,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         path.polarization.split(at, &mut self.branches, &mut self.ways);
     }
 
+    /// The same of light that is followed forward, by shading normals that depend on the viewer.
+    pub fn polarize_forward(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
+        self.ways.clear();
+        for branch in &mut self.branches {
+            path.polarization.forward(&at.viewed_from(branch.wi), at.arrival.wo, &mut branch.share);
+        }
+    }
+
     /// Leaves the branches alone that smooth surfaces have: diffuse surfaces may send light on no more.
     pub fn keep_single(&mut self, departure: &Departure<N, P>) {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
