@@ -16,11 +16,9 @@ pub struct Roughness {
 
 /// Width of the facets' slopes below which a surface is taken as smooth.
 const SMOOTH: f64 = 1e-4;
-/// Width below which what it reflects is narrow: photons find the light that it sends on sooner than chance does, by
-/// twice or more (`benches/README.md`).
+/// Width below which what it reflects or refracts is narrow: photons find the light that it sends on sooner than chance
+/// does, by twice or more where it is half as wide (`benches/README.md`).
 const NARROW: f64 = 0.1;
-/// The same of what a boundary between clear media reflects and refracts.
-const NARROW_INTERFACE: f64 = 0.07;
 
 impl Roughness {
     /// A surface of roughness `value`: the slopes of its facets are as wide as its square.
@@ -47,7 +45,7 @@ impl Roughness {
     pub fn of_interface(&self) -> Lobes {
         match self.alpha() {
             ..SMOOTH => Lobes::DELTA,
-            ..NARROW_INTERFACE => Lobes::NARROW.union(Lobes::DELTA),
+            ..NARROW => Lobes::NARROW.union(Lobes::DELTA),
             _ => Lobes::GLOSSY_REFLECTION.union(Lobes::GLOSSY_TRANSMISSION).union(Lobes::DELTA),
         }
     }

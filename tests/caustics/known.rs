@@ -288,7 +288,7 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
         format!("[material.frosted]\ndielectric = {{ index = 1.5, roughness = {roughness} }}\n{ball}{point}")
     };
     asks(frosted(0.2), "photons from a point toward ball");
-    let plan = room(&frosted(0.3));
+    let plan = room(&frosted(0.35));
     let all = because(&plan);
     assert!(all.contains("no caustics: no surface is smooth") && !all.contains("left out: light of point"), "{all}");
     leaves(format!("{ball}{}", lamp(2.0)), "large enough for rays to meet by chance");
