@@ -196,10 +196,9 @@ fn scatter<const N: usize, P: Polarization<N>>(
         material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
         walker.polarize(path, at);
         let is_reciprocal = material.is_reciprocal();
-        let (backward, forward): (Vec<_>, Vec<_>) =
-            walker.branches.iter_mut().partition(|branch| !is_reciprocal && branch.pdf.is_some());
-        backward.into_iter().for_each(|branch| turn_back(at, branch));
-        send_forward(arrival, forward.into_iter());
+        let is_turned = |branch: &Branch<N>| !is_reciprocal && branch.pdf.is_some();
+        walker.branches.iter_mut().filter(|branch| is_turned(branch)).for_each(|branch| turn_back(at, branch));
+        send_forward(arrival, walker.branches.iter_mut().filter(|branch| !is_turned(branch)));
     } else {
         // By shading normals that depend on the viewer, not every direction is drawn from which light arrives: of those
         // that the material draws, only a part.
