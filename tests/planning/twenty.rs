@@ -17,7 +17,7 @@ const MATERIALS: &str = "[material.white]\ndiffuse = { reflectance = 0.7 }\n[mat
     [material.lamp]\nemissive = { radiance = 5 }\n\
     [material.glass]\ndielectric = { index = 1.5 }\n[material.water]\ndielectric = { index = 1.33, priority = 1 }\n\
     [material.flint]\ndielectric = { index = \"N-SF11\" }\n\
-    [material.frosted]\ndielectric = { index = 1.5, roughness = 0.3 }\n[material.pane]\nthin = { index = 1.5 }\n\
+    [material.frosted]\ndielectric = { index = 1.5, roughness = 0.5 }\n[material.pane]\nthin = { index = 1.5 }\n\
     [material.mirror]\nmirror = { reflectance = 0.9 }\n[material.silver]\nconductor = { metal = \"Ag\" }\n\
     [material.brushed]\nconductor = { metal = \"Ag\", roughness = 0.4 }\n";
 const BALL: &str = "sphere = { center = [0, 0.8, 0], radius = 0.5 }";
