@@ -77,7 +77,7 @@ fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
     for more in [
         lamp("quad = { center = [0, 5, 0], u = [1, 0, 0], v = [0, 0, 1] }"),
         // Straight down, by a mirror, into glass, far outside of the picture.
-        spot("[0, -1, 0]", 0.5),
+        spot("[0, -1, 0]", 1.0),
         spot("[0, 1, 0]", 3.0) + &mirror,
         spot("[0, 1, 0]", 3.0) + &prism,
         spot("[1, -0.01, 0]", 1.0),
