@@ -12,7 +12,7 @@ use crate::trace::{Smoothness, World};
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
-/// The branch of what a narrow lobe sends on by itself.
+/// The branch of what narrow lobes send on by themselves.
 const BY_NARROW: usize = 65;
 /// How often a material draws where a photon goes that meets it at a shading normal of its own, unless it is diffuse.
 const BY_MATERIAL: f64 = 0.5;

@@ -19,7 +19,7 @@ pub struct Change<const N: usize> {
     pub scale: Lanes<N>,
     /// From the frame before to that of the block.
     pub met: Turn,
-    /// The same to that of the base, and from there to the frame beyond.
+    /// From the frame before to that of the base, and from there to the frame beyond.
     pub base: [Turn; 2],
     /// The x of the frame beyond.
     pub x: DVec3,
@@ -51,7 +51,7 @@ impl<const N: usize> Change<N> {
         ]
     }
 
-    /// The same with what comes from below a coat.
+    /// Rows of one lane beyond a surface with what comes from below its coat, not yet shares of what leaves.
     #[inline(always)]
     pub fn of_both<const K: usize>(&self, mueller: &Mueller<N>, i: usize, weights: Weights<K>) -> Weights<K> {
         let mut after = self.of_block(&mueller.block, i, weights);

@@ -249,7 +249,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
     }
 
-    /// Whether photons bring all light that a surface scatters, for it does so by a narrow lobe alone: they go on from
+    /// Whether photons bring all light that a surface scatters, for it does so by narrow lobes alone: they go on from
     /// it as from smooth ones.
     #[inline]
     pub fn leaves_all_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {

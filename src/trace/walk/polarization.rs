@@ -100,8 +100,8 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// be that is not, what the path takes of it. None where the light is not polarized.
     fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
 
-    /// Of light that is followed forward: beyond a surface to which it has come from the unit vector `wi`, on its way
-    /// to who views that; makes `bsdf_cos`, by the surface as it is viewed, that of the path's light.
+    /// Of light that is followed forward: beyond a surface, to which it came from the unit vector `wi`, on its way to
+    /// the viewer. Makes `bsdf_cos`, by the surface as it is viewed, that of the path's light.
     fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `forward`

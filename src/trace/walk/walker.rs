@@ -137,7 +137,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         path.polarization.split(at, &mut self.branches, &mut self.ways);
     }
 
-    /// The same of light that is followed forward, by shading normals that depend on the viewer.
+    /// Polarizes the light of branches that is followed forward, by shading normals that depend on the viewer.
     pub fn polarize_forward(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
         self.ways.clear();
         for branch in &mut self.branches {
