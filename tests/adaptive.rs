@@ -63,7 +63,7 @@ fn light_on_shadow_catchers_asks_for_samples_only_where_there_are_shadows() {
             + &body("floor", "diffuse = { reflectance = 0.6 }", &[GROUND])
             + floor;
         let scene = scene(&text);
-        adaptive(&World::new(&scene, method(&scene, SPLITTING)), false).is_some()
+        adaptive(&World::new(&scene, method(&scene, SPLITTING))).is_some()
     };
     let ball = body("ball", "diffuse = { reflectance = 0 }", &[BALL]);
     assert!(noisy("", ""));
@@ -90,7 +90,7 @@ fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
             + &body("lamp", LAMP, &["sphere = { center = [0, 20, 0], radius = 1 }"]);
         let scene = scene(&text);
         let [columns, rows] =
-            adaptive(&World::new(&scene, method(&scene, SPLITTING)), false).expect("there is noise").density.cells;
+            adaptive(&World::new(&scene, method(&scene, SPLITTING))).expect("there is noise").density.cells;
         columns * rows
     };
     let (many, few) = (cells(1), cells(60));

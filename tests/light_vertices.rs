@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use abbe::film::{Film, Layer};
 use abbe::plan::plan;
-use abbe::trace::{Method, World, pilot_noise, prepare, render, with_light_vertices};
+use abbe::trace::{Effort, Method, World, pilot_noise, prepare, render, with_light_vertices};
 
 use crate::support::larger::larger;
 use crate::support::scenes::{
@@ -279,7 +279,7 @@ fn looking(world: &World) -> World {
 
 /// How many times as long an equal error takes without light vertices.
 fn gain(world: &World) -> Option<f64> {
-    pilot_noise(&looking(world)).gain_over(&pilot_noise(world), &[])
+    pilot_noise(&looking(world)).gain_over(&pilot_noise(world), &[]).map(Effort::judged)
 }
 
 /// Images by a method that something is changed of, without light vertices or with those that `with` asks for.

@@ -12,8 +12,7 @@ const LARGE: f64 = 4e6;
 
 /// Where samples are taken, if as many everywhere would be clearly worse.
 ///
-/// An image that stops by its error is judged as a whole; else every pixel counts by itself. No pixel gets too few
-/// samples to tell its variance.
+/// No pixel gets too few samples to tell its variance.
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
     let (film, method) = (world.scene().film, world.method());
     let of_pixel = if method.stop.is_some() { FIRST_LOOK } else { method.samples };
@@ -23,8 +22,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
     if !is_asked || samples < LARGE || fewest < f64::from(TELL_VARIANCE) {
         return None;
     }
-    let is_absolute = method.stop.as_ref().is_some_and(|stop| stop.noise.is_some());
-    adaptive(world, is_absolute).filter(|adaptive| adaptive.gain > CLEARLY)
+    adaptive(world).filter(|adaptive| adaptive.gain > CLEARLY)
 }
 
 /// What a person is told of it.

@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use super::words::as_long;
 use crate::light::Light;
 use crate::spectrum::Table;
 use crate::trace::{PhotonWorth, PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
@@ -49,14 +50,14 @@ impl Way<'_> {
     fn improved(&self, world: World, reason: impl FnOnce(&World, &str) -> String) -> Option<Self> {
         let noise = pilot_noise(&world);
         let gain = noise.gain_over(self.noise(), self.photons)?;
-        let without = format!("the same error would take about {gain:.1} times as long");
+        let without = as_long(gain);
         let reasons = self.reasons.iter().cloned().chain([reason(&world, &without)]).collect();
-        (gain > CLEARLY).then(|| Self {
+        (gain.judged() > CLEARLY).then(|| Self {
             world,
             reasons,
             photons: self.photons,
             noise: noise.into(),
-            gain: self.gain * gain,
+            gain: self.gain * gain.judged(),
         })
     }
 

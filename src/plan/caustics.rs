@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 
 use super::efficiency::{Worth, rounded, weigh};
-use super::words::in_number;
+use super::words::{as_long, in_number};
 use crate::light::{Light, LightId};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
+use crate::trace::{Effort, LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
 
 /// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
@@ -55,7 +55,7 @@ pub(super) struct Caustics {
     /// The share of them that is seen.
     seen: f64,
     /// How many times as long chance takes to the same error, if it finds them.
-    gain: Option<f64>,
+    gain: Option<Effort>,
 }
 
 impl Caustics {
@@ -78,10 +78,7 @@ impl Caustics {
         let Self { from, to, seen, gain, .. } = self;
         let (method, photons) = (world.method(), world.method().light_pass.as_ref()?.photons);
         let all = if method.stop.is_none() { format!("{} ", in_number(photons)) } else { String::new() };
-        let without = gain.map_or(String::new(), |gain| {
-            let times = if gain < 9.95 { format!("{gain:.1}") } else { in_number(gain.round() as u64) };
-            format!("; without them, the same error would take about {times} times as long")
-        });
+        let without = gain.map_or(String::new(), |gain| format!("; without them, {}", as_long(gain)));
         Some(format!(
             "photon tracing: {all}photons from {from} toward {to}, {:.2} for each camera sample; {} of them are \
              seen{without}",
@@ -127,7 +124,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if sending.is_empty() {
         let (from, why) = (named(scene, &large), not_worth(gain));
         lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-        return Shown::not(lines, gain.is_none_or(|gain| of_smooth && (gain - 1.0).abs() > NOTHING));
+        return Shown::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
@@ -179,10 +176,10 @@ pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String>
 
 /// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing
 /// would be lit.
-fn not_worth(gain: Option<f64>) -> String {
-    let Some(times) = gain.map(|gain| 1.0 / gain) else { return "what they land on is black".into() };
-    let small = if times < 1.0 { ", which is too small a gain to be sure of" } else { "" };
-    format!("with them, the same error would take {times:.2} times as long{small}")
+fn not_worth(gain: Option<Effort>) -> String {
+    let Some(gain) = gain else { return "what they land on is black".into() };
+    let small = if gain.judged() > 1.0 { ", which is too small a gain to be sure of" } else { "" };
+    format!("with them, {}{small}", as_long(gain.inverse()))
 }
 
 /// A light and the largest solid angle under which it is seen.

@@ -4,7 +4,7 @@ use crate::light::{Light, LightId, Point, Spot};
 use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Emission, apply};
-use crate::trace::{PhotonWorth, Smoothness, World, photons_worth, pilot_noise};
+use crate::trace::{Effort, PhotonWorth, Smoothness, World, photons_worth, pilot_noise};
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
@@ -17,7 +17,7 @@ pub(super) struct Worth {
     pub(super) photons: Vec<PhotonWorth>,
     /// How many times as long chance takes to the same error; none where it misses light for good, or there is no
     /// light.
-    pub(super) gain: Option<f64>,
+    pub(super) gain: Option<Effort>,
     /// Whether some of the photons were sent to what is smooth, all of it or a part.
     pub(super) of_smooth: bool,
 }
@@ -42,11 +42,12 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) 
     let of_smooth = known.iter().any(|(_, photons)| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
     let (spikes, mut photons): (Vec<f64>, Vec<PhotonWorth>) = known.into_iter().unzip();
     let noise = pilot_noise(world);
-    let totals: Vec<f64> = (0..=photons.len()).map(|sent| noise.least_work(&photons, &spikes, sent)).collect();
-    let best = (0..totals.len()).min_by(|&a, &b| totals[a].total_cmp(&totals[b])).unwrap_or(0);
-    let best = if totals[0] > CLEARLY * totals[best] { best } else { 0 };
-    let gain = totals[0] / totals[if best == 0 { photons.len() } else { best }];
-    let gain = (gain.is_finite() && !photons.is_empty()).then_some(gain);
+    let totals: Vec<Effort> = (0..=photons.len()).map(|sent| noise.least_work(&photons, &spikes, sent)).collect();
+    let judged = |sent: usize| totals[sent].judged();
+    let best = (0..totals.len()).min_by(|&a, &b| judged(a).total_cmp(&judged(b))).unwrap_or(0);
+    let best = if judged(0) > CLEARLY * judged(best) { best } else { 0 };
+    let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
+    let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
     photons.truncate(best);
     Worth { photons, gain, of_smooth }
 }

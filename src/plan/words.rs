@@ -1,5 +1,7 @@
 //! Numbers as people say them.
 
+use crate::trace::Effort;
+
 /// A share as people say it.
 pub(super) fn percent(share: f64) -> String {
     match 100.0 * share {
@@ -20,6 +22,22 @@ pub(super) fn in_number(count: u64) -> String {
     }
 }
 
+/// How many times as long an equal error takes, that of the image and that of its pixels.
+pub(super) fn as_long(times: Effort) -> String {
+    let number = |times: f64| match times {
+        less if less < 0.995 => format!("{less:.2}"),
+        few if few < 9.95 => format!("{few:.1}"),
+        many => in_number(many.round() as u64),
+    };
+    let of_pixels = number(times.of_pixels);
+    match times.of_whole.map(number) {
+        None => format!("the same error would take about {of_pixels} times as long"),
+        Some(of_whole) => {
+            format!("the same error would take about {of_whole} times as long, that of each pixel {of_pixels} times")
+        }
+    }
+}
+
 /// A time as people say it.
 pub(super) fn in_words(seconds: f64) -> String {
     match seconds {
@@ -33,7 +51,18 @@ pub(super) fn in_words(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{in_words, percent};
+    use super::{as_long, in_words, percent};
+    use crate::trace::Effort;
+
+    #[test]
+    fn an_effort_is_that_of_pixels_unless_the_whole_is_asked_for() {
+        let said = |of_pixels, of_whole| as_long(Effort { of_pixels, of_whole });
+        assert_eq!(said(0.902, None), "the same error would take about 0.90 times as long");
+        assert_eq!(
+            said(19_600.0, Some(1.02)),
+            "the same error would take about 1.0 times as long, that of each pixel 20 thousand times"
+        );
+    }
 
     #[test]
     fn little_is_not_nothing() {

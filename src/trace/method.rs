@@ -46,6 +46,12 @@ impl Method {
         self.max_bounces < u32::MAX || self.diffuse_bounces < u32::MAX
     }
 
+    /// Whether the image ends by its error, which is of the whole: then errors count alike in all pixels, bright and
+    /// dark. Else each counts relative to its pixel.
+    pub fn judges_the_whole(&self) -> bool {
+        self.stop.as_ref().is_some_and(|stop| stop.noise.is_some())
+    }
+
     /// How photons are gathered; none where they are not.
     pub fn map(&self) -> Option<MapPasses> {
         self.light_pass.as_ref().and_then(|pass| pass.map)

@@ -52,9 +52,9 @@ const SEED: u64 = 0x6465_6e73;
 
 /// Where an image takes more samples and where fewer, and what that is worth; none where there is no noise.
 ///
-/// Errors are relative to each pixel, or to the image if `is_absolute`. Rays followed stand for time, so that the
-/// answer is the same everywhere; the whole format counts, whatever part of it is made.
-pub fn adaptive(world: &World, is_absolute: bool) -> Option<Adaptive> {
+/// Errors are relative to each pixel, or to the image if it [is judged as a whole](crate::trace::Method). Rays followed
+/// stand for time, so that the answer is the same everywhere; the whole format counts, whatever part of it is made.
+pub fn adaptive(world: &World) -> Option<Adaptive> {
     let format = [world.scene.film.width, world.scene.film.height];
     let pixels = world.scene.film.whole().pixels() as f64;
     let cells = |most: f64| {
@@ -62,7 +62,7 @@ pub fn adaptive(world: &World, is_absolute: bool) -> Option<Adaptive> {
         format.map(|pixels| ((f64::from(pixels) / side) as u32).max(1))
     };
     let (cells, found) = in_lanes_of!(world, N, P => look::<N, P>(world, &cells));
-    let of = |pixels: Range<usize>| smoothed(cells, &found, pixels, is_absolute);
+    let of = |pixels: Range<usize>| smoothed(cells, &found, pixels, world.method.judges_the_whole());
     // What one pixel of each cell asks for is judged by the other: what is chosen by its own noise looks too good.
     let [gain, rays] = worth(&powers(&of(0..1))?, &of(1..2));
     Some(Adaptive { density: SampleDensity { cells, powers: powers(&of(0..2))? }, gain, rays })

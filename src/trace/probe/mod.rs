@@ -24,7 +24,7 @@ pub use cost::{PhotonTimes, Probe, photon_times, photons_within, probe};
 pub use density_pilot::{Adaptive, adaptive};
 pub use gathering_worth::{GatheredWorth, gathered_worth};
 pub use pilot::{PhotonWorth, SampleWorth, photons_worth};
-pub use pilot_noise::{PilotNoise, pilot_noise};
+pub use pilot_noise::{Effort, PilotNoise, pilot_noise};
 pub use prepare::{prepare, prepare_unguided};
 pub use reach::reached_places;
 pub use seen_light::{SeenLight, seen_light};

@@ -46,9 +46,43 @@ struct Pixel {
     cell: usize,
 }
 
+/// Work to an error, or how many times as much of it one way takes as another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// To an error of each pixel, relative to its brightness.
+    pub of_pixels: f64,
+    /// To an error of the whole image, where that is asked for.
+    pub of_whole: Option<f64>,
+}
+
+impl Effort {
+    /// What decides: where the error of the whole is asked for both count, as that is mostly made where the image is
+    /// bright, and it is looked at as well.
+    pub fn judged(self) -> f64 {
+        self.of_whole.map_or(self.of_pixels, |of_whole| (of_whole * self.of_pixels).sqrt())
+    }
+
+    /// Whether the two ways take the same but for so small a share.
+    pub fn is_equal(self, but: f64) -> bool {
+        [Some(self.of_pixels), self.of_whole].into_iter().flatten().all(|times| (times - 1.0).abs() <= but)
+    }
+
+    /// How many times as much the other way takes, of how many times as much this one does.
+    pub fn inverse(self) -> Self {
+        Self { of_pixels: self.of_pixels.recip(), of_whole: self.of_whole.map(f64::recip) }
+    }
+
+    /// How many times that of another it is.
+    pub fn over(self, other: Self) -> Self {
+        let of_whole = self.of_whole.zip(other.of_whole).map(|(own, other)| own / other);
+        Self { of_pixels: self.of_pixels / other.of_pixels, of_whole }
+    }
+}
+
 /// What samples of pixels all over the image are.
 pub struct PilotNoise {
     pixels: Vec<Pixel>,
+    is_whole: bool,
     /// Pixels of the format.
     format: f64,
     /// Rays of one sample, and its part of those of photons that are gathered.
@@ -87,41 +121,62 @@ fn weigh<const N: usize>(
     let stats = tracer.walker.stats;
     let rays = stats.rays as f64 + LOOKING * stats.resampled as f64;
     let format = film.whole().pixels() as f64;
-    PilotNoise { format, rays: rays / (pixels.len() as f64 * f64::from(SAMPLES)), pixels }
+    let rays = rays / (pixels.len() as f64 * f64::from(SAMPLES));
+    PilotNoise { pixels, is_whole: world.method.judges_the_whole(), format, rays }
 }
 
 impl PilotNoise {
     /// How many times as long an equal error takes with other samples, both beside as many photons as are best for
-    /// them; none where there is no noise. Variances are relative to the squares of the means.
-    pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<f64> {
+    /// them; none where there is no noise.
+    pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<Effort> {
         let mean = others.mean(photons);
-        let least = |noise: &Self| noise.work(photons, |_| 0.0, |pixel| pixel.square(photons, mean)).least();
-        let gain = least(others) / least(self);
-        gain.is_finite().then_some(gain)
+        let least = |noise: &Self| noise.effort(photons, photons.len(), |_| 0.0, mean);
+        let gain = least(others).over(least(self));
+        gain.judged().is_finite().then_some(gain)
     }
 
     /// The least product of time and variance where the first few of some photons are sent, and light of the others is
     /// left to chance. A camera sample finds little of it, as spikes: of what photons bring, the second moment is so
-    /// many times the mean. Variances are relative to the squares of the means.
-    pub fn least_work(&self, photons: &[PhotonWorth], spikes: &[f64], sent: usize) -> f64 {
+    /// many times the mean.
+    pub fn least_work(&self, photons: &[PhotonWorth], spikes: &[f64], sent: usize) -> Effort {
         let left = || photons.iter().zip(spikes).skip(sent);
         if left().any(|(_, spike)| spike.is_infinite()) {
-            return f64::INFINITY;
+            return Effort { of_pixels: f64::INFINITY, of_whole: self.is_whole.then_some(f64::INFINITY) };
         }
-        let mean = self.mean(photons);
         let by_chance = |pixel: &Pixel| left().map(|(photons, spike)| spike * photons.cells[pixel.cell].mean).sum();
-        self.work(&photons[..sent], by_chance, |pixel| pixel.square(photons, mean)).least()
+        self.effort(photons, sent, by_chance, self.mean(photons))
     }
 
-    /// How many photons for each of the samples make the time to an error least. Variances are not relative: else what
-    /// photons show, which is bright, would be noisier than all around it.
+    /// The least product of time and variance where the first few of some photons are sent, in an image of such a mean.
+    ///
+    /// Of errors of pixels, the hundredth of the pixels in which samples vary most beside photons is left out: no
+    /// photon mends it.
+    fn effort(&self, photons: &[PhotonWorth], sent: usize, by_chance: impl Fn(&Pixel) -> f64, mean: f64) -> Effort {
+        let of_pixel = |pixel: &Pixel| pixel.seen(photons).powi(2) + DARK * mean * mean;
+        let of_whole = |_: &Pixel| mean * mean;
+        let photons = &photons[..sent];
+        Effort {
+            of_pixels: self.work(photons, &by_chance, of_pixel, self.worst()).least(),
+            of_whole: self.is_whole.then(|| self.work(photons, &by_chance, of_whole, 0).least()),
+        }
+    }
+
+    /// How many photons for each of the samples make the time to an error least. Variances are never relative: else
+    /// what photons show, which is bright, would be noisier than all around it.
     pub fn photons_of_a_sample(&self, photons: &[PhotonWorth]) -> f64 {
-        let work = self.work(photons, |_| 0.0, |_| 1.0);
+        let without = |left_out: usize| self.work(photons, |_| 0.0, |_| 1.0, left_out);
+        let work = without(self.worst());
+        let samples = if self.is_whole { (work.samples * without(0).samples).sqrt() } else { work.samples };
         let of_light = |(photons, of_photons): (&PhotonWorth, &f64)| {
-            let times = (of_photons / work.samples).sqrt() * self.rays / photons.rays;
+            let times = (of_photons / samples).sqrt() * self.rays / photons.rays;
             if times.is_nan() { 0.0 } else { times }
         };
         photons.iter().zip(&work.photons).map(of_light).sum()
+    }
+
+    /// A hundredth of the pixels.
+    fn worst(&self) -> usize {
+        self.pixels.len().div_ceil(100)
     }
 
     /// The mean of the pixels with what photons show.
@@ -129,18 +184,19 @@ impl PilotNoise {
         self.pixels.iter().map(|pixel| pixel.seen(photons)).sum::<f64>() / self.pixels.len() as f64
     }
 
-    /// Variances over squares of pixels, with what is found by chance in those of samples. The hundredth of the pixels
-    /// in which samples vary most beside photons is left out of theirs: no photon mends it.
+    /// Variances over squares of pixels, with what is found by chance in those of samples. So many of the pixels in
+    /// which samples vary most beside photons are left out of theirs.
     fn work(
         &self,
         photons: &[PhotonWorth],
         by_chance: impl Fn(&Pixel) -> f64,
         squares: impl Fn(&Pixel) -> f64,
+        left_out: usize,
     ) -> Work {
         let of_pixel = |pixel: &Pixel| [pixel.variance, by_chance(pixel)].map(|variance| variance / squares(pixel));
         let mut of_samples: Vec<[f64; 2]> = self.pixels.iter().map(of_pixel).collect();
         of_samples.sort_by(|[a, _], [b, _]| a.total_cmp(b));
-        let most = of_samples.len() - of_samples.len().div_ceil(100);
+        let most = of_samples.len() - left_out;
         // Of n samples, each pixel has as many times fewer as there are pixels.
         let count = of_samples.len() as f64;
         let samples = of_samples[..most].as_flattened().iter().sum::<f64>() / count * self.rays * self.format;
@@ -161,11 +217,6 @@ impl Work {
 }
 
 impl Pixel {
-    /// What variances are relative to, in an image of such a mean.
-    fn square(&self, photons: &[PhotonWorth], mean: f64) -> f64 {
-        self.seen(photons).powi(2) + DARK * mean * mean
-    }
-
     /// Its mean with what photons show.
     fn seen(&self, photons: &[PhotonWorth]) -> f64 {
         self.mean + photons.iter().map(|photons| photons.cells[self.cell].mean).sum::<f64>()
