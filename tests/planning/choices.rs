@@ -273,3 +273,31 @@ fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
         assert_eq!(because.contains("and more are the same again, so samples = 1 is enough"), more, "{render}");
     }
 }
+
+#[test]
+fn a_color_that_is_missed_altogether_is_told_without_a_number() {
+    let copper = "[material]\ncopper.conductor = { metal = \"Cu\" }\nlamp.emissive.radiance.blackbody = 2800\n";
+    let wall = |point: &str, normal: &str| {
+        format!("[[object]]\nshape.plane = {{ point = {point}, normal = {normal} }}\nmaterial = \"copper\"\n")
+    };
+    let walls = wall("[0, 0, 0]", "[0, 1, 0]") + &wall("[0, 1, 0]", "[0, -1, 0]");
+    let lamp = "[[object]]\nshape.quad = { center = [0, 0.5, -20], u = [9, 0, 0], v = [0, 0.5, 0] }\nmaterial = \"lamp\"\n";
+    let view = view([0.0, 0.5, 0.0], [0.0, 0.5, -1.0], 140.0, 60);
+    let plan = plan(&scene(&format!("{view}{copper}{walls}{lamp}")));
+    let said = plan.because.iter().find(|line| line.starts_with("colors are off")).expect("a bound");
+    assert!(plan.candidates[0].bound() > 1.0, "{said}");
+    assert!(said.contains("prefiltered by the light over 100 %, bands 8 "), "{said}");
+}
+
+#[test]
+fn polarization_that_is_left_out_is_told_beside_what_is_tolerated() {
+    let view = view([0.0, 2.0, 6.0], [0.0, 0.0, 0.0], 30.0, 60);
+    let plan = plan(&scene(&format!(
+        "{view}[material]\nwhite.diffuse.reflectance = 0.7\nglass.dielectric.index = 1.5\n\
+         [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"white\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 1, 0], radius = 0.2 }}\nmaterial = \"glass\"\n\
+         [[light]]\nenvironment.radiance = 1\n"
+    )));
+    let said = plan.left_out.iter().find(|line| line.starts_with("left out: polarization")).expect("it is left out");
+    assert!(said.ends_with("% of the light seen, within the 1.0 % that are tolerated"), "{said}");
+}
