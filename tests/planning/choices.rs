@@ -281,7 +281,8 @@ fn a_color_that_is_missed_altogether_is_told_without_a_number() {
         format!("[[object]]\nshape.plane = {{ point = {point}, normal = {normal} }}\nmaterial = \"copper\"\n")
     };
     let walls = wall("[0, 0, 0]", "[0, 1, 0]") + &wall("[0, 1, 0]", "[0, -1, 0]");
-    let lamp = "[[object]]\nshape.quad = { center = [0, 0.5, -20], u = [9, 0, 0], v = [0, 0.5, 0] }\nmaterial = \"lamp\"\n";
+    let lamp =
+        "[[object]]\nshape.quad = { center = [0, 0.5, -20], u = [9, 0, 0], v = [0, 0.5, 0] }\nmaterial = \"lamp\"\n";
     let view = view([0.0, 0.5, 0.0], [0.0, 0.5, -1.0], 140.0, 60);
     let plan = plan(&scene(&format!("{view}{copper}{walls}{lamp}")));
     let said = plan.because.iter().find(|line| line.starts_with("colors are off")).expect("a bound");

@@ -343,9 +343,7 @@ fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
             let nm = lines[entry][0];
             let help = match is_transposed(lines) {
                 true => ONE_OF_EACH.into(),
-                false => {
-                    unit_of_wavelength(nm, FIRST_NM..=LAST_NM).unwrap_or("leave it out: it cannot be seen".into())
-                }
+                false => unit_of_wavelength(nm, FIRST_NM..=LAST_NM).unwrap_or("leave it out: it cannot be seen".into()),
             };
             let message = format!("a line lies within 360 to 830 nm, not at {}", shown(nm));
             text.place.entry(entry).advise(message, help)
