@@ -9,9 +9,9 @@ use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 49] = [
+const ELSEWHERE: [(&str, &[&str]); 50] = [
     ("index", &["ior", "eta", "int_ior"]),
-    ("reflectance", &["albedo", "color", "reflection", "reflectivity"]),
+    ("reflectance", &["albedo", "color", "base_color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
     ("image", &["texture", "map", "path", "filename"]),
     ("blackbody", &["temperature", "kelvin"]),
@@ -22,6 +22,7 @@ const ELSEWHERE: [(&str, &[&str]); 49] = [
     ("irradiance", &["intensity", "illuminance", "strength", "power"]),
     ("radiance", &["intensity", "power", "strength", "brightness", "color"]),
     ("look_at", &["target", "to"]),
+    ("near", &["clip_start", "near_clip"]),
     ("vertical_fov", &["fov_y", "fovy", "yfov", "vfov", "fov_vertical"]),
     ("position", &["from", "eye", "origin", "location"]),
     ("file", &["path", "filename"]),
@@ -63,7 +64,7 @@ const ELSEWHERE: [(&str, &[&str]); 49] = [
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 68] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -106,7 +107,11 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
     (&["min", "max", "corner", "corners"], "size", "write its middle as `center`, and size = [2, 1, 3]"),
     (&["width", "height", "depth"], "size", "write size = [2, 1, 3]: along x, y and z"),
     (&["radius", "half_size"], "size", "write `size`, twice it"),
-    (&["resolution", "size", "aspect", "aspect_ratio"], "color_space", "write width = 640 and height = 360"),
+    (
+        &["resolution", "resolution_x", "resolution_y", "size", "aspect", "aspect_ratio"],
+        "color_space",
+        "write width = 640 and height = 360",
+    ),
     (&["bit_depth", "bits"], "color_space", "write precision = \"half\" for 16 bits; it is 32 if absent"),
     (&["wavelengths", "bands"], "diffuse_bounces", "write model = { bands = 16 }"),
     (
@@ -134,6 +139,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "vertical_fov",
         "`up` rolls the camera, as up = [0.17, 0.98, 0] does by 10 degrees if it looks along -z",
     ),
+    (&["ortho_scale"], "vertical_fov", "write `height`, that of the view; `ortho_scale` is that of its longer side"),
     (&["far", "clip_end"], "vertical_fov", "nothing is too far away to be seen: leave it out"),
     (
         &["bounces", "depth"],
@@ -189,7 +195,12 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "write the `center` of its shape, or transform = [{ translate = [0, 1, 0] }]",
     ),
     (
-        &["smooth"],
+        &["object", "part", "group", "submesh", "node"],
+        "smooth",
+        "a file is one mesh: save what is to have a material of its own as another file",
+    ),
+    (
+        &["smooth", "shade_smooth", "auto_smooth"],
         "instances",
         "write it into the braces of a mesh: shape.mesh = { file = \"cup.obj\", smooth = true }",
     ),
@@ -285,9 +296,9 @@ pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str
 
 /// Keys that no section has, and where what they ask for is said. What camera, film and render know holds one of
 /// [`OF_SECTIONS`].
-const OF_NO_SECTION: [(&[&str], &str); 11] = [
+const OF_NO_SECTION: [(&[&str], &str); 12] = [
     (
-        &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "brightness"],
+        &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "view_transform", "look", "brightness"],
         "the EXR holds the light itself; --exposure 2 brightens the picture of --png",
     ),
     (
@@ -295,6 +306,7 @@ const OF_NO_SECTION: [(&[&str], &str); 11] = [
         "colors are those of the light: balance them afterwards, or light by numbers, which are white",
     ),
     (&["denoise", "denoiser"], "render the layers albedo and N, and then: python tools/denoise.py out.exr"),
+    (&["resolution", "resolution_x", "resolution_y"], "write width = 640 and height = 360 in [film]"),
     (&["threads"], "it is an argument of the command: --threads 4"),
     (
         &["clamp", "clamping", "max_radiance", "firefly_filter"],

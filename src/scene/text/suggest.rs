@@ -162,6 +162,8 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::String(text) if wanted == "true or false" && matches!(&**text, "true" | "false") => {
             Some(format!("write it without quotes: {text}"))
         }
+        DeValue::Boolean(false) if wanted.contains("\"off\"") => Some("write \"off\"".into()),
+        DeValue::Boolean(true) if wanted.contains("\"auto\"") => Some("write \"auto\", or leave it out".into()),
         DeValue::Integer(_) if wanted == "true or false" && matches!(written, "0" | "1") => {
             Some(format!("write {}", written == "1"))
         }
