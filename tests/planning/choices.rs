@@ -92,6 +92,26 @@ fn a_prism_out_of_sight_that_lamps_shine_through_is_noticed() {
 }
 
 #[test]
+fn a_drop_out_of_sight_that_throws_a_rainbow_is_noticed() {
+    // The sun shines from behind the screen, whose hole is as wide as the drop.
+    let screen = |center: &str, half: &str| {
+        format!(
+            "[[object]]\nshape.quad = {{ center = {center}, u = [{half}, 0, 0], v = [0, 5, 0] }}\nmaterial = \"wall\"\n"
+        )
+    };
+    let scene = scene(&format!(
+        "{}[material]\nwater.dielectric.index = \"water\"\nwall.diffuse.reflectance = 0.8\n\
+         [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"water\"\n{}{}\
+         [[light]]\nsun = {{ toward = [0, 0, 1], irradiance = 100 }}\n",
+        view([3.5, 0.5, -2.0], [5.0, 0.5, 6.0], 30.0, 200),
+        screen("[6.5, 0, 6]", "5.4"),
+        screen("[-6.5, 0, 6]", "5.4"),
+    ));
+    let plan = plan(&scene);
+    assert!(plan.method.basis.draws_wavelengths(), "{:?}", plan.because);
+}
+
+#[test]
 fn measured_colors_get_as_many_lanes_as_the_tolerance_asks() {
     let lanes = |error: &str| {
         let plan = behind("1.5", BALL, "\"orange\"", "{ illuminant = \"FL11\" }", error);
