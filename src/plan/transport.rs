@@ -24,9 +24,10 @@ const AFFORDABLE: f64 = 2048.0;
 
 /// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
 pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
-    let lobes = |object: &&Object| scene.materials[object.material as usize].material.lobes();
-    let rough = scene.objects.iter().find(|object| lobes(object).is_wide() && !lobes(object).is_diffuse());
-    let scattering = scene.objects.iter().find(|object| lobes(object).is_wide());
+    let material = |object: &Object| &scene.materials[object.material as usize].material;
+    let is_wide = |object: &&Object| material(object).lobes().is_wide() && !is_black(material(object));
+    let rough = scene.objects.iter().find(|object| is_wide(object) && !material(object).lobes().is_diffuse());
+    let scattering = scene.objects.iter().find(is_wide);
     let anywhere = || {
         let filter = scene.film.filter;
         let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
@@ -62,6 +63,11 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
             ),
         ),
     }
+}
+
+/// Whether a surface is matte and sends nothing back.
+fn is_black(material: &Material<Curve>) -> bool {
+    matches!(material, Material::Diffuse(matte) if matte.reflectance.is_dark() && matte.fluorescence.is_none())
 }
 
 /// Whether a scene asks for more than one sample of a pixel, and for no layer that needs several.

@@ -272,6 +272,26 @@ fn the_surface_is_named_that_leaves_light_to_chance() {
 }
 
 #[test]
+fn a_black_wall_leaves_nothing_to_chance() {
+    let behind = |black: &str| {
+        let plan = plan(&scene(&format!(
+            "{}filter = \"center\"\n[material]\nfilm.thin = {{ index = 1.33, thickness_nm = 400 }}\nblack.diffuse = {black}\n\
+             [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }}\nmaterial = \"film\"\n\
+             [[object]]\nshape.quad = {{ center = [0, 0, -1], u = [3, 0, 0], v = [0, 3, 0] }}\nmaterial = \"black\"\n\
+             [[light]]\nenvironment.radiance = 1\n",
+            view([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 20.0, 20)
+        )));
+        (matches!(plan.method.transport, Transport::Deterministic { .. }), plan.method.samples)
+    };
+    assert_eq!(behind("{ reflectance = 0 }"), (true, 1));
+    assert_eq!(behind("{ reflectance = { rgb = [0, 0, 0] } }"), (true, 1));
+    assert_eq!(behind("{ reflectance = 0.01 }"), (false, 256));
+    let dye = "absorption = { samples = [[300, 1], [400, 1], [450, 0]] }, emission = { samples = [[450, 0], [500, 1], [550, 0]] }";
+    let dyed = format!("{{ reflectance = 0, fluorescence = {{ {dye}, quantum_yield = 0.9 }} }}");
+    assert!(!behind(&dyed).0);
+}
+
+#[test]
 fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
     let view = view([0.0, 1.0, 6.0], [0.0, 1.0, 0.0], 40.0, 8).replace("[film]", "[film]\nfilter = \"center\"");
     let scene = |opacity: &str, render: &str| {
