@@ -18,9 +18,9 @@ const ELSEWHERE: [(&str, &[&str]); 50] = [
     ("samples", &["spectrum", "spp", "samples_per_pixel", "sample_count"]),
     ("toward", &["direction"]),
     ("sun", &["directional", "distant"]),
-    ("intensity", &["radiance", "power", "strength"]),
+    ("intensity", &["radiance", "power", "strength", "luminous_intensity", "candela"]),
     ("irradiance", &["intensity", "illuminance", "strength", "power"]),
-    ("radiance", &["intensity", "power", "strength", "brightness", "color"]),
+    ("radiance", &["intensity", "power", "strength", "brightness", "luminance", "color"]),
     ("look_at", &["target", "to"]),
     ("near", &["clip_start", "near_clip"]),
     ("vertical_fov", &["fov_y", "fovy", "yfov", "vfov", "fov_vertical"]),
@@ -64,7 +64,7 @@ const ELSEWHERE: [(&str, &[&str]); 50] = [
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 68] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 71] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -103,6 +103,13 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 68] = [
         "fluorescence",
         "a surface that shines has a material of its own: emissive = { radiance = 10 }",
     ),
+    (
+        &["lumens", "lumen", "lm", "flux", "luminous_flux"],
+        "intensity",
+        "write `intensity`, in cd of absolute light: of a point its lumens over 4 pi, of a spot over its solid angle",
+    ),
+    (&IES, "intensity", OF_IES),
+    (&IES, "environment", OF_IES),
     (&["color", "tint"], "intensity", "write intensity = { rgb = [10, 8, 6] } for a light of a color"),
     (&["min", "max", "corner", "corners"], "size", "write its middle as `center`, and size = [2, 1, 3]"),
     (&["width", "height", "depth"], "size", "write size = [2, 1, 3]: along x, y and z"),
@@ -271,6 +278,10 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 68] = [
     ),
 ];
 
+/// Measured distributions of light.
+const IES: [&str; 5] = ["ies", "ies_profile", "profile", "ldt", "goniometric"];
+const OF_IES: &str = "no light is read from such files: a spot has a `cone_angle`, a `blend` and an `intensity`";
+
 /// Keys of an object that stand in its material by mistake, and where they belong.
 const RELIEF: [&str; 4] = ["normal_map", "bump_map", "normal", "bump"];
 const OF_RELIEF: &str = "write normal_map or bump_map in the [[object]], beside its `material`";
@@ -296,7 +307,7 @@ pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str
 
 /// Keys that no section has, and where what they ask for is said. What camera, film and render know holds one of
 /// [`OF_SECTIONS`].
-const OF_NO_SECTION: [(&[&str], &str); 12] = [
+const OF_NO_SECTION: [(&[&str], &str); 13] = [
     (
         &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "view_transform", "look", "brightness"],
         "the EXR holds the light itself; --exposure 2 brightens the picture of --png",
@@ -307,6 +318,7 @@ const OF_NO_SECTION: [(&[&str], &str); 12] = [
     ),
     (&["denoise", "denoiser"], "render the layers albedo and N, and then: python tools/denoise.py out.exr"),
     (&["resolution", "resolution_x", "resolution_y"], "write width = 640 and height = 360 in [film]"),
+    (&["unit", "units"], "write radiometry = \"absolute\" in [film] for cd/m2, and meters_per_unit in [render]"),
     (&["threads"], "it is an argument of the command: --threads 4"),
     (
         &["clamp", "clamping", "max_radiance", "firefly_filter"],
@@ -452,7 +464,7 @@ fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
     let listed = |list: &DeArray| {
         let color = list.iter().map(|node| number(node.get_ref())).collect::<Option<Vec<f64>>>()?;
         let color: [f64; 3] = color.try_into().ok()?;
-        if matches!(&*word, "hsv" | "hsl") {
+        if matches!(&*word, "hsv" | "hsl" | "lab" | "xyz" | "xyy") {
             return None;
         }
         let is_srgb = word == "srgb" && color.iter().all(|x| (0.0..=1.0).contains(x));
@@ -469,4 +481,5 @@ fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
 }
 
 /// Keys of colors in other programs.
-const COLORS: [&str; 11] = ["srgb", "hex", "html", "css", "web", "rgb255", "rgb8", "hsv", "hsl", "color", "rgba"];
+const COLORS: [&str; 14] =
+    ["srgb", "hex", "html", "css", "web", "rgb255", "rgb8", "hsv", "hsl", "lab", "xyz", "xyy", "color", "rgba"];
