@@ -32,7 +32,7 @@ pub fn file(name: &str, bytes: impl AsRef<[u8]>) -> (Folder, PathBuf) {
 pub fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
     let (_folder, path) = file(name, bytes);
     let mesh = read_mesh(&path).unwrap_or_else(|message| panic!("{name}: {message}"));
-    (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.names_materials)
+    (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.materials > 0)
 }
 
 fn ply_header(format: &str, number: &str, corners: &str) -> String {

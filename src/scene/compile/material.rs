@@ -9,7 +9,7 @@ use super::context::Context;
 use super::curve_text::CurveText;
 use super::fluorescence::{conserves, diffuse, written};
 use super::image::surface_curve;
-use super::measures::{direction, small_retardance};
+use super::measures::{direction, small_retardance, small_retardation};
 use crate::material::{
     Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
     Roughness,
@@ -111,6 +111,7 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
                 };
                 return path.advise(format!("a retardation of {} nm changes no light", shown(nm)), help);
             }
+            small_retardation(nm).into_iter().for_each(|warning| context.warn_at(path, warning));
             Some(Retardance::Path(PathDifference { nm }))
         }
         (Some(_), Some(path)) => path.refuse_key(

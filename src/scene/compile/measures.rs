@@ -91,6 +91,14 @@ pub(super) fn small_retardance(degrees: f64) -> Option<String> {
         0.01..1.0 => ("waves", 360.0 * degrees),
         _ => return None,
     };
-    let [degrees, meant] = [degrees, meant].map(shown);
-    Some(format!("a retardance of {degrees} degrees hardly changes light; if {unit} are meant, write {meant}"))
+    Some(too_small("retardance", &format!("{} degrees", shown(degrees)), unit, meant))
+}
+
+/// What is said of a retardation in nm that seems to be in um.
+pub(super) fn small_retardation(nm: f64) -> Option<String> {
+    (0.05..2.0).contains(&nm.abs()).then(|| too_small("retardation", &format!("{} nm", shown(nm)), "um", 1e3 * nm))
+}
+
+fn too_small(what: &str, written: &str, unit: &str, meant: f64) -> String {
+    format!("a {what} of {written} hardly changes light; if {unit} are meant, write {}", shown(meant))
 }

@@ -9,7 +9,7 @@ use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 50] = [
+const ELSEWHERE: [(&str, &[&str]); 55] = [
     ("index", &["ior", "eta", "int_ior"]),
     ("reflectance", &["albedo", "color", "base_color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
@@ -26,7 +26,7 @@ const ELSEWHERE: [(&str, &[&str]); 50] = [
     ("vertical_fov", &["fov_y", "fovy", "yfov", "vfov", "fov_vertical"]),
     ("position", &["from", "eye", "origin", "location"]),
     ("file", &["path", "filename"]),
-    ("center", &["position"]),
+    ("center", &["position", "none", "pinhole"]),
     ("point", &["position", "center"]),
     ("degrees", &["angle"]),
     ("translate", &["move", "position", "offset", "shift"]),
@@ -43,7 +43,7 @@ const ELSEWHERE: [(&str, &[&str]); 50] = [
     ("points", &["vertices", "positions"]),
     ("faces", &["indices", "triangles"]),
     ("transform", &["translate", "rotate", "scale", "rotation"]),
-    ("diffuse", &["matte", "lambert", "lambertian"]),
+    ("diffuse", &["matte", "lambert", "lambertian", "absorber", "black"]),
     ("conductor", &["metal", "roughconductor"]),
     ("dielectric", &["glass", "roughdielectric"]),
     ("plastic", &["glossy", "roughplastic", "coateddiffuse", "principled"]),
@@ -53,11 +53,16 @@ const ELSEWHERE: [(&str, &[&str]); 50] = [
     ("scale", &["strength", "multiplier", "intensity"]),
     ("amount", &["factor", "weight", "weights", "ratio"]),
     ("frames_per_second", &["fps", "frame_rate"]),
+    ("thin", &["film", "thin_film", "soap", "pane"]),
+    ("spot", &["laser", "beam"]),
+    ("lines", &["wavelength", "laser"]),
+    ("from", &["start"]),
+    ("to", &["end"]),
     ("quad", &["rectangle", "rect"]),
     ("sphere", &["ball"]),
     ("plane", &["floor", "ground"]),
     ("disc", &["circle"]),
-    ("mesh", &["cylinder", "cone", "torus", "model", "obj"]),
+    ("mesh", &["cylinder", "cone", "torus", "lens", "prism", "pyramid", "model", "obj"]),
     ("checker", &["checkerboard", "chessboard"]),
     ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri", "ambient", "background"]),
 ];
@@ -154,7 +159,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 71] = [
         "write max_bounces = 8, or diffuse_bounces for those of matte surfaces alone",
     ),
     (
-        &["f_number", "f_stop", "fstop", "aperture"],
+        &["f_number", "f_stop", "fstop", "aperture", "focal_length"],
         "focus_distance",
         "write `radius`, in scene units: the focal length over twice the f-number",
     ),
@@ -267,7 +272,11 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 71] = [
         "cauchy",
         "write { cauchy = [A, B] } of n = A + B / wavelength^2, or { sellmeier = { b = [..], c = [..] } }",
     ),
-    (&["nd", "vd", "abbe", "dispersion"], "priority", "write index = { abbe = { nd = 1.5168, vd = 64.17 } }"),
+    (
+        &["nd", "vd", "abbe", "abbe_number", "dispersion"],
+        "priority",
+        "write index = { abbe = { nd = 1.5168, vd = 64.17 } }",
+    ),
     (&["name"], "illuminant", "a light by name is { illuminant = \"D65\" }"),
     (&["name"], "checker", "a name stands without braces, such as \"dark skin\""),
     (&["value"], "checker", "a number stands without braces"),

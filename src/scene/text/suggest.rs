@@ -169,6 +169,7 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some(format!("write it without quotes: {text}"))
         }
         DeValue::Boolean(false) if wanted.contains("\"off\"") => Some("write \"off\"".into()),
+        DeValue::Boolean(true) if wanted.contains("\"on\"") => Some("write \"on\"".into()),
         DeValue::Boolean(true) if wanted.contains("\"auto\"") => Some("write \"auto\", or leave it out".into()),
         DeValue::Integer(_) if wanted == "true or false" && matches!(written, "0" | "1") => {
             Some(format!("write {}", written == "1"))
@@ -190,6 +191,12 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some("write { b = [1.0396, 0.2318, 1.0105], c = [0.006, 0.02, 103.56] }, c in um^2".into())
         }
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
+        DeValue::Array(_) if key == "axis" && wanted == "a number" => {
+            Some("in degrees: 0 is the image's right, 90 its top".into())
+        }
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == TABLE && key == "polarizer" => {
+            Some(format!("write {{ axis = {written} }}"))
+        }
         DeValue::Array(_) if key == "scale" && wanted == "a number" => {
             Some("`scale` multiplies the values; copies of an image are set by `repeat`".into())
         }
