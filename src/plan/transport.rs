@@ -25,7 +25,7 @@ const AFFORDABLE: f64 = 2048.0;
 /// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
 pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
     let material = |object: &Object| &scene.materials[object.material as usize].material;
-    let is_wide = |object: &&Object| material(object).lobes().is_wide() && !is_black(material(object));
+    let is_wide = |object: &&Object| material(object).lobes().is_wide() && !material(object).is_black();
     let rough = scene.objects.iter().find(|object| is_wide(object) && !material(object).lobes().is_diffuse());
     let scattering = scene.objects.iter().find(is_wide);
     let anywhere = || {
@@ -63,11 +63,6 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
             ),
         ),
     }
-}
-
-/// Whether a surface is matte and sends nothing back.
-fn is_black(material: &Material<Curve>) -> bool {
-    matches!(material, Material::Diffuse(matte) if matte.reflectance.is_dark() && matte.fluorescence.is_none())
 }
 
 /// Whether a scene asks for more than one sample of a pixel, and for no layer that needs several.
