@@ -54,7 +54,7 @@ const ELSEWHERE: [(&str, &[&str]); 55] = [
     ("amount", &["factor", "weight", "weights", "ratio"]),
     ("frames_per_second", &["fps", "frame_rate"]),
     ("thin", &["film", "thin_film", "soap", "pane"]),
-    ("spot", &["laser", "beam"]),
+    ("spot", &["laser"]),
     ("lines", &["wavelength", "laser"]),
     ("from", &["start"]),
     ("to", &["end"]),

@@ -112,12 +112,10 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             _ if key == "column" => Some("columns are counted from 1".into()),
             _ if text.starts_with('$') => Some("a variable stands alone, and there is no arithmetic".into()),
             _ if key == "retardance" => Some("it is in degrees: a quarter of a wave is 90".into()),
-            _ if key == "meters_per_unit" => match &**text {
-                "cm" => Some("write 0.01".into()),
-                "mm" => Some("write 0.001".into()),
-                "m" => Some("write 1".into()),
-                _ => Some("it is how many meters a unit of the scene is long".into()),
-            },
+            _ if key == "meters_per_unit" && matches!(&**text, "m" | "cm" | "mm") => {
+                let meters = [("m", "1"), ("cm", "0.01"), ("mm", "0.001")].into_iter().find(|unit| unit.0 == &**text);
+                meters.map(|(_, meters)| format!("write {meters}"))
+            }
             _ if text == "inf" && key == "focus_distance" => Some("write it without quotes: inf".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
                 Some("a number stands alone, without quotes and unit".into())
