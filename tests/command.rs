@@ -144,6 +144,11 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     flag("--spp", "write --samples 64");
     flag("--width", "write --set film.width=640");
     flag("-o", "write --exr frame.exr");
+    flag("--percentage", "write --set film.width=640 --set film.height=360");
+    flag(
+        "--transparent",
+        "write visible_to_camera = false beside the sky, in the scene, to hide it: A is 0 where no object is",
+    );
     flag("--frames", "write --frame 1-24");
     flag("--gpu", "write --threads 8, or nothing: it renders on all processors, and on them alone");
     flag("--denoise", "write --layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr");
@@ -157,13 +162,15 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
         |word: &str, help: &str| assert_refuses(&[word, "ball.toml"], 2, &refusal(&format!("command `{word}`"), help));
     command("vew", "did you mean render view?");
     command("plan", "did you mean render --plan?");
+    command("frames", "did you mean render --frame 1-24?");
+    command("sequence", "did you mean render --frame 1-24?");
     let alone = |word: &str, help: &str| assert_refuses(&[word], 2, &refusal(&format!("command `{word}`"), help));
     alone("help", "did you mean render --help?");
     alone("catalogue", "did you mean render catalog?");
     let before = "error: the command info stands before all other arguments\n\
                   help: write render info, and what belongs to it after that; render info --help tells it\n";
     assert_refuses(&["--threads", "1", "info", "a.exr"], 2, before);
-    for mark in ["####", "@@@", "$F4", "{frame}", "%s"] {
+    for mark in ["####", "@@@", "$F4", "$frame", "{frame}", "%s"] {
         let name = format!("f.{mark}.exr");
         let every = format!("error: {name} would be the name of every frame\nhelp: write %04d in place of {mark}\n");
         assert_refuses(&["ball.toml", "--exr", &name, "--frame", "3"], 2, &every);

@@ -165,7 +165,12 @@ fn foreign(text: &str) -> Option<&str> {
         let from = &text[text.find("{frame}").or_else(|| text.find("{frame:"))?..];
         Some(&from[..=from.find('}')?])
     };
-    run('#').or_else(|| run('@')).or_else(|| alone("$F")).or_else(python).or_else(|| alone("%s"))
+    run('#')
+        .or_else(|| run('@'))
+        .or_else(|| alone("$frame"))
+        .or_else(|| alone("$F"))
+        .or_else(python)
+        .or_else(|| alone("%s"))
 }
 
 #[cfg(test)]
@@ -242,6 +247,7 @@ mod tests {
             ("f.@@@.exr", "@@@"),
             ("f.$F4.exr", "$F4"),
             ("$F.exr", "$F"),
+            ("f.$frame.exr", "$frame"),
             ("f.{frame}.exr", "{frame}"),
             ("f.{frame:04}.exr", "{frame:04}"),
             ("f.%s.exr", "%s"),

@@ -7,16 +7,28 @@ use abbe::film::Layer;
 use clap::error::{ContextKind, ErrorKind};
 
 /// What may be taken for a command, and the flag that is meant.
-const FLAGS: [(&str, &str); 5] =
-    [("plan", "--plan"), ("check", "--check"), ("help", "--help"), ("version", "--version"), ("render", "--exr")];
+const FLAGS: [(&str, &str); 8] = [
+    ("plan", "--plan"),
+    ("check", "--check"),
+    ("help", "--help"),
+    ("version", "--version"),
+    ("render", "--exr"),
+    ("frames", "--frame 1-24"),
+    ("sequence", "--frame 1-24"),
+    ("animation", "--frame 1-24"),
+];
 
 /// Arguments of other renderers, and what does the same here.
-const ELSEWHERE: [(&[&str], &str); 11] = [
+const ELSEWHERE: [(&[&str], &str); 12] = [
     (&["--spp"], "--samples 64"),
     (&["--output", "-o"], "--exr frame.exr"),
     (&["--width"], "--set film.width=640"),
     (&["--height"], "--set film.height=360"),
-    (&["--resolution", "--res", "--size"], "--set film.width=640 --set film.height=360"),
+    (&["--resolution", "--res", "--size", "--scale", "--percentage"], "--set film.width=640 --set film.height=360"),
+    (
+        &["--alpha", "--transparent", "--background"],
+        "visible_to_camera = false beside the sky, in the scene, to hide it: A is 0 where no object is",
+    ),
     (&["--noise"], "--error 0.01"),
     (&["--aov", "--aovs"], "--layers albedo,N"),
     (&["--frames"], "--frame 1-24"),

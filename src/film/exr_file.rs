@@ -17,12 +17,14 @@ use super::exr_layer::{BEAUTY, ExrLayer};
 use super::exr_part::{Channel, Part, PixelBounds};
 use super::file::cannot_read;
 use super::guard::{MOST_PIXELS, claims_fit, fits, guarded, too_large};
-use crate::error::{Error, Result, nearest, nearest_file};
+use crate::error::{Error, Result, ends_in, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
 /// Most bytes of a file: 4 GiB.
 const MOST_BYTES: u64 = 1 << 32;
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// How files of pictures begin that are no OpenEXR files.
+const PICTURES: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JPEG"), (b"#?", "Radiance picture")];
 
 /// An OpenEXR file, with all its parts.
 #[derive(Debug)]
@@ -256,7 +258,17 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
             Err(Error::Decode { path: path.to_owned(), message })
         }
         Ok(()) if start.starts_with(&MAGIC) => Ok(start),
-        Ok(()) => Err(decode_error(path, "it does not begin as one does")),
+        Ok(()) if ends_in(path, &["toml"]) => {
+            let help = format!("render {shown} makes the image, and render --plan {shown} says how");
+            Error::refuse(format!("{shown} is a scene, not an image"), help)
+        }
+        Ok(()) => match PICTURES.iter().find(|(signature, _)| start.starts_with(signature)) {
+            Some((_, kind)) => {
+                let help = format!("{an_image}; --exr writes it beside a picture");
+                Error::refuse(format!("{shown} is a {kind}, not an OpenEXR image"), help)
+            }
+            None => Err(decode_error(path, "it does not begin as one does")),
+        },
         Err((ErrorKind::NotFound | ErrorKind::NotADirectory, _)) => {
             let near = nearest_file(path, &["exr"]).map(|near| format!("did you mean {}?", near.display()));
             Error::refuse(format!("there is no image file {shown}"), near.unwrap_or(an_image.into()))

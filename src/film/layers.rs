@@ -211,12 +211,15 @@ impl Layer {
 /// What to ask for in place of a layer that other renderers have by this name.
 pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
     match name.to_lowercase().as_str() {
-        "z" | "depth" => Some("leave it out: Z is in every file"),
+        "z" | "depth" | "mist" => Some("leave it out: Z is in every file"),
         "beauty" | "rgb" | "rgba" | "r" | "g" | "b" | "a" | "alpha" => {
             Some("leave it out: the image and its A are in every file")
         }
-        "normal" | "normals" => Some("normals are in N"),
+        "normal" | "normals" | "denoising normal" => Some("normals are in N"),
+        "diffuse_color" | "diffcol" | "base_color" | "denoising albedo" => Some("colors of surfaces are in albedo"),
         "position" | "positions" => Some("places are in P"),
+        "luminance" => Some("the image has it: it is Y of its colors, in cd/m2 of absolute light"),
+        "illuminance" | "irradiance" => Some("it is pi times what a white matte surface shows"),
         light if light.starts_with("light_") => Some("ask for lights: it brings one such layer for each light"),
         "crypto" | "cryptomatte" => Some("ask for CryptoObject, CryptoMaterial or CryptoAsset"),
         _ => None,

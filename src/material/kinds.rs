@@ -192,6 +192,11 @@ impl<S> Material<S> {
 }
 
 impl Material<Curve> {
+    /// Whether it is matte and sends no light back.
+    pub fn is_black(&self) -> bool {
+        matches!(self, Self::Diffuse(matte) if matte.reflectance.is_dark() && matte.fluorescence.is_none())
+    }
+
     /// The same, its axes turned with the object that it lies on.
     #[must_use]
     pub fn turned(&self, map: &Transform) -> Self {

@@ -7,7 +7,7 @@ use super::dyes::spoken as spoken_dyes;
 use super::films::spoken as spoken_film;
 use super::seen::Seen;
 use super::survey::{Survey, disperses, method_of_a_look, tolerance};
-use super::words::percent;
+use super::words::{at_most, percent};
 use crate::material::{Dielectric, Material};
 use crate::scene::{ModelText, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
@@ -143,14 +143,16 @@ fn bound(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen) 
 /// All candidates in one line, and the basis with its bound; for heroes, what their fixed lanes miss.
 fn missed(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
-        return format!("colors are off by at most {} ({} is tolerated)", percent(bound), percent(tolerance));
+        let bounded = if bound > 1.0 { "some color may be" } else { "colors are" };
+        let at_most = if bound > 1.0 { at_most(bound) } else { format!("at most {}", percent(bound)) };
+        return format!("{bounded} off by {at_most} ({} is tolerated)", percent(tolerance));
     }
     let mut steps: Vec<String> = candidates
         .iter()
-        .map(|candidate| format!("{} {}", candidate.basis.name(), percent(candidate.bound())))
+        .map(|candidate| format!("{} {}", candidate.basis.name(), at_most(candidate.bound())))
         .collect();
     if !candidates.iter().any(|candidate| candidate.basis.name() == basis.name()) {
-        steps.push(format!("{} {}", basis.name(), percent(bound)));
+        steps.push(format!("{} {}", basis.name(), at_most(bound)));
     }
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }

@@ -1,7 +1,7 @@
 //! Whether polarization is traced, and why.
 
 use super::survey::tolerance;
-use super::words::percent;
+use super::words::{against, percent};
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Polarizing, World, polarization_error, seen_light};
@@ -44,11 +44,13 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     let bound = seen_light(world).change_of_part();
     let tolerated = tolerance(scene);
     if bound <= tolerated {
-        return off(None, left_out(bound));
+        let within = |what: String| format!("{what}, within the {} that are tolerated", percent(tolerated));
+        return off(None, left_out(bound).map(within));
     }
     let error = polarization_error(world);
     let traced_above = tolerated / MISSED;
-    let measured = format!("{} (it is traced above {})", percent(error), percent(traced_above));
+    let [found, limit] = against(error, traced_above);
+    let measured = format!("{found} (it is traced above {limit})");
     if error > traced_above {
         on(format!("without it, the image would be wrong by {measured}"))
     } else {

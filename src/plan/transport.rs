@@ -24,9 +24,10 @@ const AFFORDABLE: f64 = 2048.0;
 
 /// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
 pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
-    let lobes = |object: &&Object| scene.materials[object.material as usize].material.lobes();
-    let rough = scene.objects.iter().find(|object| lobes(object).is_wide() && !lobes(object).is_diffuse());
-    let scattering = scene.objects.iter().find(|object| lobes(object).is_wide());
+    let material = |object: &Object| &scene.materials[object.material as usize].material;
+    let is_wide = |object: &&Object| material(object).lobes().is_wide() && !material(object).is_black();
+    let rough = scene.objects.iter().find(|object| is_wide(object) && !material(object).lobes().is_diffuse());
+    let scattering = scene.objects.iter().find(is_wide);
     let anywhere = || {
         let filter = scene.film.filter;
         let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };

@@ -13,6 +13,19 @@ pub(super) fn percent(share: f64) -> String {
     }
 }
 
+/// Two shares, the second a limit, with as many digits as it takes to see on which side of it the first lies.
+pub(super) fn against(share: f64, limit: f64) -> [String; 2] {
+    let said = [share, limit].map(percent);
+    let longer = (2..6).map(|digits| [share, limit].map(|x| format!("{:.digits$} %", 100.0 * x)));
+    let is_clear = |said: &[String; 2]| said[0] != said[1];
+    std::iter::once(said.clone()).chain(longer).find(is_clear).unwrap_or(said)
+}
+
+/// The most by which something may be off; beyond all of it, how much more says nothing.
+pub(super) fn at_most(bound: f64) -> String {
+    if bound > 1.0 { "over 100 %".into() } else { percent(bound) }
+}
+
 /// A count as people say it.
 pub(super) fn in_number(count: u64) -> String {
     match count as f64 {
@@ -51,7 +64,7 @@ pub(super) fn in_words(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{as_long, in_words, percent};
+    use super::{against, as_long, at_most, in_words, percent};
     use crate::trace::Effort;
 
     #[test]
@@ -68,6 +81,18 @@ mod tests {
     fn little_is_not_nothing() {
         let shares = [0.0, 1e-9, 4.9e-5, 5.1e-5, 9.4e-4, 0.0123, 0.5].map(percent);
         assert_eq!(shares, ["0 %", "1e-7 %", "5e-3 %", "5e-3 %", "0.09 %", "1.2 %", "50 %"]);
+    }
+
+    #[test]
+    fn what_is_above_a_limit_is_seen_to_be() {
+        assert_eq!(against(0.037, 0.005), ["3.7 %", "0.5 %"]);
+        assert_eq!(against(0.00523, 0.005), ["0.52 %", "0.50 %"]);
+        assert_eq!(against(0.005, 0.005), ["0.5 %", "0.5 %"]);
+    }
+
+    #[test]
+    fn a_bound_beyond_everything_is_no_number() {
+        assert_eq!([0.16, 1.0, 1.79].map(at_most), ["16 %", "100 %", "over 100 %"]);
     }
 
     #[test]

@@ -94,7 +94,7 @@ fn mistake(found: &Diagnostic, lines: &mut Lines) -> Mistake {
     (key, message, help, file.display().to_string(), line, column)
 }
 
-/// The flags of a command line are arguments of the same name.
+/// The flags of a command line are arguments of the same name; a whole command stays as it is.
 fn for_python(help: &str) -> String {
-    help.replace("--", "")
+    if help.contains("render --") { help.to_owned() } else { help.replace("--", "") }
 }

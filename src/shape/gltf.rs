@@ -116,7 +116,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let store = Store::open(&document.buffers, folder, binary)?;
     let mut file = document.read(&placed, &store, smooth)?;
-    file.names_materials = !document.materials.is_empty();
+    file.materials = document.materials.len();
     let uses = |extension: &str| document.extensions_used.iter().any(|name| name == extension);
     let has_morphs = document.meshes.iter().flat_map(|mesh| &mesh.primitives).any(|p| !p.targets.is_empty());
     for (what, there) in [

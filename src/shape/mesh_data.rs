@@ -11,8 +11,8 @@ pub struct MeshFile {
     pub faces: Vec<[u32; 3]>,
     /// What its vertices carry.
     pub attributes: Attributes,
-    /// Whether the file asks for materials, which Abbe takes from the scene instead.
-    pub names_materials: bool,
+    /// How many materials the file asks for, which Abbe takes from the scene instead.
+    pub materials: usize,
     /// What else the file holds that moves its points, which are taken as they stand.
     pub ignored: Vec<&'static str>,
     /// Other files that it was read from.

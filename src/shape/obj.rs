@@ -1,6 +1,7 @@
 //! Triangles from OBJ files (Wavefront 1991, *Advanced Visualizer Manual*, appendix B1).
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use smallvec::SmallVec;
@@ -36,7 +37,8 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
                 lists.normals.push(normal.map(|x| x as f32));
             }
             "f" | "fo" => lists.face(line, words, smooth).map_err(|what| format!("the face in line {line} {what}"))?,
-            "mtllib" | "usemtl" => lists.names_materials = true,
+            "mtllib" => lists.has_library = true,
+            "usemtl" => drop(lists.materials.insert(words.join(" "))),
             _ => {}
         }
     }
@@ -131,7 +133,9 @@ struct Lists {
     bare: usize,
     /// The highest place in each list that a face asks for, and its line: lists may be filled later.
     highest: [(u32, usize); 3],
-    names_materials: bool,
+    has_library: bool,
+    /// Their names.
+    materials: BTreeSet<String>,
 }
 
 impl Lists {
@@ -191,7 +195,7 @@ impl Lists {
             attributes.normals = corners.iter().map(of).collect();
         }
         let vertices = vertices(corners.iter().map(|corner| self.places[corner[0] as usize]));
-        let (faces, names_materials) = (self.faces.triangles(&vertices)?, self.names_materials);
-        Ok(MeshFile { vertices, faces, attributes, names_materials, ..MeshFile::default() })
+        let (faces, materials) = (self.faces.triangles(&vertices)?, self.materials.len().max(self.has_library.into()));
+        Ok(MeshFile { vertices, faces, attributes, materials, ..MeshFile::default() })
     }
 }

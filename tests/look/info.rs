@@ -146,3 +146,22 @@ fn a_file_that_cannot_be_read_is_told_in_one_line() {
     assert_eq!(answer.stderr.lines().count(), 1, "{}", answer.stderr);
     assert_eq!(folder.listing(), ["empty.exr", "half.exr", "ramp.exr", "text.exr"]);
 }
+
+#[test]
+fn a_file_that_is_no_openexr_image_is_told_what_it_is() {
+    let folder = Folder::with("ball.toml", SCENE);
+    folder.write("a.png", *b"\x89PNG\r\n\x1a\n");
+    folder.write("a.jpg", *b"\xff\xd8\xff\xe0");
+    folder.write("a.hdr", "#?RADIANCE\n");
+    let scene = "error: ball.toml is a scene, not an image\n\
+                 help: render ball.toml makes the image, and render --plan ball.toml says how\n";
+    render(&folder, &["info", "ball.toml"]).assert_refused(2, scene);
+    render(&folder, &["view", "ball.toml"]).assert_refused(2, scene);
+    for (file, kind) in [("a.png", "PNG"), ("a.jpg", "JPEG"), ("a.hdr", "Radiance picture")] {
+        let refusal = format!(
+            "error: {file} is a {kind}, not an OpenEXR image\n\
+             help: an image is an OpenEXR file, such as prism.exr; --exr writes it beside a picture\n"
+        );
+        render(&folder, &["info", file]).assert_refused(2, &refusal);
+    }
+}

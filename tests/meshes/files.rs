@@ -32,7 +32,7 @@ pub fn file(name: &str, bytes: impl AsRef<[u8]>) -> (Folder, PathBuf) {
 pub fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
     let (_folder, path) = file(name, bytes);
     let mesh = read_mesh(&path).unwrap_or_else(|message| panic!("{name}: {message}"));
-    (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.names_materials)
+    (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.materials > 0)
 }
 
 fn ply_header(format: &str, number: &str, corners: &str) -> String {
@@ -327,6 +327,9 @@ fn materials_of_an_obj_are_ignored_with_a_warning() {
     assert_eq!(read("a.obj", with_library.as_bytes()), (triangles(true), true));
     let said = warnings("a.obj", with_library.as_bytes(), "mirror = {}");
     assert_eq!(said, ["pyramid: the materials of a.obj are ignored; the scene gives them"]);
+    let said = warnings("a.obj", (with_library.clone() + "usemtl blue\nusemtl red\n").as_bytes(), "mirror = {}");
+    let why = "the scene gives it one: save parts that look different as files of their own";
+    assert_eq!(said, [format!("pyramid: the 2 materials of a.obj are ignored; {why}")]);
     let without_library = format!("{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
     assert_eq!(read("a.obj", without_library.as_bytes()).0, triangles(true));
     assert!(warnings("a.obj", format!("{body}f 3 4 5\nf 4 1 5\n").as_bytes(), "mirror = {}").is_empty());

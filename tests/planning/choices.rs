@@ -92,6 +92,26 @@ fn a_prism_out_of_sight_that_lamps_shine_through_is_noticed() {
 }
 
 #[test]
+fn a_drop_out_of_sight_that_throws_a_rainbow_is_noticed() {
+    // The sun shines from behind the screen, whose hole is as wide as the drop.
+    let screen = |center: &str, half: &str| {
+        format!(
+            "[[object]]\nshape.quad = {{ center = {center}, u = [{half}, 0, 0], v = [0, 5, 0] }}\nmaterial = \"wall\"\n"
+        )
+    };
+    let scene = scene(&format!(
+        "{}[material]\nwater.dielectric.index = \"water\"\nwall.diffuse.reflectance = 0.8\n\
+         [[object]]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\nmaterial = \"water\"\n{}{}\
+         [[light]]\nsun = {{ toward = [0, 0, 1], irradiance = 100 }}\n",
+        view([3.5, 0.5, -2.0], [5.0, 0.5, 6.0], 30.0, 200),
+        screen("[6.5, 0, 6]", "5.4"),
+        screen("[-6.5, 0, 6]", "5.4"),
+    ));
+    let plan = plan(&scene);
+    assert!(plan.method.basis.draws_wavelengths(), "{:?}", plan.because);
+}
+
+#[test]
 fn measured_colors_get_as_many_lanes_as_the_tolerance_asks() {
     let lanes = |error: &str| {
         let plan = behind("1.5", BALL, "\"orange\"", "{ illuminant = \"FL11\" }", error);
@@ -252,6 +272,26 @@ fn the_surface_is_named_that_leaves_light_to_chance() {
 }
 
 #[test]
+fn a_black_wall_leaves_nothing_to_chance() {
+    let behind = |black: &str| {
+        let plan = plan(&scene(&format!(
+            "{}filter = \"center\"\n[material]\nfilm.thin = {{ index = 1.33, thickness_nm = 400 }}\nblack.diffuse = {black}\n\
+             [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }}\nmaterial = \"film\"\n\
+             [[object]]\nshape.quad = {{ center = [0, 0, -1], u = [3, 0, 0], v = [0, 3, 0] }}\nmaterial = \"black\"\n\
+             [[light]]\nenvironment.radiance = 1\n",
+            view([0.0, 0.0, 5.0], [0.0, 0.0, 0.0], 20.0, 20)
+        )));
+        (matches!(plan.method.transport, Transport::Deterministic { .. }), plan.method.samples)
+    };
+    assert_eq!(behind("{ reflectance = 0 }"), (true, 1));
+    assert_eq!(behind("{ reflectance = { rgb = [0, 0, 0] } }"), (true, 1));
+    assert_eq!(behind("{ reflectance = 0.01 }"), (false, 256));
+    let dye = "absorption = { samples = [[300, 1], [400, 1], [450, 0]] }, emission = { samples = [[450, 0], [500, 1], [550, 0]] }";
+    let dyed = format!("{{ reflectance = 0, fluorescence = {{ {dye}, quantum_yield = 0.9 }} }}");
+    assert!(!behind(&dyed).0);
+}
+
+#[test]
 fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
     let view = view([0.0, 1.0, 6.0], [0.0, 1.0, 0.0], 40.0, 8).replace("[film]", "[film]\nfilter = \"center\"");
     let scene = |opacity: &str, render: &str| {
@@ -272,4 +312,33 @@ fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
         let because = plan(&scene("1", render)).because.concat();
         assert_eq!(because.contains("and more are the same again, so samples = 1 is enough"), more, "{render}");
     }
+}
+
+#[test]
+fn a_color_that_is_missed_altogether_is_told_without_a_number() {
+    let copper = "[material]\ncopper.conductor = { metal = \"Cu\" }\nlamp.emissive.radiance.blackbody = 2800\n";
+    let wall = |point: &str, normal: &str| {
+        format!("[[object]]\nshape.plane = {{ point = {point}, normal = {normal} }}\nmaterial = \"copper\"\n")
+    };
+    let walls = wall("[0, 0, 0]", "[0, 1, 0]") + &wall("[0, 1, 0]", "[0, -1, 0]");
+    let lamp =
+        "[[object]]\nshape.quad = { center = [0, 0.5, -20], u = [9, 0, 0], v = [0, 0.5, 0] }\nmaterial = \"lamp\"\n";
+    let view = view([0.0, 0.5, 0.0], [0.0, 0.5, -1.0], 140.0, 60);
+    let plan = plan(&scene(&format!("{view}{copper}{walls}{lamp}")));
+    let said = plan.because.iter().find(|line| line.starts_with("colors are off")).expect("a bound");
+    assert!(plan.candidates[0].bound() > 1.0, "{said}");
+    assert!(said.contains("prefiltered by the light over 100 %, bands 8 "), "{said}");
+}
+
+#[test]
+fn polarization_that_is_left_out_is_told_beside_what_is_tolerated() {
+    let view = view([0.0, 2.0, 6.0], [0.0, 0.0, 0.0], 30.0, 60);
+    let plan = plan(&scene(&format!(
+        "{view}[material]\nwhite.diffuse.reflectance = 0.7\nglass.dielectric.index = 1.5\n\
+         [[object]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"white\"\n\
+         [[object]]\nshape.sphere = {{ center = [0, 1, 0], radius = 0.2 }}\nmaterial = \"glass\"\n\
+         [[light]]\nenvironment.radiance = 1\n"
+    )));
+    let said = plan.left_out.iter().find(|line| line.starts_with("left out: polarization")).expect("it is left out");
+    assert!(said.ends_with("% of the light seen, within the 1.0 % that are tolerated"), "{said}");
 }

@@ -492,6 +492,8 @@ def test_files_that_fail_raise_what_python_raises(tmp_path):
     (tmp_path / "a.exr").write_text("no image")
     with pytest.raises(abbe.RenderError, match="no complete OpenEXR image"):
         abbe.read_exr(tmp_path / "a.exr")
+    with pytest.raises(abbe.OptionsError, match="turntable.toml is a scene, not an image .*render --plan"):
+        abbe.read_exr(TURNTABLE)
     (tmp_path / "file").write_text("")
     with pytest.raises(OSError, match=r"^\[Errno 20\] Not a directory: '.*/file/a.exr'$"):
         abbe.render(SCENE).write_exr(tmp_path / "file/a.exr")

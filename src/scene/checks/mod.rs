@@ -7,7 +7,7 @@ mod probe;
 mod unlit;
 mod view;
 
-use super::Scene;
+use super::{Object, Scene, Sight};
 use crate::spectrum::Curve;
 
 pub(super) use probe::{met_from_outside, ray_into};
@@ -23,4 +23,16 @@ pub(super) fn check(scene: &mut Scene<Curve>) {
     scene.warnings.extend(on_surface::on_surface(scene));
     scene.warnings.extend(open_glass::open_glass(scene));
     scene.warnings.extend(out_of_focus::out_of_focus(scene));
+    let black = black_catchers(scene);
+    scene.warnings.extend(black);
+}
+
+/// Shadow catchers on which no shadow can be seen.
+fn black_catchers(scene: &Scene<Curve>) -> Vec<String> {
+    let is_black = |object: &&Object| scene.materials[object.material as usize].material.is_black();
+    let catchers = scene.objects.iter().filter(|object| object.sight == Sight::ShadowCatcher).filter(is_black);
+    let told = |object: &Object| {
+        format!("{} is black and catches no shadow: give it the reflectance of what it stands for", object.name)
+    };
+    catchers.map(told).collect()
 }

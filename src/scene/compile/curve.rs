@@ -7,13 +7,15 @@ use super::curve_name::{
 };
 use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible};
 use super::curve_text::{CurveText, KindText, ONE_OF_EACH, finite, not_finite};
+use super::measures::unit_of_wavelength;
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
 use crate::scene::text::{At, FileKind, Value, shown, utf8};
 use crate::scene::web_color::of_bytes;
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Quantity, cauchy_through, data, imitation, reach, reach_of_absorption,
-    sellmeier_squared, visible::START_NM,
+    sellmeier_squared,
+    visible::{FIRST_NM, LAST_NM, START_NM},
 };
 
 const TABLE: FileKind = FileKind { nameless: "a file of samples needs a name", most_bytes: 1 << 26, endings: &[] };
@@ -218,7 +220,7 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
     if (100.0..=830.0).contains(first) {
         return Ok(());
     }
-    let help = unit_of_wavelength(*first, 100.0).unwrap_or("wavelengths are in nm".into());
+    let help = unit_of_wavelength(*first, 100.0..=830.0).unwrap_or("wavelengths are in nm".into());
     Err(Refusal::new(format!("a first wavelength of {first} nm is far from visible light")).help(help).at(0))
 }
 
@@ -230,13 +232,6 @@ fn are_swapped(samples: &[[f64; 2]]) -> bool {
 
 /// The longest wavelength in nm that tables of visible light end at.
 const MOST_NM: f64 = 2500.0;
-
-/// The unit that a wavelength seems to be in, if it would be `least` to 830 nm in that.
-fn unit_of_wavelength(given: f64, least: f64) -> Option<String> {
-    let units = [("um", 1e3), ("Angstrom", 0.1), ("m", 1e9)].map(|(unit, nm)| (unit, given * nm));
-    let (unit, nm) = units.into_iter().find(|(_, nm)| (least..=830.0).contains(nm))?;
-    Some(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm)))
-}
 
 fn file_of_samples<'d>(
     context: &mut Context,
@@ -343,12 +338,12 @@ fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
     if lines.is_empty() {
         return text.value.refuse("a light of lines has at least one [wavelength in nm, power]");
     }
-    match lines.iter().position(|[nm, _]| !(360.0..=830.0).contains(nm)) {
+    match lines.iter().position(|[nm, _]| !(FIRST_NM..=LAST_NM).contains(nm)) {
         Some(entry) => {
             let nm = lines[entry][0];
             let help = match is_transposed(lines) {
                 true => ONE_OF_EACH.into(),
-                false => unit_of_wavelength(nm, 360.0).unwrap_or("leave it out: it cannot be seen".into()),
+                false => unit_of_wavelength(nm, FIRST_NM..=LAST_NM).unwrap_or("leave it out: it cannot be seen".into()),
             };
             let message = format!("a line lies within 360 to 830 nm, not at {}", shown(nm));
             text.place.entry(entry).advise(message, help)

@@ -25,13 +25,21 @@ pub(super) fn unknown_reflectance(name: &str) -> Refusal {
     unknown(name, "reflectance", full().map(bare).chain(full()))
 }
 
-/// How to write what stands in quotes and is no name: a file, or a share in percent.
+/// How to write what stands in quotes and is no name: a file, a share in percent, or a number with its unit.
 pub(super) fn in_quotes(text: &str) -> Option<String> {
+    let has_unit = || text.split_once(' ').is_some_and(|(number, unit)| number.parse::<f64>().is_ok() && is_unit(unit));
     match share(text) {
         Some(share) => Some(format!("write {share}")),
+        None if has_unit() => Some("a number stands alone, without quotes and unit".into()),
         None if ends_in(Path::new(text), TABLES) => Some(format!("write {{ file = {text:?} }}")),
         None => image_called(text),
     }
+}
+
+/// Whether a word is a unit of light.
+fn is_unit(word: &str) -> bool {
+    let word = word.to_lowercase().replace('\u{b2}', "2").replace('^', "");
+    matches!(&*word, "cd" | "cd/m2" | "nit" | "nits" | "lx" | "lux" | "lm" | "lumen" | "lumens" | "w" | "w/m2" | "w/sr")
 }
 
 /// How to write an image by the name of its file.
@@ -55,6 +63,10 @@ pub(super) fn unknown_illuminant(name: &str) -> Refusal {
     match of_cie(name) {
         Some(light) => {
             Refusal::new(format!("there is no illuminant named {name:?}")).help(format!("did you mean {light:?}?"))
+        }
+        None if name.to_lowercase().ends_with("sodium") => {
+            let help = "write { lines = [[589.0, 2], [589.6, 1]] } at low pressure; at high pressure it is \"HP1\"";
+            Refusal::new(format!("there is no illuminant named {name:?}")).help(help)
         }
         None => unknown(name, "illuminant", illuminants()),
     }

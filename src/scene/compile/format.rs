@@ -2,6 +2,7 @@
 
 use toml::de::DeValue;
 
+use super::measures::unit_of_wavelength;
 use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
 use crate::scene::text::{At, Fields, Value, above_0_to, at};
 use crate::spectrum::WavelengthBands;
@@ -82,7 +83,11 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
         _ => return value.wanted("true, or a table such as { from = 380, to = 780, step = 5 }"),
     }
     let [from, to, step] = Fields::read(value, |bands| {
-        let nm = |value: Value| value.within(FIRST_NM..=LAST_NM, "a band lies between 360 and 830 nm", None);
+        let nm = |value: Value| {
+            let right = FIRST_NM..=LAST_NM;
+            let unit = unit_of_wavelength(value.number()?, right.clone());
+            value.within(right, "a band lies between 360 and 830 nm", unit.as_deref())
+        };
         let most = above_0_to(LAST_NM - FIRST_NM);
         let width = |value: Value| value.within(most, "a step is a width above 0 and at most 470 nm", None);
         let [from, to, step] = [bands.or("from", 380.0, nm), bands.or("to", 780.0, nm), bands.or("step", 5.0, width)];
@@ -92,7 +97,10 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
     match WavelengthBands::new(from, to, step) {
         Some(bands) => Some(Some(bands)),
         None if from > to => value.refuse(format!("the last band, at {to} nm, lies before the first, at {from} nm")),
-        None => value.refuse(format!("a step of {step} nm makes more than the {most} bands that fit")),
+        None => {
+            let message = format!("a step of {step} nm makes more than the {most} bands that fit");
+            value.tell(message, unit_of_wavelength(step, 1.0..=50.0))
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The lights that no surface gives.
 
+use std::ops::RangeInclusive;
+
 use super::context::Context;
 use super::curve::curve;
 use super::curve_text::{CurveText, KindText};
@@ -127,12 +129,24 @@ fn of_an_infinite_light(light: &mut Fields, kind: &str) {
     }
 }
 
+/// About as wide as the sun appears, in radians.
+const IN_RADIANS: RangeInclusive<f64> = 0.009..=0.0096;
+
 fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let toward = light.need("toward", direction);
         // As wide as the sun appears.
-        let angular_diameter = light
-            .or("angular_diameter", 0.533, |value| value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None));
+        let angular_diameter = light.or("angular_diameter", 0.533, |value| {
+            let across = value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
+            if IN_RADIANS.contains(&across) {
+                let meant = across.to_degrees();
+                let warning = format!(
+                    "a sun of {across} degrees is hardly wider than a point; if radians are meant, write {meant:.3}"
+                );
+                context.warn_at(value, warning);
+            }
+            Some(across)
+        });
         let irradiance = light.need("irradiance", |value| emission(context, value));
         let help = "toward = [1, 2, 1] is the direction from the scene to the sun";
         light.stray("look_at", "a sun is infinitely far away and looks at no point", help.into());

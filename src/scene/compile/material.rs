@@ -9,7 +9,7 @@ use super::context::Context;
 use super::curve_text::CurveText;
 use super::fluorescence::{conserves, diffuse, written};
 use super::image::surface_curve;
-use super::measures::direction;
+use super::measures::{direction, small_retardance, small_retardation};
 use crate::material::{
     Coat, Conductor, Dielectric, Emissive, Material, Mirror, PathDifference, Plastic, Polarizer, Retardance, Retarder,
     Roughness,
@@ -39,7 +39,7 @@ fn roughness(fields: &mut Fields) -> f64 {
 }
 
 /// What reads a kind of material, given its table as a whole and by its keys.
-type Reader = for<'d> fn(Value<'d>, &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>>;
+type Reader = for<'d> fn(&mut Context, Value<'d>, &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>>;
 
 /// The kinds of materials, each documented where it is implemented, in `material`.
 const MATERIAL: Choice<Reader> = Choice {
@@ -49,38 +49,38 @@ const MATERIAL: Choice<Reader> = Choice {
     apart: "give each kind its own [material.NAME]",
     beside: &[],
     kinds: &[
-        ("diffuse", |_, fields| Some(Draft::Whole(Material::Diffuse(diffuse(fields)?)))),
-        ("mirror", |_, fields| {
+        ("diffuse", |_, _, fields| Some(Draft::Whole(Material::Diffuse(diffuse(fields)?)))),
+        ("mirror", |_, _, fields| {
             Some(Draft::Whole(Material::Mirror(Mirror { reflectance: spectrum_or(fields, "reflectance", 1.0) })))
         }),
         ("conductor", conductor),
-        ("dielectric", |_, fields| dielectric(fields)),
-        ("thin", |_, fields| Some(Draft::Whole(Material::Thin(thin(fields)?)))),
-        ("emissive", |_, fields| {
+        ("dielectric", |_, _, fields| dielectric(fields)),
+        ("thin", |_, _, fields| Some(Draft::Whole(Material::Thin(thin(fields)?)))),
+        ("emissive", |_, _, fields| {
             let radiance = spectrum(fields, "radiance");
             let words = [("both", Sides::Both), ("front", Sides::Front)];
             let sides = fields.or("sides", Sides::Both, |value| value.word(&words)).unwrap_or_default();
             Some(Draft::Whole(Material::Emissive(Emissive { radiance, sides })))
         }),
-        ("plastic", |_, fields| {
+        ("plastic", |_, _, fields| {
             let (reflectance, index) = (spectrum(fields, "reflectance"), spectrum_or(fields, "index", 1.5));
             let (coat, coating) = (Coat::new(roughness(fields)), coating(fields));
             Some(Draft::Whole(Material::Plastic(Plastic { reflectance, index, coat, coating: coating? })))
         }),
-        ("polarizer", |_, fields| {
+        ("polarizer", |_, _, fields| {
             let (axis, extinction) = (fields.need("axis", direction), fields.or("extinction", 0.0, extinction));
             Some(Draft::Whole(Material::Polarizer(Polarizer { axis: axis?, extinction: extinction? })))
         }),
-        ("retarder", |_, fields| {
-            let (axis, retardance) = (fields.need("axis", direction), retardance(fields));
+        ("retarder", |context, _, fields| {
+            let (axis, retardance) = (fields.need("axis", direction), retardance(context, fields));
             Some(Draft::Whole(Material::Retarder(Retarder { axis: axis?, retardance: retardance? })))
         }),
-        ("mix", |_, fields| {
+        ("mix", |_, _, fields| {
             let parts = fields.need("materials", two_names);
             let amount = spectrum(fields, "amount");
             Some(Draft::Mix { parts: parts?, amount })
         }),
-        ("mask", |_, fields| {
+        ("mask", |_, _, fields| {
             let part = fields.need("material", name);
             let opacity = spectrum(fields, "opacity");
             Some(Draft::Mask { part: part?, opacity })
@@ -89,13 +89,15 @@ const MATERIAL: Choice<Reader> = Choice {
 };
 
 /// By how much light along the fast axis is ahead: in degrees, or by a length.
-fn retardance(fields: &mut Fields) -> Option<Retardance> {
+fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> {
     let (phase, path) = (fields.get("retardance"), fields.get("retardation_nm"));
     match (phase, path) {
         (Some(phase), None) => {
             let help = "in degrees: 90 of a quarter-wave plate, 180 of a half-wave plate";
             let what = "a retardance lies between -360 and 360 degrees";
-            phase.within(-360.0..=360.0, what, Some(help)).map(Retardance::Phase)
+            let degrees = phase.within(-360.0..=360.0, what, Some(help))?;
+            small_retardance(degrees).into_iter().for_each(|warning| context.warn_at(phase, warning));
+            Some(Retardance::Phase(degrees))
         }
         (None, Some(path)) => {
             let what = format!("a retardation lies between -{MOST_AHEAD_NM} and {MOST_AHEAD_NM} nm");
@@ -109,6 +111,7 @@ fn retardance(fields: &mut Fields) -> Option<Retardance> {
                 };
                 return path.advise(format!("a retardation of {} nm changes no light", shown(nm)), help);
             }
+            small_retardation(nm).into_iter().for_each(|warning| context.warn_at(path, warning));
             Some(Retardance::Path(PathDifference { nm }))
         }
         (Some(_), Some(path)) => path.refuse_key(
@@ -125,7 +128,7 @@ const MOST_AHEAD_NM: f64 = 1e6;
 /// The shortest, at which 3 parts in 10^9 of polarized light change: less is most likely in m.
 const LEAST_AHEAD_NM: f64 = 0.01;
 
-fn conductor<'d>(value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
+fn conductor<'d>(_: &mut Context, value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
     let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));
     let (roughness, coating) = (Roughness::new(roughness(fields)), coating(fields));
     let [n, k] = match (metal, n, k) {
@@ -185,7 +188,10 @@ pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> 
                 return kind.refuse_key("this material has no name", Some(help));
             }
             let read = MATERIAL.reader(kind)?;
-            Fields::read(kind, |fields| resolved(context, read(kind, fields)?))
+            Fields::read(kind, |fields| {
+                let draft = read(context, kind, fields)?;
+                resolved(context, draft)
+            })
         });
         if let Some(Draft::Whole(material)) = &mut draft {
             share_tables(&mut rough, material);

@@ -1,7 +1,10 @@
-//! Points, directions and lengths that numbers can hold.
+//! Points, directions and lengths that numbers can hold, and the units that numbers seem to be in.
+
+use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use crate::math::DVec3;
-use crate::scene::text::Value;
+use crate::scene::text::{Value, shown};
 
 /// Largest length and coordinate: products of a few of them stay far within f64 and f32.
 pub(super) const MAX_LENGTH: f64 = 1e30;
@@ -70,4 +73,32 @@ pub(super) fn narrow(degrees: f64) -> Option<String> {
         meant if meant < NARROW => String::new(),
         meant => format!("; if radians are meant, write {meant:.1}"),
     })
+}
+
+/// The unit that a wavelength or a width seems to be in, if it would be one of some that are right, in nm, in that.
+pub(super) fn unit_of_wavelength(given: f64, right_nm: RangeInclusive<f64>) -> Option<String> {
+    let units = [("um", 1e3), ("Angstrom", 0.1), ("m", 1e9)].map(|(unit, nm)| (unit, given * nm));
+    let (unit, nm) = units.into_iter().find(|(_, nm)| right_nm.contains(nm))?;
+    Some(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm)))
+}
+
+/// What is said of a retardance in degrees that seems to be in waves or in radians.
+pub(super) fn small_retardance(degrees: f64) -> Option<String> {
+    let is_part = |eighths: f64| (degrees.abs() - eighths * PI / 4.0).abs() < 2e-3 * degrees.abs();
+    // Waves may be any part of one; radians have no other mark than that they are parts of pi.
+    let (unit, meant) = match degrees.abs() {
+        _ if [1.0, 2.0, 4.0, 6.0, 8.0].into_iter().any(is_part) => ("radians", degrees.to_degrees().round()),
+        0.01..1.0 => ("waves", 360.0 * degrees),
+        _ => return None,
+    };
+    Some(too_small("retardance", &format!("{} degrees", shown(degrees)), unit, meant))
+}
+
+/// What is said of a retardation in nm that seems to be in um.
+pub(super) fn small_retardation(nm: f64) -> Option<String> {
+    (0.05..2.0).contains(&nm.abs()).then(|| too_small("retardation", &format!("{} nm", shown(nm)), "um", 1e3 * nm))
+}
+
+fn too_small(what: &str, written: &str, unit: &str, meant: f64) -> String {
+    format!("a {what} of {written} hardly changes light; if {unit} are meant, write {}", shown(meant))
 }

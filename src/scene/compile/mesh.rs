@@ -215,9 +215,13 @@ fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -
     for what in mesh.ignored {
         context.warn(format!("{name}: the {what} of {file} are ignored"));
     }
-    if mesh.names_materials {
-        let warning = format!("{name}: the materials of {file} are ignored; the scene gives them");
-        context.warn(warning);
+    match mesh.materials {
+        0 => {}
+        1 => context.warn(format!("{name}: the materials of {file} are ignored; the scene gives them")),
+        count => context.warn(format!(
+            "{name}: the {count} materials of {file} are ignored; the scene gives it one: save parts that look different \
+             as files of their own"
+        )),
     }
     Some(Parts { vertices: mesh.vertices, faces: mesh.faces, attributes: mesh.attributes })
 }

@@ -9,23 +9,24 @@ use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
 /// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
-const ELSEWHERE: [(&str, &[&str]); 49] = [
+const ELSEWHERE: [(&str, &[&str]); 55] = [
     ("index", &["ior", "eta", "int_ior"]),
-    ("reflectance", &["albedo", "color", "reflection", "reflectivity"]),
+    ("reflectance", &["albedo", "color", "base_color", "reflection", "reflectivity"]),
     ("rgb", &["color"]),
     ("image", &["texture", "map", "path", "filename"]),
     ("blackbody", &["temperature", "kelvin"]),
     ("samples", &["spectrum", "spp", "samples_per_pixel", "sample_count"]),
     ("toward", &["direction"]),
     ("sun", &["directional", "distant"]),
-    ("intensity", &["radiance", "power", "strength"]),
+    ("intensity", &["radiance", "power", "strength", "luminous_intensity", "candela"]),
     ("irradiance", &["intensity", "illuminance", "strength", "power"]),
-    ("radiance", &["intensity", "power", "strength", "brightness", "color"]),
+    ("radiance", &["intensity", "power", "strength", "brightness", "luminance", "color"]),
     ("look_at", &["target", "to"]),
+    ("near", &["clip_start", "near_clip"]),
     ("vertical_fov", &["fov_y", "fovy", "yfov", "vfov", "fov_vertical"]),
     ("position", &["from", "eye", "origin", "location"]),
     ("file", &["path", "filename"]),
-    ("center", &["position"]),
+    ("center", &["position", "none", "pinhole"]),
     ("point", &["position", "center"]),
     ("degrees", &["angle"]),
     ("translate", &["move", "position", "offset", "shift"]),
@@ -42,7 +43,7 @@ const ELSEWHERE: [(&str, &[&str]); 49] = [
     ("points", &["vertices", "positions"]),
     ("faces", &["indices", "triangles"]),
     ("transform", &["translate", "rotate", "scale", "rotation"]),
-    ("diffuse", &["matte", "lambert", "lambertian"]),
+    ("diffuse", &["matte", "lambert", "lambertian", "absorber", "black"]),
     ("conductor", &["metal", "roughconductor"]),
     ("dielectric", &["glass", "roughdielectric"]),
     ("plastic", &["glossy", "roughplastic", "coateddiffuse", "principled"]),
@@ -52,18 +53,23 @@ const ELSEWHERE: [(&str, &[&str]); 49] = [
     ("scale", &["strength", "multiplier", "intensity"]),
     ("amount", &["factor", "weight", "weights", "ratio"]),
     ("frames_per_second", &["fps", "frame_rate"]),
+    ("thin", &["film", "thin_film", "soap", "pane"]),
+    ("spot", &["laser"]),
+    ("lines", &["wavelength", "laser"]),
+    ("from", &["start"]),
+    ("to", &["end"]),
     ("quad", &["rectangle", "rect"]),
     ("sphere", &["ball"]),
     ("plane", &["floor", "ground"]),
     ("disc", &["circle"]),
-    ("mesh", &["cylinder", "cone", "torus", "model", "obj"]),
+    ("mesh", &["cylinder", "cone", "torus", "lens", "prism", "pyramid", "model", "obj"]),
     ("checker", &["checkerboard", "chessboard"]),
     ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri", "ambient", "background"]),
 ];
 
 /// Words of other renderers that no one word here stands for: one of the names that are known beside them, and what to
 /// do.
-const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
+const IN_OTHER_WORDS: [(&[&str], &str, &str); 71] = [
     (&["box", "cuboid"], "cube", "write cube = { center = [0, 1, 0], size = [2, 1, 3] }"),
     (
         &["environment", "sun", "point", "spot", "sky"],
@@ -102,11 +108,22 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "fluorescence",
         "a surface that shines has a material of its own: emissive = { radiance = 10 }",
     ),
+    (
+        &["lumens", "lumen", "lm", "flux", "luminous_flux"],
+        "intensity",
+        "write `intensity`, in cd of absolute light: of a point its lumens over 4 pi, of a spot over its solid angle",
+    ),
+    (&IES, "intensity", OF_IES),
+    (&IES, "environment", OF_IES),
     (&["color", "tint"], "intensity", "write intensity = { rgb = [10, 8, 6] } for a light of a color"),
     (&["min", "max", "corner", "corners"], "size", "write its middle as `center`, and size = [2, 1, 3]"),
     (&["width", "height", "depth"], "size", "write size = [2, 1, 3]: along x, y and z"),
     (&["radius", "half_size"], "size", "write `size`, twice it"),
-    (&["resolution", "size", "aspect", "aspect_ratio"], "color_space", "write width = 640 and height = 360"),
+    (
+        &["resolution", "resolution_x", "resolution_y", "size", "aspect", "aspect_ratio"],
+        "color_space",
+        "write width = 640 and height = 360",
+    ),
     (&["bit_depth", "bits"], "color_space", "write precision = \"half\" for 16 bits; it is 32 if absent"),
     (&["wavelengths", "bands"], "diffuse_bounces", "write model = { bands = 16 }"),
     (
@@ -134,6 +151,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "vertical_fov",
         "`up` rolls the camera, as up = [0.17, 0.98, 0] does by 10 degrees if it looks along -z",
     ),
+    (&["ortho_scale"], "vertical_fov", "write `height`, that of the view; `ortho_scale` is that of its longer side"),
     (&["far", "clip_end"], "vertical_fov", "nothing is too far away to be seen: leave it out"),
     (
         &["bounces", "depth"],
@@ -141,7 +159,7 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "write max_bounces = 8, or diffuse_bounces for those of matte surfaces alone",
     ),
     (
-        &["f_number", "f_stop", "fstop", "aperture"],
+        &["f_number", "f_stop", "fstop", "aperture", "focal_length"],
         "focus_distance",
         "write `radius`, in scene units: the focal length over twice the f-number",
     ),
@@ -189,7 +207,12 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "write the `center` of its shape, or transform = [{ translate = [0, 1, 0] }]",
     ),
     (
-        &["smooth"],
+        &["object", "part", "group", "submesh", "node"],
+        "smooth",
+        "a file is one mesh: save what is to have a material of its own as another file",
+    ),
+    (
+        &["smooth", "shade_smooth", "auto_smooth"],
         "instances",
         "write it into the braces of a mesh: shape.mesh = { file = \"cup.obj\", smooth = true }",
     ),
@@ -249,7 +272,11 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "cauchy",
         "write { cauchy = [A, B] } of n = A + B / wavelength^2, or { sellmeier = { b = [..], c = [..] } }",
     ),
-    (&["nd", "vd", "abbe", "dispersion"], "priority", "write index = { abbe = { nd = 1.5168, vd = 64.17 } }"),
+    (
+        &["nd", "vd", "abbe", "abbe_number", "dispersion"],
+        "priority",
+        "write index = { abbe = { nd = 1.5168, vd = 64.17 } }",
+    ),
     (&["name"], "illuminant", "a light by name is { illuminant = \"D65\" }"),
     (&["name"], "checker", "a name stands without braces, such as \"dark skin\""),
     (&["value"], "checker", "a number stands without braces"),
@@ -259,6 +286,10 @@ const IN_OTHER_WORDS: [(&[&str], &str, &str); 66] = [
         "write it in a [material.NAME], and material = \"NAME\" here",
     ),
 ];
+
+/// Measured distributions of light.
+const IES: [&str; 5] = ["ies", "ies_profile", "profile", "ldt", "goniometric"];
+const OF_IES: &str = "no light is read from such files: a spot has a `cone_angle`, a `blend` and an `intensity`";
 
 /// Keys of an object that stand in its material by mistake, and where they belong.
 const RELIEF: [&str; 4] = ["normal_map", "bump_map", "normal", "bump"];
@@ -285,9 +316,9 @@ pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str
 
 /// Keys that no section has, and where what they ask for is said. What camera, film and render know holds one of
 /// [`OF_SECTIONS`].
-const OF_NO_SECTION: [(&[&str], &str); 11] = [
+const OF_NO_SECTION: [(&[&str], &str); 13] = [
     (
-        &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "brightness"],
+        &["exposure", "iso", "gamma", "tonemap", "tone_mapping", "view_transform", "look", "brightness"],
         "the EXR holds the light itself; --exposure 2 brightens the picture of --png",
     ),
     (
@@ -295,6 +326,8 @@ const OF_NO_SECTION: [(&[&str], &str); 11] = [
         "colors are those of the light: balance them afterwards, or light by numbers, which are white",
     ),
     (&["denoise", "denoiser"], "render the layers albedo and N, and then: python tools/denoise.py out.exr"),
+    (&["resolution", "resolution_x", "resolution_y"], "write width = 640 and height = 360 in [film]"),
+    (&["unit", "units"], "write radiometry = \"absolute\" in [film] for cd/m2, and meters_per_unit in [render]"),
     (&["threads"], "it is an argument of the command: --threads 4"),
     (
         &["clamp", "clamping", "max_radiance", "firefly_filter"],
@@ -440,7 +473,7 @@ fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
     let listed = |list: &DeArray| {
         let color = list.iter().map(|node| number(node.get_ref())).collect::<Option<Vec<f64>>>()?;
         let color: [f64; 3] = color.try_into().ok()?;
-        if matches!(&*word, "hsv" | "hsl") {
+        if matches!(&*word, "hsv" | "hsl" | "lab" | "xyz" | "xyy") {
             return None;
         }
         let is_srgb = word == "srgb" && color.iter().all(|x| (0.0..=1.0).contains(x));
@@ -457,4 +490,5 @@ fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
 }
 
 /// Keys of colors in other programs.
-const COLORS: [&str; 11] = ["srgb", "hex", "html", "css", "web", "rgb255", "rgb8", "hsv", "hsl", "color", "rgba"];
+const COLORS: [&str; 14] =
+    ["srgb", "hex", "html", "css", "web", "rgb255", "rgb8", "hsv", "hsl", "lab", "xyz", "xyy", "color", "rgba"];

@@ -112,6 +112,10 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             _ if key == "column" => Some("columns are counted from 1".into()),
             _ if text.starts_with('$') => Some("a variable stands alone, and there is no arithmetic".into()),
             _ if key == "retardance" => Some("it is in degrees: a quarter of a wave is 90".into()),
+            _ if key == "meters_per_unit" && matches!(&**text, "m" | "cm" | "mm") => {
+                let meters = [("m", "1"), ("cm", "0.01"), ("mm", "0.001")].into_iter().find(|unit| unit.0 == &**text);
+                meters.map(|(_, meters)| format!("write {meters}"))
+            }
             _ if text == "inf" && key == "focus_distance" => Some("write it without quotes: inf".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
                 Some("a number stands alone, without quotes and unit".into())
@@ -162,6 +166,9 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::String(text) if wanted == "true or false" && matches!(&**text, "true" | "false") => {
             Some(format!("write it without quotes: {text}"))
         }
+        DeValue::Boolean(false) if wanted.contains("\"off\"") => Some("write \"off\"".into()),
+        DeValue::Boolean(true) if wanted.contains("\"on\"") => Some("write \"on\"".into()),
+        DeValue::Boolean(true) if wanted.contains("\"auto\"") => Some("write \"auto\", or leave it out".into()),
         DeValue::Integer(_) if wanted == "true or false" && matches!(written, "0" | "1") => {
             Some(format!("write {}", written == "1"))
         }
@@ -182,6 +189,12 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             Some("write { b = [1.0396, 0.2318, 1.0105], c = [0.006, 0.02, 103.56] }, c in um^2".into())
         }
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
+        DeValue::Array(_) if key == "axis" && wanted == "a number" => {
+            Some("in degrees: 0 is the image's right, 90 its top".into())
+        }
+        DeValue::Integer(_) | DeValue::Float(_) if wanted == TABLE && key == "polarizer" => {
+            Some(format!("write {{ axis = {written} }}"))
+        }
         DeValue::Array(_) if key == "scale" && wanted == "a number" => {
             Some("`scale` multiplies the values; copies of an image are set by `repeat`".into())
         }

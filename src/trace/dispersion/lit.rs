@@ -29,6 +29,8 @@ const FAINT: f64 = 0.01;
 const BESIDE: f64 = 1e-3;
 /// The largest angle in radians by which a ray is turned to see how the lamp's extent blurs.
 const TURN: f64 = 1e-3;
+/// The ways of light that land somewhere: through bodies, and after a reflection inside of one, as in a rainbow.
+const WAYS: [Choice; 2] = [Choice::Brighter, Choice::FainterInside];
 /// Sets these random numbers apart.
 const SEED: u64 = 0x6c69_7420;
 
@@ -46,18 +48,20 @@ pub fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[Reached]) -> f6
     let mut most: f64 = 0.0;
     for (number, ball) in balls.iter().enumerate() {
         for light in brightest(colors, &lights, ball) {
-            let pair = Pair { colors, reached, light, ball };
-            let sent = (0..rays).map(|ray| {
-                let sampler = Sampler::new(world.method.seed ^ SEED, [number as u32, light as u32], ray as u32);
-                pair.pixels(&sampler)
-            });
-            let mut found: Vec<f64> = sent.flatten().collect();
-            found.sort_by(|a, b| b.total_cmp(a));
-            // More than one of all: of what goes by an edge, a ray may be on both sides of it.
-            let rank = (found.len() / 50).max(1);
-            most = most.max(found.get(rank).copied().unwrap_or(0.0));
-            if most >= SEEN_PIXELS {
-                return most;
+            for choice in WAYS {
+                let pair = Pair { colors, reached, light, ball, choice };
+                let sent = (0..rays).map(|ray| {
+                    let sampler = Sampler::new(world.method.seed ^ SEED, [number as u32, light as u32], ray as u32);
+                    pair.pixels(&sampler)
+                });
+                let mut found: Vec<f64> = sent.flatten().collect();
+                found.sort_by(|a, b| b.total_cmp(a));
+                // More than one of all: of what goes by an edge, a ray may be on both sides of it.
+                let rank = (found.len() / 50).max(1);
+                most = most.max(found.get(rank).copied().unwrap_or(0.0));
+                if most >= SEEN_PIXELS {
+                    return most;
+                }
             }
         }
     }
@@ -88,6 +92,7 @@ struct Pair<'a> {
     reached: &'a [Reached],
     light: LightId,
     ball: &'a Ball,
+    choice: Choice,
 }
 
 impl Pair<'_> {
@@ -106,8 +111,11 @@ impl Pair<'_> {
         } else {
             Media::around(&self.colors.world.scene, start.origin, start.direction)
         };
-        let walk = |lane: usize, ray: Ray| self.colors.walk(lane, ray, false, media, sampler, Choice::Brighter);
+        let walk = |lane: usize, ray: Ray| self.colors.walk(lane, ray, false, media, sampler, self.choice);
         let (first, second) = (walk(0, start), walk(1, start));
+        if self.choice == Choice::FainterInside && first.fork_inside == 0.0 {
+            return None;
+        }
         if !first.dispersive || !first.diffuse || !second.diffuse || first.met != second.met || first.weight == 0.0 {
             return None;
         }
