@@ -116,7 +116,7 @@ impl SharedRay {
     /// n cos of a lane on the ray's side, between the lane's indices `own`; 0 where it has no way on of its own.
     pub(super) fn normal_component(&self, own: [f64; 2]) -> f64 {
         if self.beyond > 0.0 {
-            return self.crossing(own)[0].sqrt();
+            return self.crossing(own)[0].max(0.0).sqrt();
         }
         let total = (self.index - self.least) * (self.index + self.least);
         if total == 0.0 {
