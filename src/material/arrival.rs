@@ -1,5 +1,6 @@
 //! Light that arrives at a surface, followed backward from the viewer.
 
+use super::fresnel::SharedRay;
 use super::{Lobes, shared_transmittance};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Table, Waves};
@@ -130,12 +131,10 @@ impl<const N: usize> Arrival<'_, N> {
             return [n1, n2, cos];
         }
         let along @ [here, beyond] = self.refracting(lane);
-        let sin_squared = 1.0 - cos * cos;
-        if along == own || here * here * sin_squared >= beyond * beyond {
+        if along == own || here * here * (1.0 - cos * cos) >= beyond * beyond {
             return [here, beyond, cos];
         }
-        let sin = here / n1;
-        [n1, n2, (1.0 - sin * sin * sin_squared).max(0.0).sqrt()]
+        [n1, n2, SharedRay::new(along, cos).normal_component(own) / n1]
     }
 
     /// What turns the shares of light that crosses, followed from the light as if it were the viewer, into those of

@@ -2,6 +2,7 @@
 
 use super::coating::MetCoating;
 use super::degree::of_all_lanes;
+use super::fresnel::SharedRay;
 use super::refractions::Refractions;
 use super::stack::StackShares;
 use super::{Arrival, Block, Branch, Coating, Interface};
@@ -70,8 +71,7 @@ pub(super) fn block_at<const N: usize>(
 }
 
 /// What a coated boundary does with a lane whose ray meets it at an angle with cosine `cos`, by the lane's own indices
-/// n1 and n2 and the cosine times n1 that the ray's conserved n sin gives it: see
-/// [`shared_transmittance`](super::shared_transmittance). What has no way on is reflected.
+/// n1 and n2 and the cosine times n1 that it has on the ray: see [`SharedRay`]. What has no way on is reflected.
 pub(super) fn shares_of_lane<const N: usize>(
     arrival: &Arrival<N>,
     lane: usize,
@@ -79,14 +79,9 @@ pub(super) fn shares_of_lane<const N: usize>(
     goes_on: bool,
     of_stack: impl Fn(f64, f64, f64) -> StackShares,
 ) -> StackShares {
-    let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
-    let [here, _] = arrival.refracting(lane);
-    let c = cos.clamp(0.0, 1.0);
-    let q1_squared = (n1 - here) * (n1 + here) + (here * c) * (here * c);
-    if q1_squared < 0.0 {
-        return StackShares::all_reflected();
-    }
-    let mut shares = of_stack(n1, n2, q1_squared.sqrt());
+    let own @ [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
+    let ray = SharedRay::new(arrival.refracting(lane), cos);
+    let mut shares = of_stack(n1, n2, ray.normal_component(own));
     if !goes_on {
         shares.reflect_all();
     }

@@ -78,30 +78,74 @@ pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
     unit(normal * (2.0 * wo.dot(normal)) - wo)
 }
 
+/// A ray that lanes of other indices share, where it meets a smooth boundary.
+///
+/// Flat surfaces conserve k = n sin i. What is less than 1 of it may come from vacuum, and is that of every lane: so
+/// plates have the shares that they would have if the lane went alone. More is that of light which never leaves a
+/// denser medium, such as that of a camera in a liquid. There a lane has what lies as far between 1 and its own index
+/// in the rarer medium, as squares: where the ray grazes the surface every lane does, and none jumps to total
+/// reflection. It is the same from both sides, so that light takes the same ways in and out.
+pub(super) struct SharedRay {
+    /// The ray's index on its own side, and the smaller one of both.
+    index: f64,
+    least: f64,
+    /// (n cos)^2 of the ray on its own side, and in the rarer medium, where total reflection leaves nothing.
+    along: f64,
+    beyond: f64,
+}
+
+impl SharedRay {
+    /// A ray that is refracted by the indices `direction` and meets the boundary at an angle with cosine `cos`.
+    pub(super) fn new([d1, d2]: [f64; 2], cos: f64) -> Self {
+        let (c, least) = (cos.clamp(0.0, 1.0), d1.min(d2));
+        let along = (d1 * c) * (d1 * c);
+        Self { index: d1, least, along, beyond: (least - d1) * (least + d1) + along }
+    }
+
+    /// (n cos)^2 of a lane on both sides, if the ray goes on.
+    #[inline]
+    fn crossing(&self, [n1, n2]: [f64; 2]) -> [f64; 2] {
+        let (least, trapped) = (n1.min(n2), (self.least - 1.0) * (self.least + 1.0));
+        let there = match self.beyond < trapped {
+            true => self.beyond * ((least - 1.0) * (least + 1.0) / trapped),
+            false => (least - self.least) * (least + self.least) + self.beyond,
+        };
+        [n1, n2].map(|n| (n - least) * (n + least) + there)
+    }
+
+    /// n cos of a lane on the ray's side, between the lane's indices `own`; 0 where it has no way on of its own.
+    pub(super) fn normal_component(&self, own: [f64; 2]) -> f64 {
+        if self.beyond > 0.0 {
+            return self.crossing(own)[0].max(0.0).sqrt();
+        }
+        let total = (self.index - self.least) * (self.index + self.least);
+        if total == 0.0 {
+            return 0.0;
+        }
+        let ([n1, _], least) = (own, own[0].min(own[1]));
+        (self.along * ((n1 - least) * (n1 + least) / total)).sqrt()
+    }
+}
+
 /// What crosses a smooth boundary of lanes that go one way though their indices differ; the rest is reflected.
 ///
 /// `own` are the indices of each lane on both sides, `direction` those by which their ray is refracted, which meets the
-/// boundary at an angle with cosine `cos` in 0..1. Flat surfaces conserve k = n sin i of the ray, so a lane meets each
-/// of them at the angle whose sine is k over its own index: plates have the shares that they would have if the lane
-/// went alone. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2) / ((q1 + q2)
-/// (k^2 + p))^2 (Fresnel 1823, with Snell's law put in), in which nothing cancels.
-///
-/// Nothing crosses where the ray is reflected totally, nor where k is no less than either index of the lane: what has
-/// no way on is reflected. The condition is the same from both sides, so that light takes the same ways in and out.
+/// boundary at an angle with cosine `cos` in 0..1. A lane has the ray's k = n sin i up to 1, and grazes the surface
+/// where the ray does. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2) /
+/// ((q1 + q2) (k^2 + p))^2 (Fresnel 1823, with Snell's law put in), in which nothing cancels. Nothing crosses where the
+/// ray is reflected totally.
 pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64; 2], cos: f64) -> [f64; N] {
-    let ([d1, d2], c) = (direction, cos.clamp(0.0, 1.0));
-    let (k_squared, along) = (d1 * d1 * (1.0 - c * c), d1 * d1 * c * c);
+    let ray = SharedRay::new(direction, cos);
     let mut crossing = [0.0; N];
-    if (d2 - d1) * (d2 + d1) + along <= 0.0 {
+    if ray.beyond <= 0.0 {
         return crossing;
     }
     for (lane, crosses) in crossing.iter_mut().enumerate() {
         let [n1, n2] = own.map(|side| side[lane]);
-        let q1_squared = (n1 - d1) * (n1 + d1) + along;
-        let q2_squared = q1_squared + (n2 - n1) * (n2 + n1);
+        let [q1_squared, q2_squared] = ray.crossing([n1, n2]);
         let (q1, q2) = (q1_squared.sqrt(), q2_squared.sqrt());
         let (product, both) = (q1 * q2, n1 * n2);
-        let (sum, turned) = (q1 + q2, k_squared + product);
+        let (sum, turned) = (q1 + q2, n1 * n1 - q1_squared + product);
         let amplitude = sum * turned;
         let t = 2.0 * product * (turned * turned + both * both) / (amplitude * amplitude);
         *crosses = if (q1_squared > 0.0) & (q2_squared > 0.0) { t } else { 0.0 };

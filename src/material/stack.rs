@@ -86,12 +86,6 @@ pub struct StackShares {
 }
 
 impl StackShares {
-    /// All light is reflected as where it grazes a surface: both amplitudes are -1.
-    pub(super) fn all_reflected() -> Self {
-        let reflected = PolarizedShare { s: 1.0, p: 1.0, cross: Complex::ONE };
-        Self { reflected, refracted: PolarizedShare::default() }
-    }
-
     /// Shares of unpolarized light that are reflected and that cross.
     pub(super) fn means(&self) -> [f64; 2] {
         [self.reflected.mean(), self.refracted.mean()]

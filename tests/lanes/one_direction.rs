@@ -2,16 +2,16 @@
 
 use abbe::film::Film;
 use abbe::material::{
-    Arrival, Branch, Dielectric, Index, Interface, Material, Roughness, Scatter, shared_transmittance,
+    Arrival, Branch, Dielectric, Index, Interface, Layer, Material, Roughness, Scatter, Stack, shared_transmittance,
 };
-use abbe::math::{DVec2, DVec3};
+use abbe::math::{Complex, DVec2, DVec3};
 use abbe::plan::plan;
 use abbe::spectrum::{
     Basis, ColorSpace, Curve, CurveKind, Draw, Emission, MAX_LANES, Quantity, Table, comparison, data, visible,
 };
 use abbe::trace::{Method, prepare, render};
 
-use crate::support::arrivals::arrival;
+use crate::support::arrivals::{arrival, material, toward};
 use crate::support::colors::{difference, lab};
 use crate::support::fresnel::reflectances;
 use crate::support::larger::larger;
@@ -190,6 +190,79 @@ fn d16_lanes_of_one_direction_lose_nothing_between_any_two_media() {
                 let near_end = k > 0.999 * ends.into_iter().fold(f64::INFINITY, f64::min);
                 assert!(near_end || (t[lane] - other[lane]).abs() < 1e-9, "{} and {}", t[lane], other[lane]);
             }
+        }
+    }
+}
+
+/// A camera in a liquid looks at glass: where the ray grazes it every lane does, and each has its own share before,
+/// bare or under a layer. A lane whose index is below that of the ray was reflected in full within 8 degrees.
+#[test]
+fn d16_lanes_in_a_dispersive_liquid_meet_denser_glass_as_if_each_were_alone() {
+    let [liquid, flint] = ["liquid/carbon disulfide", "N-SF66"]
+        .map(|name| data::glass(name).unwrap_or_else(|| panic!("no {name}")))
+        .map(|glass| ([450.0, 550.0, 650.0].map(|nm| glass.index(nm)), glass.n_d()));
+    let (draw, direction) = (Draw::<4>::fixed(3), [liquid.1, flint.1]);
+    let [incident, beyond] = [liquid.0, flint.0].map(Table::new);
+    let layers = [None, Some((1.7, 80.0))];
+    let mut worst = [0.0_f64; 2];
+    for (which, layer) in layers.into_iter().enumerate() {
+        let coating = layer.map_or(String::new(), |(index, thickness)| {
+            format!(", coating = [{{ index = {index}, thickness_nm = {thickness} }}]")
+        });
+        let material = material(&format!("dielectric = {{ index = \"N-SF66\"{coating} }}"));
+        for step in 0..=500 {
+            let cos = f64::from(step) / 500.0 + 1e-5;
+            let arrival = Arrival {
+                incident: Index::Own(&incident),
+                beyond: Index::Own(&beyond),
+                direction_indices: direction.map(Some),
+                ..arrival(&draw, toward(cos, 0.4), 1.0)
+            };
+            let mut branches = Vec::new();
+            material.scatter(&arrival, [0.5; 2], &mut branches);
+            let reflected = branches.iter().find(|branch| !branch.crosses).expect("some is reflected");
+            for lane in 0..3 {
+                let [n1, n2] = [liquid.0, flint.0].map(|n| n[lane]);
+                let wave = arrival.waves.of_lane(&draw, lane);
+                let layers = layer.map(|(index, thickness_nm)| Layer { index: Complex::from(index), thickness_nm });
+                let alone = Stack::new(wave, layers.into_iter()).shares(n1, n2.into(), n1 * cos.min(1.0));
+                let off = (f64::from(reflected.share[lane]) - alone.reflected.mean()).abs();
+                worst[which] = larger(worst[which], off);
+            }
+        }
+    }
+    println!("reflectances in carbon disulfide are at most {worst:?} off");
+    assert!(worst[0] < 6e-3 && worst[1] < 6e-3, "{worst:?}");
+}
+
+/// Where a ray grazes the rarer medium nothing crosses in any lane, nor does anything jump before.
+#[test]
+fn d16_shares_of_lanes_of_one_direction_are_continuous() {
+    let media = ["liquid/carbon disulfide", "N-BK7", "N-SF66", "N-SF11", "liquid/water"].map(|name| {
+        let glass = data::glass(name).unwrap_or_else(|| panic!("no {name}"));
+        ([400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0].map(|nm| glass.index(nm)), glass.n_d())
+    });
+    let mut all = media.to_vec();
+    all.push(([1.0; 7], 1.0));
+    for (here, beyond) in all.iter().flat_map(|here| all.iter().map(move |beyond| (here, beyond))) {
+        if here == beyond {
+            continue;
+        }
+        let least = here.1.min(beyond.1);
+        // Even steps of the cosine in the rarer medium, of which the shares are smooth.
+        let at = |step: u32| {
+            let cos = f64::from(step) / 1000.0;
+            let k = least * (1.0 - cos * cos).sqrt() / here.1;
+            shared_transmittance([&here.0, &beyond.0], [here.1, beyond.1], (1.0 - k * k).max(0.0).sqrt())
+        };
+        let mut last = [0.0; 7];
+        for step in 1..=1000 {
+            let now = at(step);
+            for lane in 0..7 {
+                let jump = (now[lane] - last[lane]).abs();
+                assert!(jump < 0.03, "{} to {} at step {step}: {jump} in lane {lane}", here.1, beyond.1);
+            }
+            last = now;
         }
     }
 }
