@@ -38,8 +38,8 @@ fn assert_as_measured(rooms: Vec<Room>) {
 
 /// Numbers of photons come from counts of rays and values of pixels, never from a clock.
 /// A dial of metal under a dome of sapphire. Photons make most of its pixels less noisy for the time, as those are dark:
-/// measured in small, an equal error of each takes 1.3 times as long without. That of the whole image takes 0.3 times
-/// as long without, as it is made where the metal shows the lamp.
+/// measured in small, an equal error of each takes 1.3 times as long without. That of the whole takes 0.3 times as long
+/// without, as it is made where the metal shows the lamp.
 const DIAL: &str = "[camera]\nposition = [0, 5, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 28\n\
     [film]\nwidth = 80\nheight = 80\n\
     [material]\ngold.conductor = { metal = \"Au\", roughness = 0.15 }\ndial.diffuse.reflectance = 0.6\n\
