@@ -36,8 +36,7 @@ fn assert_as_measured(rooms: Vec<Room>) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Numbers of photons come from counts of rays and values of pixels, never from a clock.
-/// A dial of metal under a dome of sapphire. Photons make most of its pixels less noisy for the time, as those are dark:
+/// A dial of metal under a dome of sapphire. Photons make most of its pixels less noisy for the time, which are dark:
 /// measured in small, an equal error of each takes 1.3 times as long without. That of the whole takes 0.3 times as long
 /// without, as it is made where the metal shows the lamp.
 const DIAL: &str = "[camera]\nposition = [0, 5, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 28\n\
@@ -69,6 +68,7 @@ fn an_error_of_the_whole_image_counts_beside_that_of_its_pixels() {
     }
 }
 
+/// Numbers of photons come from counts of rays and values of pixels, never from a clock.
 #[test]
 fn the_plan_asks_for_the_same_photons_every_time_and_on_any_number_of_threads() {
     for room in rooms().into_iter().filter(|room| room.asks).step_by(4) {
