@@ -105,11 +105,13 @@ impl SharedRay {
     /// (n cos)^2 of a lane on both sides, if the ray goes on.
     #[inline]
     fn crossing(&self, [n1, n2]: [f64; 2]) -> [f64; 2] {
-        let (least, trapped) = (n1.min(n2), (self.least - 1.0) * (self.least + 1.0));
-        let there = match self.beyond < trapped {
-            true => self.beyond * ((least - 1.0) * (least + 1.0) / trapped),
-            false => (least - self.least) * (least + self.least) + self.beyond,
-        };
+        let trapped = (self.least - 1.0) * (self.least + 1.0);
+        if self.beyond >= trapped {
+            let here = (n1 - self.index) * (n1 + self.index) + self.along;
+            return [here, here + (n2 - n1) * (n2 + n1)];
+        }
+        let least = n1.min(n2);
+        let there = self.beyond * ((least - 1.0) * (least + 1.0) / trapped);
         [n1, n2].map(|n| (n - least) * (n + least) + there)
     }
 
