@@ -52,7 +52,7 @@ impl Way<'_> {
         let gain = noise.gain_over(self.noise(), self.photons)?;
         let without = as_long(gain);
         let reasons = self.reasons.iter().cloned().chain([reason(&world, &without)]).collect();
-        (gain.judged() > CLEARLY).then(|| Self {
+        gain.is_clear(CLEARLY).then(|| Self {
             world,
             reasons,
             photons: self.photons,

@@ -178,7 +178,8 @@ pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String>
 /// would be lit.
 fn not_worth(gain: Option<Effort>) -> String {
     let Some(gain) = gain else { return "what they land on is black".into() };
-    let small = if gain.judged() > 1.0 { ", which is too small a gain to be sure of" } else { "" };
+    let is_small = gain.judged() > 1.0 && gain.of_whole.is_none_or(|of_whole| of_whole > 1.0);
+    let small = if is_small { ", which is too small a gain to be sure of" } else { "" };
     format!("with them, {}{small}", as_long(gain.inverse()))
 }
 

@@ -45,7 +45,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) 
     let totals: Vec<Effort> = (0..=photons.len()).map(|sent| noise.least_work(&photons, &spikes, sent)).collect();
     let judged = |sent: usize| totals[sent].judged();
     let best = (0..totals.len()).min_by(|&a, &b| judged(a).total_cmp(&judged(b))).unwrap_or(0);
-    let best = if judged(0) > CLEARLY * judged(best) { best } else { 0 };
+    let best = if totals[0].over(totals[best]).is_clear(CLEARLY) { best } else { 0 };
     let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
     let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
     photons.truncate(best);

@@ -46,6 +46,9 @@ struct Pixel {
     cell: usize,
 }
 
+/// A way may take so many times as long to the error of the whole and be better for what it makes of each pixel.
+const HARDLY_LONGER: f64 = 1.1;
+
 /// Work to an error, or how many times as much of it one way takes as another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
@@ -60,6 +63,12 @@ impl Effort {
     /// bright, and it is looked at as well.
     pub fn judged(self) -> f64 {
         self.of_whole.map_or(self.of_pixels, |of_whole| (of_whole * self.of_pixels).sqrt())
+    }
+
+    /// Whether another way is clearly better, if this one takes so many times as much: more than a limit, and hardly
+    /// less to the error of the whole.
+    pub fn is_clear(self, limit: f64) -> bool {
+        self.judged() > limit && self.of_whole.is_none_or(|of_whole| of_whole * HARDLY_LONGER > 1.0)
     }
 
     /// Whether the two ways take the same but for so small a share.
