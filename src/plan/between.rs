@@ -7,8 +7,6 @@ use crate::light::Light;
 use crate::spectrum::Table;
 use crate::trace::{PhotonWorth, PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
 
-/// How much shorter an equal error must take: a pilot knows no better.
-const CLEARLY: f64 = 1.25;
 /// Fewest camera samples of an image with light vertices: of a smaller one there would be so few light paths that their
 /// noise, which all pixels share, shows in means over the image.
 const LARGE: f64 = 1e6;
@@ -52,7 +50,7 @@ impl Way<'_> {
         let gain = noise.gain_over(self.noise(), self.photons)?;
         let without = as_long(gain);
         let reasons = self.reasons.iter().cloned().chain([reason(&world, &without)]).collect();
-        gain.is_clear(CLEARLY).then(|| Self {
+        gain.is_clear().then(|| Self {
             world,
             reasons,
             photons: self.photons,

@@ -8,8 +8,6 @@ use crate::trace::{Effort, PhotonWorth, Smoothness, World, photons_worth, pilot_
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
-/// A gain below this is none: a pilot does not know better, and a photon map may come with photons.
-const CLEARLY: f64 = 1.25;
 
 /// What photons of some lights are worth beside camera samples.
 pub(super) struct Worth {
@@ -45,7 +43,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) 
     let totals: Vec<Effort> = (0..=photons.len()).map(|sent| noise.least_work(&photons, &spikes, sent)).collect();
     let judged = |sent: usize| totals[sent].judged();
     let best = (0..totals.len()).min_by(|&a, &b| judged(a).total_cmp(&judged(b))).unwrap_or(0);
-    let best = if totals[0].over(totals[best]).is_clear(CLEARLY) { best } else { 0 };
+    let best = if totals[0].over(totals[best]).is_clear() { best } else { 0 };
     let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
     let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
     photons.truncate(best);

@@ -21,6 +21,10 @@ const SAMPLES: u32 = 8;
 pub(super) const LOOKING: f64 = 0.6;
 /// Darker pixels than this share of the squared mean count as if they were as bright: errors in them are hardly seen.
 pub(super) const DARK: f64 = 0.1;
+/// A gain below this is none: a pilot does not know better, and a photon map may come with photons.
+const CLEARLY: f64 = 1.25;
+/// A way may take so many times as long to the error of the whole and be better for what it makes of each pixel.
+const HARDLY_LONGER: f64 = 1.1;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7265_7361;
 
@@ -46,9 +50,6 @@ struct Pixel {
     cell: usize,
 }
 
-/// A way may take so many times as long to the error of the whole and be better for what it makes of each pixel.
-const HARDLY_LONGER: f64 = 1.1;
-
 /// Work to an error, or how many times as much of it one way takes as another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
@@ -65,10 +66,10 @@ impl Effort {
         self.of_whole.map_or(self.of_pixels, |of_whole| (of_whole * self.of_pixels).sqrt())
     }
 
-    /// Whether another way is clearly better, if this one takes so many times as much: more than a limit, and hardly
-    /// less to the error of the whole.
-    pub fn is_clear(self, limit: f64) -> bool {
-        self.judged() > limit && self.of_whole.is_none_or(|of_whole| of_whole * HARDLY_LONGER > 1.0)
+    /// Whether another way is clearly better, if this one takes so many times as much: well over 1, and hardly less
+    /// than 1 to the error of the whole.
+    pub fn is_clear(self) -> bool {
+        self.judged() > CLEARLY && self.of_whole.is_none_or(|of_whole| of_whole * HARDLY_LONGER > 1.0)
     }
 
     /// Whether the two ways take the same but for so small a share.
