@@ -5,7 +5,7 @@ use std::cell::OnceCell;
 use super::words::as_long;
 use crate::light::Light;
 use crate::spectrum::Table;
-use crate::trace::{PhotonWorth, PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
+use crate::trace::{BrightPlaces, PhotonWorth, PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
 
 /// Fewest camera samples of an image with light vertices: of a smaller one there would be so few light paths that their
 /// noise, which all pixels share, shows in means over the image.
@@ -27,9 +27,14 @@ pub(super) struct Way<'a> {
 /// by both, whichever pays most, if any does.
 pub(super) fn between(world: World, photons: &[PhotonWorth]) -> Way<'_> {
     let plain = Way { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
-    let aimed = plain.with_aimed_bounces();
+    let light = bright_places(&plain.world);
+    if let Some(openings) = light.as_ref().filter(|light| light.only) {
+        let aimed = plain.aimed_at_openings(openings.clone());
+        return aimed.with_light_vertices().unwrap_or(aimed);
+    }
+    let aimed = light.and_then(|light| plain.aimed_at(light));
     let looking = plain.with_light_vertices();
-    let both = looking.as_ref().and_then(Way::with_aimed_bounces);
+    let both = looking.as_ref().and_then(|looking| looking.aimed_at(bright_places(&looking.world)?));
     let others = [looking, both, aimed].into_iter().flatten();
     others.fold(plain, |best, other| if other.gain > best.gain { other } else { best })
 }
@@ -73,14 +78,24 @@ impl Way<'_> {
         })
     }
 
-    /// With bounces that are aimed at bright places.
-    fn with_aimed_bounces(&self) -> Option<Self> {
-        let places = bright_places(&self.world)?;
+    /// With bounces that are aimed at bright places, if that pays.
+    fn aimed_at(&self, places: BrightPlaces) -> Option<Self> {
         let count = places.places.len();
         let [places_word, light] = if count == 1 { ["place", "lights"] } else { ["places", "light"] };
         self.improved(self.world.with_bright(Some(places)), |_, without| {
             format!("bounces in the room are aimed at {count} bright {places_word} that {light} it; without, {without}")
         })
+    }
+
+    /// With bounces that are aimed at openings so small that a pilot by chance tells nothing to hold against it.
+    fn aimed_at_openings(self, openings: BrightPlaces) -> Self {
+        let (what, it) = match openings.places.len() {
+            1 => ("a small opening that lets".into(), "it"),
+            count => (format!("{count} small openings that let"), "them"),
+        };
+        let reason = format!("bounces in the room are aimed at {what} light in; without, hardly any would find {it}");
+        let world = self.world.with_bright(Some(openings));
+        Self { world, reasons: vec![reason], noise: OnceCell::new(), ..self }
     }
 }
 

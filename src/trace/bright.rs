@@ -17,6 +17,11 @@ use crate::shape::{Density, Quad, Shape};
 pub(super) const MOST: usize = 6;
 /// The largest share of the directions that is aimed: the noise of all other light is at most doubled.
 const LARGEST: f64 = 0.5;
+/// Of a surface that sends on the share a of the light, at most 1 - a^2 of the bounces are aimed, or the second moment
+/// a^2 / (1 - share) of a path that is not aimed would grow at every bounce, without end in a room of one color. Where
+/// no light comes but what is aimed at, 1 - a: the paths of such a room all weigh the same then.
+const FINITE: i32 = 2;
+const EQUAL: i32 = 1;
 /// How much more light from elsewhere counts than that of the places, which others may see as well: in rooms with a
 /// window, 2 to 6 make hardly a difference.
 const ELSEWHERE: f64 = 3.0;
@@ -44,6 +49,8 @@ pub struct BrightPlaces {
     pub places: Vec<BrightPlace>,
     /// Root of the mean square of the radiance from elsewhere.
     pub elsewhere: f64,
+    /// Whether they are openings without which the room would be dark.
+    pub only: bool,
 }
 
 /// A place, ready to be aimed at.
@@ -64,6 +71,8 @@ pub(super) struct Bright {
     within: Bounds,
     targets: Vec<Target>,
     elsewhere: f64,
+    /// What power of a surface's albedo is left to bounces that are not aimed, at least.
+    left: i32,
 }
 
 /// How bounces are drawn at one point.
@@ -91,11 +100,13 @@ impl Bright {
             }
         };
         let targets = found.places.iter().take(MOST).map(target).collect();
-        Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere }
+        let left = if found.only { EQUAL } else { FINITE };
+        Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere, left }
     }
 
-    /// How bounces are drawn at a point of a surface of the given unit normal; none where they are not aimed.
-    pub(super) fn at(&self, from: DVec3, normal: DVec3) -> Option<Aiming<'_>> {
+    /// How bounces are drawn at a point of a surface of the given unit normal, which sends on so much of the light; none
+    /// where they are not aimed.
+    pub(super) fn at(&self, from: DVec3, normal: DVec3, albedo: impl FnOnce() -> f64) -> Option<Aiming<'_>> {
         if !self.within.contains(from) {
             return None;
         }
@@ -118,7 +129,8 @@ impl Bright {
             return None;
         }
         chances.iter_mut().for_each(|chance| *chance /= all);
-        let share = (all / (all + PI * self.elsewhere)).min(LARGEST);
+        let largest = LARGEST.min(1.0 - albedo().min(1.0).powi(self.left));
+        let share = (all / (all + PI * self.elsewhere)).min(largest);
         Some(Aiming { bright: self, from, chances, share })
     }
 }
@@ -189,7 +201,7 @@ mod tests {
             place([1.0, 1.0, 1.0], [0.2, 0.1, 0.0], [-0.05, 0.1, 0.3], 5.0),
         ];
         let within = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(3.0) };
-        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05 })
+        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05, only: false })
     }
 
     const ROWS: usize = 12;
@@ -216,7 +228,7 @@ mod tests {
             (DVec3::new(0.5, 0.0, 1.0), DVec3::Y),
             (DVec3::new(2.9, 1.4, -2.0), unit(DVec3::new(-1.0, 0.3, 0.5))),
         ] {
-            let aiming = bright.at(from, normal).expect("it lies within");
+            let aiming = bright.at(from, normal, || 0.5).expect("it lies within");
             let frame = Frame::about(normal);
             // The density by the middles of a fine grid of all directions.
             let (rows, columns) = (ROWS * 100, COLUMNS * 100);
@@ -256,6 +268,6 @@ mod tests {
 
     #[test]
     fn nothing_is_aimed_from_outside_of_the_room() {
-        assert!(bright().at(DVec3::new(0.0, 3.5, 0.0), DVec3::Y).is_none());
+        assert!(bright().at(DVec3::new(0.0, 3.5, 0.0), DVec3::Y, || 0.5).is_none());
     }
 }

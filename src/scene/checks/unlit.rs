@@ -16,6 +16,8 @@ use crate::spectrum::Curve;
 const PATHS: u32 = 256;
 /// Points of all clear bodies that may stand in the light of the sky.
 const POINTS: usize = 1024;
+/// Rays that look for a hole to the sky.
+const LOOKS: u32 = 1 << 19;
 /// Rays after which no more lights are looked at.
 const MOST_RAYS: u64 = 1 << 20;
 /// Lights that are told of one by one.
@@ -37,6 +39,10 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     }
     if view.rays.get() > MOST_RAYS {
         return Vec::new();
+    }
+    let is_infinite = |id: &LightId| scene.lights[*id].is_infinite();
+    if dark.iter().any(is_infinite) && sees_through_a_hole(&view) {
+        dark.retain(|id| !is_infinite(id));
     }
     let mut found: Vec<String> = dark.iter().filter_map(|&id| what_is_wrong(&view, id)).collect();
     if found.len() > TOLD {
@@ -126,6 +132,16 @@ fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
         let origin = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
         let sample = light.sample_li(&SurfacePoint::in_space(origin), ball_surface([u, v]), [z, x]);
         sample.is_some_and(|sample| !view.is_occluded(&sample.ray, f64::INFINITY, None))
+    })
+}
+
+/// Whether the sky is seen from some place, if only through a small hole.
+fn sees_through_a_hole(view: &View) -> bool {
+    (0..LOOKS).any(|number| {
+        let place = &view.places[number as usize % view.places.len()];
+        let [u, v, ..] = Sampler::new(5, [number, 0], 0).four_plain(BranchKey::CAMERA, 0);
+        let ray = place.point.leave(cosine_about(place.normal, [u, v]));
+        !view.is_occluded(&ray, f64::INFINITY, None)
     })
 }
 

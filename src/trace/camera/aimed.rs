@@ -10,6 +10,13 @@ pub fn may_aim(material: &Material<Table>) -> bool {
     matches!(material, Material::Diffuse(_) | Material::Plastic(_))
 }
 
+/// What share of the light a surface sends on, in the lane of which it sends most; of plastic, about.
+pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
+    let Interaction { material, arrival, flat, .. } = at;
+    let up = shading::evaluate(material, arrival, *flat, *flat);
+    up.map_or(0.0, |(bsdf_cos, pdf)| bsdf_cos.0.iter().fold(0.0, |most, &lane| f64::from(lane).max(most)) / pdf)
+}
+
 /// The ways on from a surface whose bounces are aimed.
 ///
 /// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::aimed::{may_aim, scatter_aimed};
+use super::aimed::{albedo, may_aim, scatter_aimed};
 use super::direct::DirectLighting;
 use super::layer_sample::{LayerSample, Met};
 use super::numbers;
@@ -377,7 +377,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
-        let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat));
+        let aiming = bright.and_then(|bright| bright.at(at.point.position, at.flat, || albedo(at)));
         let (mut u, mut scatter) = ([0.0; 4], None);
         if at.lobes.is_wide() {
             u = numbers::scatter(sampler, path);

@@ -120,7 +120,7 @@ impl<const N: usize> Sensor<'_, N> {
         if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.observer, path.scatter) {
             let light = world.amount(std::array::from_fn(|i| self.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
-            let weight = path.weight(draw);
+            let weight = path.weight(draw) * f64::from(path.aimed);
             observer(Finding::Bounce(Bounce { from, normal, direction, distance, light, weight }));
         }
     }

@@ -1,8 +1,10 @@
 //! What lights a room, learned from a few camera samples.
 
-use super::clusters::{Cluster, bounds_of_most, clusters};
+use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
-use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use super::openings::small_openings;
+use super::room::Room;
+use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
 use crate::trace::camera::{Bounce, Finding};
@@ -15,11 +17,9 @@ const FEW: u32 = 24;
 const SIDE: u32 = 48;
 /// Of the way to a place, how far a bounce must go to have found what is there.
 const NEARLY: f64 = 0.9;
-/// Rays that look for the sky from where a bounce began, and how many may see it from inside a room: a quarter.
-const LOOKS: u32 = 4;
-const INSIDE: usize = 1;
-/// Share of the bounces' weight inside rooms from which on it is a picture of a room.
-const ENOUGH: f64 = 0.25;
+/// Bounces of equal light that tell what lights a room. Where there are fewer, or it is in as few, more rays look for
+/// openings.
+const OFTEN: f64 = 32.0;
 /// Points that are gathered into places.
 const POINTS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
@@ -38,8 +38,10 @@ pub fn bright_places(world: &World) -> Option<BrightPlaces> {
 
 fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
     // A few tell whether there is a room at all.
-    inside_of(world, bounces::<N>(world, FEW))?;
-    learned(inside_of(world, bounces::<N>(world, SIDE))?)
+    Room::of(world, bounces::<N>(world, FEW), SEED)?;
+    let room = Room::of(world, bounces::<N>(world, SIDE), SEED)?;
+    let openings = if is_lit_often(&room) { None } else { openings::<N>(&room) };
+    openings.or_else(|| learned(&room))
 }
 
 /// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
@@ -51,32 +53,41 @@ pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     })
 }
 
-fn weight(bounces: &[Bounce]) -> f64 {
-    bounces.iter().map(|bounce| bounce.weight).sum()
+/// Whether what lights a room was found often enough to tell what it is.
+fn is_lit_often(room: &Room) -> bool {
+    let sum = |power: i32| room.bounces.iter().map(|bounce| bounce.light.powi(power)).sum::<f64>();
+    sum(1).powi(2) > OFTEN * sum(2)
 }
 
-/// The bounces that began inside a room, if they are many.
-fn inside_of(world: &World, bounces: Vec<Bounce>) -> Option<Vec<Bounce>> {
-    let all = weight(&bounces);
-    let mut inside = Vec::new();
-    for (number, bounce) in (0..).zip(bounces) {
-        if is_inside(world, &bounce, &Sampler::new(world.method.seed ^ SEED, [number, 0], 0)) {
-            inside.push(bounce);
-        }
-    }
-    (!inside.is_empty() && weight(&inside) >= ENOUGH * all).then_some(inside)
-}
-
-fn learned(mut inside: Vec<Bounce>) -> Option<BrightPlaces> {
-    let room = room_of(&inside);
-    inside.retain(|bounce| room.contains(bounce.from));
-    let lit = inside.iter().filter(|bounce| bounce.light > 0.0);
-    let points: Vec<(DVec3, f64)> = lit.map(|bounce| (end_of(bounce, room), bounce.light)).collect();
+/// The bright places among those that bounces found.
+fn learned(room: &Room) -> Option<BrightPlaces> {
+    let lit = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
+    let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
     let step = points.len().div_ceil(POINTS).max(1);
     let found = clusters(points.into_iter().step_by(step).collect(), MOST);
-    let mut places: Vec<Place> = found.iter().filter_map(Place::of).collect();
+    bright_of(room, found.iter().map(Cluster::rectangle), false)
+}
+
+/// Small openings through which light comes, if there are some.
+fn openings<const N: usize>(room: &Room) -> Option<BrightPlaces> {
+    let openings = small_openings(room);
+    let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
+    let places: Vec<BrightPlace> = openings.iter().map(place).collect();
+    if places.is_empty() {
+        return None;
+    }
+    // What light comes through them, bounces tell that are aimed at them.
+    let places = BrightPlaces { within: room.bounds, places, elsewhere: 0.0, only: true };
+    let world = room.world.with_bright(Some(places));
+    let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
+    bright_of(&room, openings.into_iter(), true)
+}
+
+/// Those of some rectangles from or through which more light comes than from elsewhere.
+fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>, only: bool) -> Option<BrightPlaces> {
+    let mut places: Vec<Place> = rectangles.filter_map(Place::of).collect();
     let mut elsewhere = Squares::default();
-    for bounce in &inside {
+    for bounce in &room.bounces {
         let ray = Ray { origin: bounce.from, direction: bounce.direction };
         let mut any = false;
         for place in &mut places {
@@ -89,44 +100,11 @@ fn learned(mut inside: Vec<Bounce>) -> Option<BrightPlaces> {
             elsewhere.add(bounce);
         }
     }
-    let mean = inside.iter().map(|bounce| bounce.light).sum::<f64>() / weight(&inside);
+    let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / room.weight();
     let elsewhere = elsewhere.root() + mean;
     let stands_out = |place: &BrightPlace| place.radiance > elsewhere;
     let places: Vec<BrightPlace> = places.into_iter().filter_map(Place::bright).filter(stands_out).collect();
-    (!places.is_empty() && elsewhere > 0.0).then_some(BrightPlaces { within: room, places, elsewhere })
-}
-
-/// Whether less than a quarter of the sky, weighed by the cosine, is seen from where a bounce began.
-fn is_inside(world: &World, bounce: &Bounce, sampler: &Sampler) -> bool {
-    let frame = Frame::about(bounce.normal);
-    let from = bounce.from + bounce.normal * (1e-6 * bounce.from.length().max(1e-3));
-    let sees = |look: &u32| {
-        let u = sampler.four_plain(BranchKey::CAMERA, *look);
-        let direction = unit(frame.to_world(cosine_hemisphere([u[0], u[1]])));
-        let ray = Ray { origin: from, direction };
-        world.scene.nearest(&ray, f64::INFINITY, &|object| !world.is_see_through(object)).is_none()
-    };
-    (0..LOOKS).filter(sees).count() <= INSIDE
-}
-
-/// The box in which bounces begin, but for a few.
-fn room_of(inside: &[Bounce]) -> Bounds {
-    let from: Vec<(DVec3, f64)> = inside.iter().map(|bounce| (bounce.from, bounce.weight)).collect();
-    let Bounds { min, max } = bounds_of_most(&from, weight(inside));
-    let margin = 1e-6 * (max - min).length();
-    Bounds { min: min - margin, max: max + margin }
-}
-
-/// Where a bounce ends, or where it leaves the room.
-fn end_of(bounce: &Bounce, room: Bounds) -> DVec3 {
-    let toward = |from: f64, direction: f64, min: f64, max: f64| match direction {
-        d if d > 0.0 => (max - from) / d,
-        d if d < 0.0 => (min - from) / d,
-        _ => f64::INFINITY,
-    };
-    let Bounce { from, direction, distance, .. } = *bounce;
-    let leaves = (0..3).map(|i| toward(from[i], direction[i], room.min[i], room.max[i])).fold(f64::INFINITY, f64::min);
-    from + direction * distance.min(leaves)
+    (!places.is_empty() && elsewhere > 0.0).then_some(BrightPlaces { within: room.bounds, places, elsewhere, only })
 }
 
 /// A place that is being learned.
@@ -138,12 +116,12 @@ struct Place {
 }
 
 impl Place {
-    fn of(cluster: &Cluster) -> Option<Self> {
-        let [u, v, _] = cluster.half;
+    fn of(rectangle: Rectangle) -> Option<Self> {
+        let Rectangle { center, half: [u, v] } = rectangle;
         let spans = u.cross(v).length();
         (spans > 0.0 && spans.is_finite()).then(|| Self {
-            shape: Shape::Quad(Quad::new(cluster.center, u, v)),
-            center: cluster.center,
+            shape: Shape::Quad(Quad::new(center, u, v)),
+            center,
             half: [u, v],
             squares: Squares::default(),
         })

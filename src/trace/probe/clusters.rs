@@ -2,14 +2,22 @@
 
 use crate::math::{Bounds, DVec3, Frame};
 
-/// A rectangle about weighted points.
+/// A rectangle, about weighted points or on its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Rectangle {
+    pub center: DVec3,
+    /// Half edges at right angles.
+    pub half: [DVec3; 2],
+}
+
+/// Weighted points about a rectangle.
 #[derive(Clone, Debug)]
 pub struct Cluster {
     points: Vec<(DVec3, f64)>,
     cost: f64,
-    pub center: DVec3,
+    center: DVec3,
     /// Half edges at right angles, and half of the thickness.
-    pub half: [DVec3; 3],
+    half: [DVec3; 3],
 }
 
 /// Share of the weight that is left out at each end of a rectangle's edge.
@@ -48,7 +56,42 @@ pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
     found.into_iter().map(|(_, cluster)| cluster).collect()
 }
 
+impl Rectangle {
+    /// So many times as long and wide.
+    pub fn times(self, factor: f64) -> Self {
+        Self { half: self.half.map(|half| half * factor), ..self }
+    }
+}
+
 impl Cluster {
+    /// A rectangle about most of the points.
+    pub fn rectangle(&self) -> Rectangle {
+        let [u, v, _] = self.half;
+        Rectangle { center: self.center, half: [u, v] }
+    }
+
+    /// That about all of them, seen along its thickness.
+    pub fn around_all(&self) -> Rectangle {
+        let Rectangle { mut center, half } = self.rectangle();
+        let half = half.map(|half| {
+            let axis = half.normalize_or_zero();
+            let [low, high] = span(&self.points, 1.0, axis, 0.0);
+            center += axis * (0.5 * (low + high) - center.dot(axis));
+            axis * (0.5 * (high - low))
+        });
+        Rectangle { center, half }
+    }
+
+    /// Half edges times each other.
+    pub fn area(&self) -> f64 {
+        self.half[0].length() * self.half[1].length()
+    }
+
+    /// About the points of both.
+    pub fn joined(&self, other: &Self) -> Option<Self> {
+        Self::around([self.points.as_slice(), &other.points].concat())
+    }
+
     fn around(points: Vec<(DVec3, f64)>) -> Option<Self> {
         let weight: f64 = points.iter().map(|point| point.1).sum();
         if points.len() < FEWEST || weight <= 0.0 {
