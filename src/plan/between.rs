@@ -5,7 +5,9 @@ use std::cell::OnceCell;
 use super::words::as_long;
 use crate::light::Light;
 use crate::spectrum::Table;
-use crate::trace::{BrightPlaces, PhotonWorth, PilotNoise, World, bright_places, pilot_noise, with_light_vertices};
+use crate::trace::{
+    BrightPlaces, PhotonWorth, PilotNoise, RoomLight, World, pilot_noise, room_light, with_light_vertices,
+};
 
 /// Fewest camera samples of an image with light vertices: of a smaller one there would be so few light paths that their
 /// noise, which all pixels share, shows in means over the image.
@@ -27,14 +29,14 @@ pub(super) struct Way<'a> {
 /// by both, whichever pays most, if any does.
 pub(super) fn between(world: World, photons: &[PhotonWorth]) -> Way<'_> {
     let plain = Way { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
-    let light = bright_places(&plain.world);
-    if let Some(openings) = light.as_ref().filter(|light| light.only) {
-        let aimed = plain.aimed_at_openings(openings.clone());
+    let light = room_light(&plain.world);
+    if let RoomLight { openings: Some(openings), is_rare: true, .. } = light {
+        let aimed = plain.aimed_at_rare(openings);
         return aimed.with_light_vertices().unwrap_or(aimed);
     }
-    let aimed = light.and_then(|light| plain.aimed_at(light));
+    let aimed = plain.aimed(light);
     let looking = plain.with_light_vertices();
-    let both = looking.as_ref().and_then(|looking| looking.aimed_at(bright_places(&looking.world)?));
+    let both = looking.as_ref().and_then(|looking| looking.aimed(room_light(&looking.world)));
     let others = [looking, both, aimed].into_iter().flatten();
     others.fold(plain, |best, other| if other.gain > best.gain { other } else { best })
 }
@@ -78,25 +80,35 @@ impl Way<'_> {
         })
     }
 
-    /// With bounces that are aimed at bright places, if that pays.
-    fn aimed_at(&self, places: BrightPlaces) -> Option<Self> {
-        let count = places.places.len();
-        let [places_word, light] = if count == 1 { ["place", "lights"] } else { ["places", "light"] };
-        self.improved(self.world.with_bright(Some(places)), |_, without| {
-            format!("bounces in the room are aimed at {count} bright {places_word} that {light} it; without, {without}")
-        })
+    /// With bounces that are aimed at bright places or at openings, whichever pays most, if any do.
+    fn aimed(&self, RoomLight { places, openings, .. }: RoomLight) -> Option<Self> {
+        let at = |places: BrightPlaces| {
+            let what = described(&places);
+            self.improved(self.world.with_bright(Some(places)), |_, without| format!("{what}; without, {without}"))
+        };
+        let [places, openings] = [places.and_then(at), openings.and_then(at)];
+        let pays = |way: &Option<Self>| way.as_ref().map_or(0.0, |way| way.gain);
+        if pays(&openings) > pays(&places) { openings } else { places }
     }
 
     /// With bounces that are aimed at openings so small that a pilot by chance tells nothing to hold against it.
-    fn aimed_at_openings(self, openings: BrightPlaces) -> Self {
-        let (what, it) = match openings.places.len() {
-            1 => ("a small opening that lets".into(), "it"),
-            count => (format!("{count} small openings that let"), "them"),
-        };
-        let reason = format!("bounces in the room are aimed at {what} light in; without, hardly any would find {it}");
+    fn aimed_at_rare(self, openings: BrightPlaces) -> Self {
+        let reason = format!("{}; without, hardly any would find light", described(&openings));
         let world = self.world.with_bright(Some(openings));
         Self { world, reasons: vec![reason], noise: OnceCell::new(), ..self }
     }
+}
+
+/// What bounces are aimed at.
+fn described(places: &BrightPlaces) -> String {
+    let count = places.places.len();
+    let what = match (places.only, count) {
+        (false, 1) => "1 bright place that lights it".into(),
+        (false, _) => format!("{count} bright places that light it"),
+        (true, 1) => "1 opening that lets light in".into(),
+        (true, _) => format!("{count} openings that let light in"),
+    };
+    format!("bounces in the room are aimed at {what}")
 }
 
 /// Which light light vertices carry.

@@ -49,7 +49,7 @@ pub struct BrightPlaces {
     pub places: Vec<BrightPlace>,
     /// Root of the mean square of the radiance from elsewhere.
     pub elsewhere: f64,
-    /// Whether they are openings without which the room would be dark.
+    /// Whether they are openings to the sky.
     pub only: bool,
 }
 

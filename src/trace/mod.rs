@@ -71,9 +71,9 @@ pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
 pub use path_start::Sunlit;
 pub use photon_focus::Smoothness;
 pub use probe::{
-    Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, SampleWorth, SeenLight,
-    adaptive, branching, bright_places, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise,
-    piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, seen_light, seen_photons,
+    Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, RoomLight, SampleWorth,
+    SeenLight, adaptive, branching, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise, piloted,
+    polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_light, seen_photons,
     with_light_vertices,
 };
 pub use replicates::REPLICATES;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use abbe::film::Film;
 use abbe::math::{Bounds, DVec3};
 use abbe::plan::plan;
-use abbe::trace::{BrightPlace, BrightPlaces, Method, bright_places, prepare, prepare_unguided, render};
+use abbe::trace::{BrightPlace, BrightPlaces, Method, prepare, prepare_unguided, render, room_light};
 
 use crate::support::scenes::{
     Mean, SPLITTING, body, environment, films_of, method, moments, quad, scene, standard_errors, view,
@@ -51,7 +51,7 @@ fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
 
 fn learned(text: &str) -> Option<BrightPlaces> {
     let scene = scene(text);
-    bright_places(&prepare_unguided(&scene, method(&scene, SPLITTING)))
+    room_light(&prepare_unguided(&scene, method(&scene, SPLITTING))).places
 }
 
 /// A middle, two half edges and a radiance.

@@ -2,7 +2,7 @@
 
 use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
-use super::openings::small_openings;
+use super::openings::openings;
 use super::room::Room;
 use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
@@ -17,31 +17,44 @@ const FEW: u32 = 24;
 const SIDE: u32 = 48;
 /// Of the way to a place, how far a bounce must go to have found what is there.
 const NEARLY: f64 = 0.9;
-/// Bounces of equal light that tell what lights a room. Where there are fewer, or it is in as few, more rays look for
-/// openings.
+/// Bounces of equal light that tell what lights a room. Where there are fewer, or nearly all light is in as few, more
+/// rays look for openings, by pieces.
 const OFTEN: f64 = 32.0;
+const MOST_PIECES: usize = 64;
 /// Points that are gathered into places.
 const POINTS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6272_6967;
 
-/// Where light comes from inside a room that the sky lights; none where the camera sees no room or nothing stands out.
-///
-/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
-pub fn bright_places(world: &World) -> Option<BrightPlaces> {
-    let is_random = matches!(world.method.transport, Transport::Random { .. });
-    if world.scene.infinite_lights.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
-        return None;
-    }
-    in_lanes!(&world.method.basis, N => places::<N>(world))
+/// What lights a room that the camera sees.
+#[derive(Default)]
+pub struct RoomLight {
+    /// Where bounces found most light, if anything stands out.
+    pub places: Option<BrightPlaces>,
+    /// Its openings to the sky, if they do.
+    pub openings: Option<BrightPlaces>,
+    /// Whether bounces found hardly any light, so that how they vary tells nothing.
+    pub is_rare: bool,
 }
 
-fn places<const N: usize>(world: &World) -> Option<BrightPlaces> {
+/// Where light comes from inside a room that the sky lights; nowhere, if the camera sees no room.
+///
+/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
+pub fn room_light(world: &World) -> RoomLight {
+    let is_random = matches!(world.method.transport, Transport::Random { .. });
+    if world.scene.infinite_lights.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
+        return RoomLight::default();
+    }
+    in_lanes!(&world.method.basis, N => of_room::<N>(world)).unwrap_or_default()
+}
+
+fn of_room<const N: usize>(world: &World) -> Option<RoomLight> {
     // A few tell whether there is a room at all.
     Room::of(world, bounces::<N>(world, FEW), SEED)?;
     let room = Room::of(world, bounces::<N>(world, SIDE), SEED)?;
-    let openings = if is_lit_often(&room) { None } else { openings::<N>(&room) };
-    openings.or_else(|| learned(&room))
+    let is_rare = !is_lit_often(&room);
+    let openings = openings(&room, if is_rare { MOST_PIECES } else { 1 });
+    Some(RoomLight { places: learned(&room), openings: bright_openings::<N>(&room, &openings), is_rare })
 }
 
 /// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
@@ -68,9 +81,8 @@ fn learned(room: &Room) -> Option<BrightPlaces> {
     bright_of(room, found.iter().map(Cluster::rectangle), false)
 }
 
-/// Small openings through which light comes, if there are some.
-fn openings<const N: usize>(room: &Room) -> Option<BrightPlaces> {
-    let openings = small_openings(room);
+/// Those openings through which most light comes.
+fn bright_openings<const N: usize>(room: &Room, openings: &[Rectangle]) -> Option<BrightPlaces> {
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
     let places: Vec<BrightPlace> = openings.iter().map(place).collect();
     if places.is_empty() {
@@ -80,7 +92,7 @@ fn openings<const N: usize>(room: &Room) -> Option<BrightPlaces> {
     let places = BrightPlaces { within: room.bounds, places, elsewhere: 0.0, only: true };
     let world = room.world.with_bright(Some(places));
     let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
-    bright_of(&room, openings.into_iter(), true)
+    bright_of(&room, openings.iter().copied(), true)
 }
 
 /// Those of some rectangles from or through which more light comes than from elsewhere.

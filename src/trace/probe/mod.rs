@@ -20,7 +20,7 @@ mod sunlit;
 mod visible_caps;
 
 pub use branching::{Branching, branching, pixels_of_objects};
-pub use brightness::bright_places;
+pub use brightness::{RoomLight, room_light};
 pub use compared::polarization_error;
 pub use cost::{PhotonTimes, Probe, photon_times, photons_within, probe};
 pub use density_pilot::{Adaptive, adaptive};

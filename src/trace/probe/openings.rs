@@ -1,19 +1,21 @@
-//! Openings of a room that light so little of it that some thousand bounces do not find them: pinholes, gaps.
+//! Openings of a room, however small: windows, gaps, pinholes.
 
 use std::ops::Range;
 
 use super::clusters::{Cluster, Rectangle, clusters};
-use super::room::Room;
-use crate::math::{BranchKey, DVec3, Sampler, ball_surface, cosine_about};
+use super::room::{Room, box_around};
+use crate::math::{Bounds, BranchKey, DVec3, Sampler, ball_surface, cosine_about};
 use crate::trace::bright::MOST;
 use crate::trace::camera::Bounce;
 use crate::trace::parallel::in_parallel;
 
-/// Rays of a piece of work, and pieces that look for ways out of the room: first one, then twice as many each time.
+/// Rays of a piece of work: first one piece looks for ways out of the room, then twice as many each time.
 const RAYS: u32 = 1 << 14;
-const PIECES: usize = 64;
-/// Ways out that tell where to look closely. Where one piece finds as many, some thousand bounces find the way.
-const ENOUGH: usize = 32;
+/// Ways out that tell where to look closely.
+const ENOUGH: usize = 64;
+/// The numbers of the pieces that do so, and that look for walls.
+const CLOSELY: usize = 1 << 16;
+const WALLS: usize = CLOSELY + 1;
 /// How far beside a way out rays look closely, in sizes of the room: a power of two, from the first to the last alike.
 const BESIDE: [f64; 2] = [-14.0, -3.0];
 /// Nearer places, in squares of the size of the room, weigh no less.
@@ -30,18 +32,25 @@ const SEED: u64 = 0x6f70_656e;
 
 /// The direction of a ray from where a bounce began, of any length.
 type Toward<'a> = &'a (dyn Fn(&Bounce, u32, [f64; 4]) -> DVec3 + Sync);
+/// What is kept of it.
+type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 
-/// The small openings of a room to where the sky is seen, each held by a rectangle; none beside large ones, which
-/// bounces find.
-pub fn small_openings(room: &Room) -> Vec<Rectangle> {
-    let ways_out = ways_out(room);
-    let size = (room.bounds.max - room.bounds.min).length();
+/// The openings of a room to where the sky is seen, each held by a rectangle. So many pieces of work look for them, or
+/// fewer if they find some.
+pub fn openings(room: &Room, pieces: usize) -> Vec<Rectangle> {
+    let Some(walls) = walls(room) else { return Vec::new() };
+    let way_out = |bounce: &Bounce, direction, sampler: &Sampler| room.way_out(&walls, bounce, direction, sampler);
+    let ways_out = ways_out(room, pieces, &way_out);
+    if ways_out.is_empty() {
+        return Vec::new();
+    }
+    let size = (walls.max - walls.min).length();
     let beside = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
         let way_out = ways_out[number as usize % ways_out.len()];
         let radius = size * libm::exp2(BESIDE[0] + (BESIDE[1] - BESIDE[0]) * exponent);
         way_out + ball_surface([a, b]) * radius - bounce.from
     };
-    let found = if ways_out.is_empty() { Vec::new() } else { looked(room, PIECES..PIECES + 1, &beside) };
+    let found = looked(room, CLOSELY..CLOSELY + 1, &beside, &way_out);
     // Rays fall the less densely the farther they are from the way out, by the square of that.
     let nearest =
         |place: DVec3| ways_out.iter().map(|way_out| place.distance_squared(*way_out)).fold(f64::INFINITY, f64::min);
@@ -66,33 +75,45 @@ fn joined(mut clusters: Vec<Cluster>) -> Vec<Cluster> {
     clusters
 }
 
-/// Where some of the rays that bounces might take leave the room; none where they often do.
-fn ways_out(room: &Room) -> Vec<DVec3> {
-    let by_cosine = |bounce: &Bounce, _: u32, [a, b, ..]: [f64; 4]| cosine_about(bounce.normal, [a, b]);
-    let mut found = looked(room, 0..1, &by_cosine);
-    if found.len() >= ENOUGH {
-        return Vec::new();
-    }
-    let mut pieces = 1;
-    while pieces < PIECES && found.len() < ENOUGH {
-        found.extend(looked(room, pieces..2 * pieces, &by_cosine));
+/// A box around the walls of a room, by where rays end inside.
+fn walls(room: &Room) -> Option<Bounds> {
+    let end = |bounce: &Bounce, direction, sampler: &Sampler| room.end_inside(bounce, direction, sampler);
+    let ends: Vec<(DVec3, f64)> =
+        looked(room, WALLS..WALLS + 1, &by_cosine, &end).into_iter().map(|end| (end, 1.0)).collect();
+    let begun =
+        room.bounces.iter().step_by(room.bounces.len().div_ceil(ends.len().max(1))).map(|bounce| (bounce.from, 1.0));
+    let points: Vec<(DVec3, f64)> = begun.chain(ends.iter().copied()).collect();
+    (!ends.is_empty()).then(|| box_around(&points, points.len() as f64))
+}
+
+/// Where some of the rays that bounces might take leave the room.
+fn ways_out(room: &Room, most: usize, way_out: Keep) -> Vec<DVec3> {
+    let (mut found, mut pieces) = (looked(room, 0..1, &by_cosine, way_out), 1);
+    while pieces < most && found.len() < ENOUGH {
+        found.extend(looked(room, pieces..2 * pieces, &by_cosine, way_out));
         pieces *= 2;
     }
+    found.truncate(ENOUGH);
     found
 }
 
-/// Where rays leave the room.
-fn looked(room: &Room, pieces: Range<usize>, toward: Toward) -> Vec<DVec3> {
+/// As a bounce from a matte surface would go on.
+fn by_cosine(bounce: &Bounce, _: u32, [a, b, ..]: [f64; 4]) -> DVec3 {
+    cosine_about(bounce.normal, [a, b])
+}
+
+/// What is kept of the rays of some pieces of work.
+fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<DVec3> {
     let of_piece = |piece: usize| -> Vec<DVec3> {
-        let way_out = |number: u32| {
+        let kept = |number: u32| {
             let key = [(pieces.start + piece) as u32, 0];
             let sampler = Sampler::new(room.world.method.seed ^ SEED, key, number);
             let u = sampler.four_plain(BranchKey::CAMERA, DRAW);
             let bounce = &room.bounces[(u[3] * room.bounces.len() as f64) as usize];
             let direction = toward(bounce, number, u).try_normalize()?;
-            if direction.dot(bounce.normal) > 0.0 { room.way_out(bounce, direction, &sampler) } else { None }
+            if direction.dot(bounce.normal) > 0.0 { keep(bounce, direction, &sampler) } else { None }
         };
-        (0..RAYS).filter_map(way_out).collect()
+        (0..RAYS).filter_map(kept).collect()
     };
     in_parallel(pieces.len(), &of_piece).concat()
 }

@@ -11,7 +11,9 @@ const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
 /// Share of the bounces' weight inside rooms from which on it is a picture of a room.
 const ENOUGH: f64 = 0.25;
-/// Of the way to where a ray leaves the room, how far beyond it must go to have left.
+/// Of a box, how much is added around it; and of the way to where a ray leaves it, how far beyond it must go to have
+/// left.
+const MARGIN: f64 = 1e-6;
 const BEYOND: f64 = 1.0 + 1e-6;
 
 /// A room in which bounces begin.
@@ -36,9 +38,7 @@ impl<'a> Room<'a> {
             return None;
         }
         let from: Vec<(DVec3, f64)> = bounces.iter().map(|bounce| (bounce.from, bounce.weight)).collect();
-        let Bounds { min, max } = bounds_of_most(&from, weight(&bounces));
-        let margin = 1e-6 * (max - min).length();
-        let bounds = Bounds { min: min - margin, max: max + margin };
+        let bounds = box_around(&from, weight(&bounces));
         let bounces = bounces.into_iter().filter(|bounce| bounds.contains(bounce.from)).collect();
         Some(Self { world, bounds, bounces })
     }
@@ -48,40 +48,65 @@ impl<'a> Room<'a> {
         weight(&self.bounces)
     }
 
-    /// Where a bounce ends, or where it leaves the room.
+    /// Where a bounce ends, or where it leaves the box.
     pub fn end_of(&self, bounce: &Bounce) -> DVec3 {
-        let leaves = self.distance_out(bounce.from, bounce.direction);
+        let leaves = distance_out(&self.bounds, bounce.from, bounce.direction);
         bounce.from + bounce.direction * bounce.distance.min(leaves)
     }
 
-    /// Where a ray leaves the room from where a bounce began, if it comes to the sky or to a place that is not inside.
-    pub fn way_out(&self, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
-        let Self { world, .. } = self;
-        let ray = Ray { origin: off(bounce.from, bounce.normal), direction };
-        let leaves = self.distance_out(ray.origin, direction);
-        let is_out = match world.scene.nearest(&ray, f64::INFINITY, &|object| !world.is_see_through(object)) {
-            None => true,
-            Some(hit) if hit.crossing.t < BEYOND * leaves => false,
-            Some(hit) => {
-                let shape = &world.scene.objects[hit.object as usize].shape;
-                let SurfacePoint { position, normal, .. } = shape.point(&ray, &hit.crossing);
-                let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
-                !is_inside(world, position, normal, sampler)
-            }
-        };
-        is_out.then(|| ray.at(leaves))
+    /// Where a ray from where a bounce began ends, if that is inside.
+    pub fn end_inside(&self, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
+        let met = Met::of(self.world, &leaving(bounce, direction))?;
+        is_inside(self.world, met.position, met.normal, sampler).then_some(met.position)
     }
 
-    /// How far it is from a point inside to the end of the box.
-    fn distance_out(&self, from: DVec3, direction: DVec3) -> f64 {
-        let Bounds { min, max } = self.bounds;
-        let toward = |i: usize| match direction[i] {
-            d if d > 0.0 => (max[i] - from[i]) / d,
-            d if d < 0.0 => (min[i] - from[i]) / d,
-            _ => f64::INFINITY,
-        };
-        (0..3).map(toward).fold(f64::INFINITY, f64::min)
+    /// Where such a ray leaves a box around the room, if it comes to the sky or to a place that is not inside.
+    pub fn way_out(&self, walls: &Bounds, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
+        let ray = leaving(bounce, direction);
+        let leaves = distance_out(walls, ray.origin, direction);
+        let is_out = Met::of(self.world, &ray)
+            .is_none_or(|met| met.t > BEYOND * leaves && !is_inside(self.world, met.position, met.normal, sampler));
+        is_out.then(|| ray.at(leaves))
     }
+}
+
+/// Where a ray meets a surface that ends it.
+struct Met {
+    t: f64,
+    position: DVec3,
+    /// Toward where it came from.
+    normal: DVec3,
+}
+
+impl Met {
+    fn of(world: &World, ray: &Ray) -> Option<Self> {
+        let hit = world.scene.nearest(ray, f64::INFINITY, &|object| !world.is_see_through(object))?;
+        let shape = &world.scene.objects[hit.object as usize].shape;
+        let SurfacePoint { position, normal, .. } = shape.point(ray, &hit.crossing);
+        let normal = if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
+        Some(Self { t: hit.crossing.t, position, normal })
+    }
+}
+
+/// A box around most of some weighted points, and a little more.
+pub fn box_around(points: &[(DVec3, f64)], weight: f64) -> Bounds {
+    let Bounds { min, max } = bounds_of_most(points, weight);
+    let margin = MARGIN * (max - min).length();
+    Bounds { min: min - margin, max: max + margin }
+}
+
+/// How far it is from a point in a box to its end.
+fn distance_out(Bounds { min, max }: &Bounds, from: DVec3, direction: DVec3) -> f64 {
+    let toward = |i: usize| match direction[i] {
+        d if d > 0.0 => (max[i] - from[i]) / d,
+        d if d < 0.0 => (min[i] - from[i]) / d,
+        _ => f64::INFINITY,
+    };
+    (0..3).map(toward).fold(f64::INFINITY, f64::min)
+}
+
+fn leaving(bounce: &Bounce, direction: DVec3) -> Ray {
+    Ray { origin: off(bounce.from, bounce.normal), direction }
 }
 
 fn weight(bounces: &[Bounce]) -> f64 {
