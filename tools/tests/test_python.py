@@ -622,7 +622,7 @@ def test_the_catalog_answers_arrays():
     hidden = glass.index(np.ma.array(nm, mask=[[False, True], [False, False]]))
     assert hidden.mask.tolist() == [[False, True], [False, False]] and hidden[0, 0] == n[0, 0]
     assert glass.v_d == pytest.approx(25.68, abs=0.005) and glass.name == "schott/N-SF11" and glass.source
-    # CIE 015:2018, table 1: D65 is 100 at 560 nm, and 117.008 at 460 nm.
+    # CIE 015:2018, table 1: D65 is 100 at 560 nm, and 117.812 at 460 nm.
     light = abbe.catalog.illuminant("D65")
     assert light.power([460, 560, 100]) == pytest.approx([117.8118, 100.0, 0.0], abs=1)
     gold = abbe.catalog.metal("gold")
@@ -651,6 +651,8 @@ def test_an_entry_of_the_catalog_stands_for_its_name():
     for entry in (*entries, gold):
         again = pickle.loads(pickle.dumps(entry))
         assert (type(again), again.name, again.range_nm) == (type(entry), entry.name, entry.range_nm)
+        assert again == entry and hash(again) == hash(entry) and entry != entry.name
+    assert abbe.catalog.glass("schott/N-BK7") == entries[0] != abbe.catalog.glass("N-SF11")
 
 
 def test_images_and_scenes_are_copied_by_copy():
