@@ -53,6 +53,9 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
     /// A refusal of what is asked for, with what to do instead.
+    ///
+    /// # Errors
+    /// Always: it is [`Error::Arguments`].
     pub fn refuse<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T> {
         Err(Self::Arguments { message: message.into(), help: Some(help.into()) })
     }

@@ -23,7 +23,8 @@
 //!
 //! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`scene::Source`] puts other
 //! values into a scene, such as those of a frame or of a step of a sweep. [`Rendering`] says its plan and its progress.
-//! The rooms below are open as well: a plan without a render, a glass's index, one ray.
+//! The rooms below are open as well: a plan without a render ([`plan::plan`]), a glass's index
+//! ([`spectrum::data::glass`]), one ray ([`Scene::intersect`]).
 //!
 //! ```text
 //! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR

@@ -2,7 +2,9 @@
 
 use std::fs;
 
+use abbe::film::Window;
 use abbe::scene::{Scene, Source};
+use abbe::{Error, Options, Rendering};
 
 use crate::support::run::Folder;
 
@@ -225,4 +227,35 @@ fn a_scene_that_a_program_has_built_may_include_files_and_tells_where_they_are_w
     let table: abbe::toml::Table = SCENE.replace("= 35", "= \"$angle\"").parse().expect("it is TOML");
     let refused = Scene::from_table(&table, "").expect_err("there is no such variable").to_string();
     assert!(refused.starts_with("camera.vertical_fov: there is no variable `angle`"), "{refused}");
+}
+
+/// What is said of a scene that a program has changed, and of what it asks for.
+fn refused(options: Options, change: impl FnOnce(&mut Scene)) -> String {
+    let mut scene = with(SCENE, &[]);
+    change(&mut scene);
+    match Rendering::new(&scene, &options) {
+        Err(Error::Arguments { message, help: Some(_) }) => message,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_scene_that_a_program_has_changed_is_checked_as_options_are() {
+    let nothing_asked = |change: fn(&mut Scene)| refused(Options::default(), change);
+    assert_eq!(nothing_asked(|scene| scene.film.width = 0), "an image has at least 1 pixel along each side, not 0 x 4");
+    assert_eq!(nothing_asked(|scene| scene.render.samples = Some(0)), "a pixel needs at least 1 sample");
+    let error = "a relative error lies between 0.000001 and 1, not -1";
+    assert_eq!(nothing_asked(|scene| scene.render.error = Some(-1.0)), error);
+    let crop = "this crop ends at column 9, row 4, but the image has 6 x 4 pixels";
+    let beyond = Window { left: 0, top: 0, width: 9, height: 4 };
+    assert_eq!(refused(Options { crop: Some(beyond), ..Options::default() }, |_| ()), crop);
+    assert_eq!(refused(Options::default(), |scene| scene.film.crop = Some(beyond)), crop);
+}
+
+#[test]
+fn no_more_threads_are_started_than_a_machine_bears() {
+    for threads in [0, 1025, usize::MAX] {
+        let options = Options { threads: Some(threads), ..Options::default() };
+        assert_eq!(refused(options, |_| ()), "a render has 1 to 1024 threads");
+    }
 }

@@ -13,6 +13,7 @@ Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Fo
 Cryptomatte specification 1.2.0.
 """
 
+import argparse
 import itertools
 import json
 import math
@@ -640,11 +641,11 @@ def violations(path):
     return [violation for rule in rules for violation in rule(file)]
 
 
-def main(paths):
-    if not paths:
-        sys.exit("usage: check_exr.py FILE...")
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", metavar="FILE", nargs="+")
     bad = 0
-    for path in paths:
+    for path in parser.parse_args(arguments).files:
         found = violations(path)
         bad += bool(found)
         print("FAIL" if found else "OK  ", path)

@@ -56,7 +56,7 @@ Examples:
   render man                                      write its manual page
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene,
-130 stopped by Ctrl-C.";
+130 stopped by Ctrl-C, SIGTERM or SIGHUP.";
 
 /// Render a TOML scene to a linear OpenEXR image.
 #[derive(Clone, Parser)]

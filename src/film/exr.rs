@@ -101,7 +101,7 @@ impl fmt::Display for Fact {
 }
 
 /// What a file says of an image beside its pixels.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Heading<'a> {
     /// The image, for its size, its layers and their names; its pixels are not looked at.
     pub film: &'a Film,

@@ -8,7 +8,7 @@ use super::spectral::SpectralImage;
 use super::window::Window;
 
 /// A tile's pixels, row by row, and their numbers in each layer and in the spectral image.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct TileValues {
     /// The image.
     pub pixels: Vec<Pixel>,

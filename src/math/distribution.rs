@@ -29,6 +29,9 @@ pub struct Distribution {
 
 impl Distribution {
     /// At least one entry, drawn in proportion to weights of 0 or more; all alike where every weight is 0.
+    ///
+    /// # Panics
+    /// If there is no entry.
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
         let mut total = 0.0;
         let running = |weight: f64| {

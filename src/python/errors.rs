@@ -26,7 +26,9 @@ pub(super) fn raised(error: Error) -> PyErr {
             let all: Vec<_> = mistakes.iter().map(|found| mistake(found, &mut lines)).collect();
             SceneError::new_err((error.to_string(), all))
         }
-        Error::Arguments { message, help } => OptionsError::new_err((message, help.map(|help| for_python(&help)))),
+        Error::Arguments { message, help } => {
+            OptionsError::new_err((for_python(&message), help.map(|help| for_python(&help))))
+        }
         Error::Io { doing, path, source } => match source.raw_os_error() {
             Some(number) => {
                 let told = source.to_string().replace(&format!(" (os error {number})"), "");
@@ -95,6 +97,6 @@ fn mistake(found: &Diagnostic, lines: &mut Lines) -> Mistake {
 }
 
 /// The flags of a command line are arguments of the same name; a whole command stays as it is.
-fn for_python(help: &str) -> String {
-    if help.contains("render --") { help.to_owned() } else { help.replace("--", "") }
+pub(super) fn for_python(words: &str) -> String {
+    if words.contains("render --") { words.to_owned() } else { words.replace("--", "") }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use abbe::film::{ExrFile, ExrLayer};
+use abbe::film::{ExrFile, ExrLayer, Part};
 use abbe::look::{Difference, Exposure, Noise, Picture, compare};
 use abbe::{Error, Result};
 use pyo3::exceptions::PyKeyError;
@@ -71,7 +71,12 @@ impl Exr {
     /// What the file says of itself.
     #[getter]
     fn attributes(&self) -> Vec<(String, String)> {
-        self.file.parts.iter().flat_map(|part| part.attributes.clone()).collect()
+        let numbers = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
+        let of_part = |part: &Part| {
+            let camera = part.camera.map(|matrix| ("worldToCamera".to_owned(), numbers(&matrix)));
+            part.attributes.iter().cloned().chain(camera).collect::<Vec<_>>()
+        };
+        self.file.parts.iter().flat_map(of_part).collect()
     }
 
     /// A layer, or a channel by its full name.

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 
-use super::errors::{defect, raised, refuse};
+use super::errors::{defect, for_python, raised, refuse};
 use super::image::Image;
 use super::options::{options, time};
 use super::scene::Scene;
@@ -139,7 +139,7 @@ impl Job {
         }
         kept.map_or(Ok(()), |kept| kept.go_on(&mut rendering))?;
         let began = self.state.begin(rendering.done(), rendering.work());
-        let mut warnings = self.scene.warnings.clone();
+        let mut warnings: Vec<_> = self.scene.warnings.iter().map(|warning| for_python(warning)).collect();
         let is_finished = self.advance(&mut rendering, &mut warnings)?;
         let saved = kept.map_or(Ok(()), |kept| rendering.save(&kept.path));
         if !is_finished {

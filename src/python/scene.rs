@@ -9,7 +9,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
-use super::errors::{no_pickle, raised, raised_of, refuse};
+use super::errors::{for_python, no_pickle, raised, raised_of, refuse};
 use super::{text, work};
 
 /// The same error, in which mistakes in settings, of which each has a line, are told by their keys.
@@ -79,7 +79,7 @@ impl Scene {
     /// What its author should know.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.0.warnings.clone()
+        self.0.warnings.iter().map(|warning| for_python(warning)).collect()
     }
 
     /// Pixels per row and rows.

@@ -33,7 +33,8 @@ pub struct Options {
     pub layers: Option<Vec<Layer>>,
     /// Whether spectra are made, as they are where the scene asks for them.
     pub spectral: bool,
-    /// Processor threads; one for each processor if absent. The image is the same for any number.
+    /// Processor threads, 1 to [`MOST_THREADS`](Self::MOST_THREADS); one for each processor if absent. The image is the
+    /// same for any number.
     pub threads: Option<usize>,
     /// The part of the image's tiles that is made.
     pub shard: Shard,
@@ -47,37 +48,18 @@ pub struct Options {
 }
 
 impl Options {
-    /// Most threads that should be asked for: more than any one machine has processors for; many more would exhaust it.
+    /// Most threads that can be asked for: many more would exhaust a machine.
     pub const MOST_THREADS: u16 = 1024;
 
     /// Puts these settings in place of the scene's own.
     ///
     /// # Errors
     /// [`Error::Arguments`] if there are no samples, or none are given for a part of an image that else would stop by
-    /// its error or a time; if the error does not lie between 0.000001 and 1, the overscan is too wide, the crop lies
-    /// outside the image and its overscan, or its layers cannot be written, together or in the scene's format.
+    /// its error or a time; if the error does not lie between 0.000001 and 1, the image has no pixels, the overscan is
+    /// too wide, the crop lies outside the image and its overscan, or its layers cannot be written, together or in the
+    /// scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
-        if self.samples == Some(0) {
-            return Error::refuse("a pixel needs at least 1 sample", "leave the samples out to take the scene's own");
-        }
-        if let Some(error) = self.error.filter(|error| !RenderText::ERRORS.contains(error)) {
-            let message = format!("a relative error lies between 0.000001 and 1, not {error}");
-            return Error::refuse(message, "--error 0.01 asks for one percent");
-        }
-        let (render, film) = self.instead_of(scene);
-        if render.is_part && render.samples.is_none() && (render.error.is_some() || render.time.is_some()) {
-            let message = "a part of an image does not tell the error of the whole, nor how much others do in a time";
-            return Error::refuse(message, "say how many samples all parts take: --samples 512");
-        }
-        if let Some(message) = film.objection_to_overscan() {
-            return Error::refuse(
-                message,
-                "--overscan takes one number of pixels, or those to the left, above, to the right and below",
-            );
-        }
-        if let Some(message) = film.objection_to_crop() {
-            return Error::refuse(message, "--crop takes first column, first row, width and height");
-        }
+        let (render, film) = self.instead_of(scene)?;
         (scene.render, scene.film) = (render, film);
         if let Some(layers) = &self.layers {
             scene.format.ask_for(layers);
@@ -88,8 +70,9 @@ impl Options {
         check_layers(scene, self.shard)
     }
 
-    /// What replaces a scene's own way to be rendered, and its film.
-    pub(super) fn instead_of(&self, scene: &Scene) -> (RenderText, FilmSettings) {
+    /// What replaces a scene's own way to be rendered, and its film. Programs may have changed these since they were
+    /// compiled: they are checked as well.
+    pub(super) fn instead_of(&self, scene: &Scene) -> Result<(RenderText, FilmSettings)> {
         let own = &scene.render;
         let stops_otherwise = self.error.is_some() || self.time.is_some();
         let samples = self.samples.or(own.samples.filter(|_| !stops_otherwise));
@@ -98,7 +81,52 @@ impl Options {
         let is_part = self.shard != Shard::WHOLE;
         let (overscan, crop) = (self.overscan.unwrap_or(scene.film.overscan), self.crop.or(scene.film.crop));
         let render = RenderText { samples, seed, error, time, is_part, ..own.clone() };
-        (render, FilmSettings { overscan, crop, ..scene.film })
+        let film = FilmSettings { overscan, crop, ..scene.film };
+        check_render(&render)?;
+        check_film(&film)?;
+        Ok((render, film))
+    }
+
+    /// How many threads are asked for; 0 for one on each processor.
+    pub(super) fn threads(&self) -> Result<usize> {
+        let most = Self::MOST_THREADS;
+        if self.threads.is_some_and(|threads| !(1..=usize::from(most)).contains(&threads)) {
+            return Error::refuse(format!("a render has 1 to {most} threads"), "leave threads out to take them all");
+        }
+        Ok(self.threads.unwrap_or(0))
+    }
+}
+
+fn check_render(render: &RenderText) -> Result<()> {
+    if render.samples == Some(0) {
+        return Error::refuse("a pixel needs at least 1 sample", "leave the samples out to take the scene's own");
+    }
+    if let Some(error) = render.error.filter(|error| !RenderText::ERRORS.contains(error)) {
+        let message = format!("a relative error lies between 0.000001 and 1, not {error}");
+        return Error::refuse(message, "--error 0.01 asks for one percent");
+    }
+    if render.is_part && render.samples.is_none() && (render.error.is_some() || render.time.is_some()) {
+        let message = "a part of an image does not tell the error of the whole, nor how much others do in a time";
+        return Error::refuse(message, "say how many samples all parts take: --samples 512");
+    }
+    Ok(())
+}
+
+fn check_film(film: &FilmSettings) -> Result<()> {
+    let FilmSettings { width, height, .. } = film;
+    if *width == 0 || *height == 0 {
+        let message = format!("an image has at least 1 pixel along each side, not {width} x {height}");
+        return Error::refuse(message, "give the film of the scene a width and a height");
+    }
+    if let Some(message) = film.objection_to_overscan() {
+        return Error::refuse(
+            message,
+            "--overscan takes one number of pixels, or those to the left, above, to the right and below",
+        );
+    }
+    match film.objection_to_crop() {
+        Some(message) => Error::refuse(message, "--crop takes first column, first row, width and height"),
+        None => Ok(()),
     }
 }
 

@@ -34,6 +34,7 @@ use crate::trace::Report;
 /// assert_eq!(parts.image()?.film(), whole.film());
 /// # Ok::<(), abbe::Error>(())
 /// ```
+#[derive(Clone, Debug)]
 pub struct Parts {
     /// What is known of the image without its pixels, and what was left out of all parts.
     image: Image,
@@ -42,7 +43,7 @@ pub struct Parts {
 }
 
 /// The tiles of a part in its file.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 struct Tiles {
     path: PathBuf,
     /// The byte at which the first one begins.

@@ -1,6 +1,7 @@
 //! Renders, step by step.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
@@ -69,6 +70,13 @@ pub struct Rendering {
     dark: Option<String>,
 }
 
+impl fmt::Debug for Rendering {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let mut shown = formatter.debug_struct("Rendering");
+        shown.field("work", &self.work()).field("done", &self.done()).field("plan", &self.plan).finish_non_exhaustive()
+    }
+}
+
 impl Rendering {
     /// Decides how to render a scene, and prepares it.
     ///
@@ -80,13 +88,14 @@ impl Rendering {
         let now = Instant::now();
         let began = (options.stamp && options.shard == Shard::WHOLE).then_some(now);
         let mut scene = Cow::Borrowed(scene);
-        let is_as_asked = options.instead_of(&scene) == (scene.render.clone(), scene.film);
+        let threads = options.threads()?;
+        let is_as_asked = options.instead_of(&scene)? == (scene.render.clone(), scene.film);
         if is_as_asked && options.layers.is_none() && !options.spectral {
             check_layers(&scene, options.shard)?;
         } else {
             options.apply(scene.to_mut())?;
         }
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build()?;
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         let plan = match &options.plan {
             Some(path) => read_plan(path, &scene)?,
             None => threads.install(|| plan(&scene)),

@@ -7,7 +7,7 @@ use super::ears::{MOST_CORNERS, ears};
 use crate::math::{DVec2, DVec3};
 
 /// The triangles of faces, which share the first corner of their face until they are cut.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Faces {
     fans: Vec<[u32; 3]>,
     /// Where the triangles stand of each face that has several.

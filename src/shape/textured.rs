@@ -20,7 +20,7 @@ pub struct Place {
 }
 
 /// A shape, and where its points lie in an image on it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct TexturedShape<'a> {
     /// The shape.
     pub shape: &'a Shape,

@@ -106,6 +106,9 @@ impl Basis {
     }
 
     /// Lanes of chosen wavelengths in nm, ascending, between which spectra are interpolated, and lines.
+    ///
+    /// # Panics
+    /// If lanes and lines are none or more than [`MAX_LANES`].
     pub fn wavelengths(space: ColorSpace, nodes_nm: Vec<f64>, lines_nm: &[f64]) -> Self {
         let functions = cardinals(&nodes_nm);
         let mut wavelengths = nodes_nm;

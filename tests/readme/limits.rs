@@ -6,11 +6,12 @@ use super::{BALL, FILM, VIEW, around, mistakes, page, with};
 type Asking = fn(&str) -> String;
 
 /// The beginning of each row of the first table, and a scene with a number there.
-const NUMBERS: [(&str, Asking); 33] = [
+const NUMBERS: [(&str, Asking); 35] = [
     ("`film.width`", |x| around(&fov("30"), &format!("width = {x}, height = 1"), "", "")),
     ("`filter`: the `radius`", |x| film(&format!("filter = {{ tent = {{ radius = {x} }} }}"))),
     ("`filter`: the `sigma`", |x| film(&format!("filter = {{ gaussian = {{ sigma = {x} }} }}"))),
     ("`white_luminance`", |x| film(&format!("radiometry = \"absolute\", white_luminance = {x}"))),
+    ("`frames_per_second`", |x| film(&format!("metadata = {{ frames_per_second = {x} }}"))),
     ("`spectral`: `from`", |x| film(&format!("spectral = {{ from = {x}, to = {x} }}"))),
     ("`spectral`: `step`", |x| film(&format!("spectral = {{ step = {x} }}"))),
     ("`samples`, of", |x| render(&format!("samples = {x}"))),
@@ -22,6 +23,7 @@ const NUMBERS: [(&str, Asking); 33] = [
     ("`shift`", |x| camera(&format!("{}, shift = [{x}, 0]", fov("30")))),
     ("`focus_distance`", |x| camera(&format!("{}, lens = {{ radius = 1, focus_distance = {x} }}", fov("30")))),
     ("`sensor_width`", |x| camera(&format!("{}, sensor_width = {x}", fov("30")))),
+    ("`axis` of", |x| camera(&format!("{}, polarizer = {{ axis = {x} }}", fov("30")))),
     ("coordinates", |x| light(&format!("point = {{ position = [{x}, 0, 0], intensity = 1 }}"))),
     ("lengths", |x| shape(&format!("sphere = {{ center = [0, 0, 0], radius = {x} }}"))),
     ("shares", |x| material(&format!("diffuse = {{ reflectance = {x} }}"))),

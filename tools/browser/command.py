@@ -11,6 +11,7 @@ it needs, so nothing has to be installed with the system. npm comes from PyPI, a
 browser.
 """
 
+import argparse
 import contextlib
 import hashlib
 import os
@@ -118,6 +119,7 @@ def chromium():
 
 def main() -> None:
     """Never fails: without a browser one test is skipped, and says so."""
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     if "CHROMIUM" in os.environ or installed():
         print("the browser is installed")
         return

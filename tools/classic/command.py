@@ -8,7 +8,7 @@ small. No random numbers. Diffuse surfaces see point lights only. Outside of all
 not overlap.
 """
 
-import sys
+import argparse
 from pathlib import Path
 from typing import NamedTuple
 
@@ -156,7 +156,9 @@ def error(image, expected):
 
 
 def main():
-    path = sys.argv[1] if len(sys.argv) > 1 else render.SCENES / "classic.toml"
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", metavar="SCENE", nargs="?", default=render.SCENES / "classic.toml")
+    path = parser.parse_args().scene
     expected = trace(read_scene(path))
     image = render.render(Path(path)).rgb
     errors = error(image, expected)

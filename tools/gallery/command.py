@@ -1,6 +1,6 @@
 """The gallery in scenes/: makes the meshes and images it needs, renders every scene to a small picture, writes scenes/README.md.
 
-    python tools/gallery.py make                # scenes/meshes, scenes/textures, scenes/generated, scenes/instances.toml
+    python tools/gallery.py make                # scenes/meshes, scenes/textures, scenes/generated, scenes/large/instances.toml
     python tools/gallery.py render              # every scene: scenes/pictures, then scenes/README.md
     python tools/gallery.py render gem lens     # these alone
     python tools/gallery.py render --quick      # with a quarter of the samples

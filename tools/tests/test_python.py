@@ -326,6 +326,23 @@ def test_pictures_show_in_notebooks(tmp_path):
     assert dark.shape == (12, 20, 3) and (bright >= dark).all() and bright.mean() > dark.mean()
 
 
+def test_words_name_arguments_and_no_flags_of_the_command(tmp_path):
+    twins = with_(object=[{**SCENE["object"][0], "name": "twin"}] * 2)
+    for told in (abbe.Scene(twins).warnings, abbe.render(twins).stats["warnings"]):
+        assert "set cannot tell them apart" in told[0] and "--" not in told[0]
+    kept = tmp_path / "a.checkpoint"
+    gathered = with_(
+        material=SCENE["material"] | {"glass": {"dielectric": {"index": 1.5}}},
+        object=[
+            SCENE["object"][0] | {"material": "glass"},
+            {"shape": {"plane": {"point": [0, -1, 0], "normal": [0, 1, 0]}}, "material": "matte"},
+        ],
+    )
+    abbe.render(gathered, samples=1, checkpoint=kept)
+    with pytest.raises(abbe.OptionsError, match="other samples or another error may need one"):
+        abbe.render(gathered, samples=2, checkpoint=kept, resume=True)
+
+
 def test_settings_replace_values_and_options_settings():
     image = abbe.render(SCENE, set={"film.width": 8, "object.1.shape.sphere.radius": 2.5, "film.layers": []})
     assert image.rgb.shape == (12, 8, 3) and image["A"].mean() > abbe.render(SCENE)["A"].mean()
@@ -398,6 +415,8 @@ def test_options_that_are_wrong_say_what_to_do(options, said):
         (lambda: abbe.render(SCENE, spectral=True).spectrum(True, 0), "x is a whole number, not True"),
         (lambda: abbe.render(SCENE, spectral=True).spectrum(0, 1.5), "y is a whole number, not 1.5"),
         (lambda: abbe.render("[camera]\nposition = [0, 0, 5]"), "tomllib.loads makes a dict of its text"),
+        (lambda: abbe.render('{"camera": {}}'), "json.loads makes a dict of its text"),
+        (lambda: abbe.Scene(abbe.Scene(SCENE)), "this is a scene already"),
         (lambda: pickle.dumps(abbe.render(SCENE)), "an image cannot be pickled: send its arrays, such as image.rgb"),
         (lambda: pickle.dumps(abbe.Scene(SCENE)), "a scene cannot be pickled: send the path or the dict"),
     ],
@@ -509,6 +528,9 @@ def test_files_are_read_as_others_read_them(tmp_path):
     assert np.array_equal(file["albedo"], image["albedo"]) and np.array_equal(file["albedo.G"], channels["albedo.G"])
     assert (file.corner, file.format) == ((2, 3), (20, 12))
     assert file.attributes["render/samples"] == "4"
+    written = render.read(path).header["worldToCamera"]
+    told = np.float32(file.attributes["worldToCamera"].split())
+    assert np.array_equal(told, np.ravel(written))
     several = tmp_path / "several.exr"
     abbe.render(with_(film={**SCENE["film"], "multipart": True}), layers=["albedo", "N"]).write_exr(several)
     for name in ("colorInteropID", "render/samples", "screenWindowWidth"):
@@ -600,7 +622,7 @@ def test_the_catalog_answers_arrays():
     hidden = glass.index(np.ma.array(nm, mask=[[False, True], [False, False]]))
     assert hidden.mask.tolist() == [[False, True], [False, False]] and hidden[0, 0] == n[0, 0]
     assert glass.v_d == pytest.approx(25.68, abs=0.005) and glass.name == "schott/N-SF11" and glass.source
-    # CIE 015:2018, table 1: D65 is 100 at 560 nm, and 117.008 at 460 nm.
+    # CIE 015:2018, table 1: D65 is 100 at 560 nm, and 117.812 at 460 nm.
     light = abbe.catalog.illuminant("D65")
     assert light.power([460, 560, 100]) == pytest.approx([117.8118, 100.0, 0.0], abs=1)
     gold = abbe.catalog.metal("gold")
@@ -629,6 +651,8 @@ def test_an_entry_of_the_catalog_stands_for_its_name():
     for entry in (*entries, gold):
         again = pickle.loads(pickle.dumps(entry))
         assert (type(again), again.name, again.range_nm) == (type(entry), entry.name, entry.range_nm)
+        assert again == entry and hash(again) == hash(entry) and entry != entry.name
+    assert abbe.catalog.glass("schott/N-BK7") == entries[0] != abbe.catalog.glass("N-SF11")
 
 
 def test_images_and_scenes_are_copied_by_copy():

@@ -82,5 +82,8 @@ class Layers:
 
     @property
     def rgb(self) -> npt.NDArray[np.float32]:
-        """Linear red, green and blue, float32, height x width x 3: the radiance in the film's color space."""
+        """Linear red, green and blue, float32, height x width x 3: the radiance in the film's color space.
+
+        Raises `KeyError` if a file has no `"beauty"`, but layers with names alone.
+        """
         return self[BEAUTY]

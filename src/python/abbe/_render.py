@@ -87,8 +87,10 @@ class Scene:
     ) -> None:
         settings = None if set is None else _arguments.settings(set)
         source = os.fsdecode(source) if isinstance(source, bytes) else source
-        if isinstance(source, str) and "\n" in source and not os.path.exists(source):
-            message = "a scene is the path of a file or a dict: tomllib.loads makes a dict of its text"
+        if isinstance(source, Scene):
+            raise TypeError("this is a scene already: Scene(..) takes what it is made of, a dict or the path of a file")
+        if isinstance(source, str) and (loads := _loads(source)):
+            message = f"a scene is the path of a file or a dict: {loads} makes a dict of its text"
             raise FileNotFoundError(errno.ENOENT, message)
         self._core = _abbe.Scene.compile(source, _arguments.path("folder", folder), settings)
 
@@ -101,6 +103,14 @@ class Scene:
     def warnings(self) -> list[str]:
         """What its author should know but need not change."""
         return self._core.warnings
+
+
+def _loads(source: str) -> str | None:
+    """What reads the text of a scene, if that stands where its path should."""
+    is_json = source.lstrip().startswith("{")
+    if (is_json or "\n" in source) and not os.path.lexists(source):
+        return "json.loads" if is_json else "tomllib.loads"
+    return None
 
 
 def _scene(scene: Path | Mapping[str, Any] | Scene, set: Mapping[str, Any] | None, folder: Path) -> _abbe.Scene:

@@ -59,6 +59,12 @@ class _Entry:
         """The wavelengths in nm between which it is known."""
         return self._core.entry.range_nm
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Entry) and (type(self), self.name) == (type(other), other.name)
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.name))
+
     def __reduce__(self) -> tuple[type[_Entry], tuple[str]]:
         return type(self), (self.name,)
 
