@@ -5,5 +5,6 @@
 //! ```
 
 mod bright;
+mod openings;
 mod panes;
 mod photons;

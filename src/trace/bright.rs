@@ -267,6 +267,18 @@ mod tests {
     }
 
     #[test]
+    fn paths_that_are_not_aimed_gain_no_weight_without_end() {
+        let share = |only: bool, albedo: f64| {
+            let bright = Bright { elsewhere: 0.0, left: if only { EQUAL } else { FINITE }, ..bright() };
+            bright.at(DVec3::new(0.3, 0.9, 0.2), DVec3::NEG_X, || albedo).expect("it lies within").share
+        };
+        for (albedo, among, alone) in [(0.2, 0.5, 0.5), (0.6, 0.5, 0.4), (0.8, 0.36, 0.2), (1.0, 0.0, 0.0)] {
+            let found = [share(false, albedo), share(true, albedo)];
+            assert!((found[0] - among).abs() + (found[1] - alone).abs() < 1e-12, "{albedo}: {found:?}");
+        }
+    }
+
+    #[test]
     fn nothing_is_aimed_from_outside_of_the_room() {
         assert!(bright().at(DVec3::new(0.0, 3.5, 0.0), DVec3::Y, || 0.5).is_none());
     }

@@ -12,7 +12,7 @@ use crate::support::scenes::{
 };
 
 /// A closed box, 4 x 3 x 5, with holes in the wall at x = -2: each from z to z, all from y = 1 to 2.2.
-fn walls(holes: &[[f64; 2]]) -> Vec<String> {
+pub fn walls(holes: &[[f64; 2]]) -> Vec<String> {
     let mut quads = vec![
         quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5]),
         quad([0.0, 3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.5]),
@@ -31,7 +31,7 @@ fn walls(holes: &[[f64; 2]]) -> Vec<String> {
 }
 
 /// A room seen from inside.
-fn room(holes: &[[f64; 2]], wall: &str, samples: u32, more: &str) -> String {
+pub fn room(holes: &[[f64; 2]], wall: &str, samples: u32, more: &str) -> String {
     let walls = walls(holes);
     view([1.6, 1.5, 2.0], [-1.0, 0.8, -0.8], 60.0, 16)
         + &format!("[render]\nsamples = {samples}\n")
@@ -39,11 +39,11 @@ fn room(holes: &[[f64; 2]], wall: &str, samples: u32, more: &str) -> String {
         + more
 }
 
-const WHITE: &str = "diffuse = { reflectance = 0.7 }";
-const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 12 }\n";
+pub const WHITE: &str = "diffuse = { reflectance = 0.7 }";
+pub const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 12 }\n";
 
 /// Images of a scene by bounces that aim at places, or at nothing.
-fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
+pub fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let asked = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
     films_of(&scene, &asked, 0..seeds)
@@ -68,12 +68,12 @@ fn places(list: &[Listed]) -> BrightPlaces {
 }
 
 /// Sum of the variances of all pixels.
-fn variance(films: &[Film]) -> f64 {
+pub fn variance(films: &[Film]) -> f64 {
     let of_pixel = |i: usize| moments(films.iter().map(move |film| f64::from(film.pixels[i].rgb[1]))).1;
     (0..films[0].pixels.len()).map(of_pixel).sum()
 }
 
-fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
+pub fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
     let [one, other] = [one, other].map(Mean::over_seeds);
     println!("{what}: {one:.5?} for {other:.5?}");
     one.beside(&other).assert_near(other.value, claims, what);
@@ -82,7 +82,7 @@ fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
 /// A point of a floor that a rectangle lights which stands at right angles to it, by the irradiance over the radiance
 /// times pi: Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4: a corner of the rectangle,
 /// `width` x `height`, at the foot of the perpendicular from the point, at a distance.
-fn upright(distance: f64, width: f64, height: f64) -> f64 {
+pub fn upright(distance: f64, width: f64, height: f64) -> f64 {
     let (x, y) = (height / width, distance / width);
     let root = (x * x + y * y).sqrt();
     ((1.0 / y).atan() - y / root * (1.0 / root).atan()) / (2.0 * PI)

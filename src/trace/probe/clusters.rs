@@ -1,5 +1,7 @@
 //! Points of light are gathered into few rectangles that fill their planes.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::math::{Bounds, DVec3, Frame};
 
 /// A rectangle, about weighted points or on its own.
@@ -26,13 +28,15 @@ const OUTSIDE: f64 = 0.02;
 const BEYOND: f64 = 0.01;
 /// Directions of a rectangle's edge that are tried, over a right angle.
 const TURNS: u32 = 12;
+/// Steps in which the least of all is found, each half as large as the one before.
+const REFINED: u32 = 24;
 /// Planes between which points may be split, along each axis.
 const CUTS: usize = 7;
 /// What a split must save of all weights times areas.
 const WORTH: f64 = 0.05;
 /// Fewest points of a cluster.
 const FEWEST: usize = 8;
-/// Steps in which the normal of a plane is found.
+/// Steps in which the longest direction of points is found.
 const STEPS: u32 = 24;
 
 /// The rectangles, at most so many: those that make the sum of weights times areas least, found by splitting in two.
@@ -61,6 +65,11 @@ impl Rectangle {
     pub fn times(self, factor: f64) -> Self {
         Self { half: self.half.map(|half| half * factor), ..self }
     }
+
+    /// Half edges times each other.
+    pub fn area(&self) -> f64 {
+        self.half[0].length() * self.half[1].length()
+    }
 }
 
 impl Cluster {
@@ -70,21 +79,36 @@ impl Cluster {
         Rectangle { center: self.center, half: [u, v] }
     }
 
-    /// That about all of them, seen along its thickness.
+    /// The least about all of them, seen along its thickness.
     pub fn around_all(&self) -> Rectangle {
-        let Rectangle { mut center, half } = self.rectangle();
-        let half = half.map(|half| {
-            let axis = half.normalize_or_zero();
-            let [low, high] = span(&self.points, 1.0, axis, 0.0);
-            center += axis * (0.5 * (low + high) - center.dot(axis));
-            axis * (0.5 * (high - low))
-        });
-        Rectangle { center, half }
+        let [u, v, normal] = self.half.map(DVec3::normalize_or_zero);
+        let normal = if normal == DVec3::ZERO { u.cross(v) } else { normal };
+        let along = normal * self.center.dot(normal);
+        let turned = |angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            let axes = [u * cos + v * sin, v * cos - u * sin];
+            let spans = axes.map(|axis| self.span_of_all(axis));
+            let middle = |i: usize| axes[i] * (0.5 * (spans[i][0] + spans[i][1]));
+            let half = |i: usize| axes[i] * (0.5 * (spans[i][1] - spans[i][0]));
+            Rectangle { center: along + middle(0) + middle(1), half: [half(0), half(1)] }
+        };
+        let (mut angle, mut least) = (0.0, turned(0.0));
+        let mut step = FRAC_PI_2 / f64::from(TURNS);
+        for _ in 0..REFINED {
+            for next in [angle - step, angle + step] {
+                let other = turned(next);
+                if other.area() < least.area() {
+                    (angle, least) = (next, other);
+                }
+            }
+            step *= 0.5;
+        }
+        least
     }
 
-    /// Half edges times each other.
-    pub fn area(&self) -> f64 {
-        self.half[0].length() * self.half[1].length()
+    fn span_of_all(&self, axis: DVec3) -> [f64; 2] {
+        let along = self.points.iter().map(|point| point.0.dot(axis));
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
     /// About the points of both.
@@ -101,7 +125,7 @@ impl Cluster {
         let frame = Frame::about(normal);
         let mut best: Option<(f64, DVec3, [DVec3; 3])> = None;
         for turn in 0..TURNS {
-            let (sin, cos) = libm::sincos(std::f64::consts::FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
+            let (sin, cos) = libm::sincos(FRAC_PI_2 * f64::from(turn) / f64::from(TURNS));
             let axes = [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z].map(|x| frame.to_world(x));
             let spans = axes.map(|axis| span(&points, weight, axis, OUTSIDE));
             let [x, y, z] = spans.map(|[low, high]| high - low);
@@ -184,8 +208,8 @@ impl Dispersion {
     }
 }
 
-/// The direction in which points vary least: the largest eigenvector of trace(C) - C for their covariance C, by
-/// squaring.
+/// The direction in which points vary least. That in which they vary most is found by squaring; it may be any of the
+/// plane where they vary alike in all of it. What is left is a matrix of 2 x 2, so that a narrow slit has its own plane.
 fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
     let times = |x: DVec3| {
@@ -195,13 +219,16 @@ fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
         })
     };
     let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(times);
-    let trace = columns[0].x + columns[1].y + columns[2].z;
-    let step = |x: DVec3| x * trace - (columns[0] * x.x + columns[1] * x.y + columns[2] * x.z);
-    let mut normal = DVec3::new(0.36, 0.48, 0.8);
+    let step = |x: DVec3| columns[0] * x.x + columns[1] * x.y + columns[2] * x.z;
+    let mut longest = DVec3::new(0.36, 0.48, 0.8);
     for _ in 0..STEPS {
-        normal = step(step(normal)).try_normalize().unwrap_or(DVec3::Y);
+        longest = step(step(longest)).try_normalize().unwrap_or(longest);
     }
-    normal
+    let frame = Frame::about(longest);
+    let [a, b] = [DVec3::X, DVec3::Y].map(|axis| frame.to_world(axis));
+    let angle = 0.5 * libm::atan2(2.0 * a.dot(step(b)), a.dot(step(a)) - b.dot(step(b)));
+    let (sin, cos) = libm::sincos(angle);
+    b * cos - a * sin
 }
 
 /// A box around weighted points, but for a few beyond each side of it.

@@ -13,9 +13,11 @@ use crate::trace::parallel::in_parallel;
 const RAYS: u32 = 1 << 14;
 /// Ways out that tell where to look closely.
 const ENOUGH: usize = 64;
-/// The numbers of the pieces that do so, and that look for walls.
+/// Rounds in which rays do: each begins at what the one before has found, so that slits are found from end to end.
+const ROUNDS: usize = 4;
+/// The numbers of the first piece that does so, and of that which looks for walls.
 const CLOSELY: usize = 1 << 16;
-const WALLS: usize = CLOSELY + 1;
+const WALLS: usize = CLOSELY + ROUNDS;
 /// How far beside a way out rays look closely, in sizes of the room: a power of two, from the first to the last alike.
 const BESIDE: [f64; 2] = [-14.0, -3.0];
 /// Nearer places, in squares of the size of the room, weigh no less.
@@ -40,21 +42,27 @@ type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 pub fn openings(room: &Room, pieces: usize) -> Vec<Rectangle> {
     let Some(walls) = walls(room) else { return Vec::new() };
     let way_out = |bounce: &Bounce, direction, sampler: &Sampler| room.way_out(&walls, bounce, direction, sampler);
-    let ways_out = ways_out(room, pieces, &way_out);
-    if ways_out.is_empty() {
-        return Vec::new();
-    }
+    let mut ways_out = ways_out(room, pieces, &way_out);
     let size = (walls.max - walls.min).length();
-    let beside = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
-        let way_out = ways_out[number as usize % ways_out.len()];
-        let radius = size * libm::exp2(BESIDE[0] + (BESIDE[1] - BESIDE[0]) * exponent);
-        way_out + ball_surface([a, b]) * radius - bounce.from
-    };
-    let found = looked(room, CLOSELY..CLOSELY + 1, &beside, &way_out);
-    // Rays fall the less densely the farther they are from the way out, by the square of that.
-    let nearest =
-        |place: DVec3| ways_out.iter().map(|way_out| place.distance_squared(*way_out)).fold(f64::INFINITY, f64::min);
-    let points = found.into_iter().map(|place| (place, nearest(place).max(LEAST * size * size))).collect();
+    let mut points = Vec::new();
+    for round in 0..ROUNDS {
+        if ways_out.is_empty() {
+            break;
+        }
+        let beside = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
+            let way_out = ways_out[number as usize % ways_out.len()];
+            let radius = size * libm::exp2(BESIDE[0] + (BESIDE[1] - BESIDE[0]) * exponent);
+            way_out + ball_surface([a, b]) * radius - bounce.from
+        };
+        let found = looked(room, CLOSELY + round..CLOSELY + round + 1, &beside, &way_out);
+        // Rays fall the less densely the farther they are from the way out, by the square of that.
+        let nearest = |place: DVec3| {
+            ways_out.iter().map(|way_out| place.distance_squared(*way_out)).fold(f64::INFINITY, f64::min)
+        };
+        points.extend(found.iter().map(|&place| (place, nearest(place).max(LEAST * size * size))));
+        let step = found.len().div_ceil(ENOUGH).max(1);
+        ways_out = found.into_iter().step_by(step).collect();
+    }
     joined(clusters(points, MOST)).iter().map(|cluster| cluster.around_all().times(MARGIN)).collect()
 }
 
@@ -62,11 +70,12 @@ pub fn openings(room: &Room, pieces: usize) -> Vec<Rectangle> {
 fn joined(mut clusters: Vec<Cluster>) -> Vec<Cluster> {
     let pair = |clusters: &[Cluster]| {
         let pairs = (0..clusters.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        let area = |cluster: &Cluster| cluster.rectangle().area();
         let join = |[i, j]: [usize; 2]| {
             let both = clusters[i].joined(&clusters[j])?;
-            (both.area() <= ONE * (clusters[i].area() + clusters[j].area())).then_some(([i, j], both))
+            (area(&both) <= ONE * (area(&clusters[i]) + area(&clusters[j]))).then_some(([i, j], both))
         };
-        pairs.filter_map(join).min_by(|a, b| a.1.area().total_cmp(&b.1.area()))
+        pairs.filter_map(join).min_by(|a, b| area(&a.1).total_cmp(&area(&b.1)))
     };
     while let Some(([i, j], both)) = pair(&clusters) {
         clusters.swap_remove(j);
