@@ -214,6 +214,15 @@ impl Camera {
         Ray { origin: start + place + along * self.near, direction: unit(along) }
     }
 
+    /// How far behind the start of a ray, whose direction is a unit vector, the camera is: as far as the near plane is
+    /// along it.
+    pub fn way_to_start(&self, direction: DVec3) -> f64 {
+        match self.projection {
+            Projection::Equirectangular => self.near,
+            _ => self.near / direction.dot(self.forward),
+        }
+    }
+
     /// Where the ray through the middle of the lens starts, but for the near plane, and where to: one unit forward, or
     /// one unit in all in an equirectangular image.
     fn axis(&self, film: DVec2) -> (DVec3, DVec3) {

@@ -108,3 +108,16 @@ fn a_body_of_many_materials_under_a_dome_of_glass() {
         + "[[light]]\nsun = { toward = [0.3, 1, 0.2], angular_diameter = 30, irradiance = 3 }\n";
     agree("dome", &text, [2, 24]);
 }
+
+/// The radius is one of pixels, whose width grows from the camera on, not from where its rays start.
+#[test]
+fn photons_are_gathered_as_widely_behind_a_near_plane() {
+    let map = MapPasses { radius: 1.0, ..NARROW };
+    let [whole, cut] = ["", "\nnear = 1.2"].map(|near| {
+        let text = mirror().replace("vertical_fov = 40", &format!("vertical_fov = 40{near}"));
+        blocks(&with_method(&text), true, Some(map), 4)
+    });
+    for (a, b) in whole.iter().zip(&cut) {
+        assert!((a.0 - b.0).abs() <= 1e-4 * a.0, "{} for {}", b.0, a.0);
+    }
+}

@@ -32,7 +32,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub vertices: u32,
     /// How many of them were those of bodies that are hidden inside others.
     pub hidden: u32,
-    /// How far the light has to go along it.
+    /// How far the light has to go along it; to the camera itself, not to the near plane.
     pub length: f64,
     /// What kind of path it is so far.
     pub kind: PathKind,
@@ -159,7 +159,8 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
         let throughput = Throughput::starting(draw.start()).scaled(world.scene.camera.transmittance());
         let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));
-        Self::starting(world, PathKind::Camera, throughput, ray, media, polarization)
+        let length = world.scene.camera.way_to_start(ray.direction);
+        Self { length, ..Self::starting(world, PathKind::Camera, throughput, ray, media, polarization) }
     }
 
     /// The path of a ray that leaves a light.
