@@ -68,10 +68,12 @@ fn each_opening_is_held_by_a_rectangle() {
             let near = |middle: f64| (middle - 0.5 * (hole[0] + hole[1])).abs() < 0.1;
             let place = found.places.iter().find(|place| near(place.center.z)).expect("it is found");
             let half = place.half[0].abs() + place.half[1].abs();
-            let wanted = [0.0, 0.6, 0.5 * (hole[1] - hole[0])];
-            println!("{hole:?}: {place:?}");
-            for (found, wanted) in half.to_array().into_iter().zip(wanted).skip(1) {
-                assert!(found > wanted && found < 1.08 * wanted, "{found} for {wanted}");
+            let found = [place.center - half, place.center + half].map(|corner| [corner.y, corner.z]);
+            println!("{hole:?}: {found:?}");
+            for (axis, [low, high]) in [[1.0, 2.2], hole].into_iter().enumerate() {
+                let margin = 0.06 * (high - low);
+                assert!(found[0][axis] < low && found[0][axis] > low - margin, "{found:?} for {low}");
+                assert!(found[1][axis] > high && found[1][axis] < high + margin, "{found:?} for {high}");
             }
         }
     }

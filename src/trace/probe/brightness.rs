@@ -4,7 +4,7 @@ use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
 use super::openings::openings;
 use super::room::Room;
-use crate::math::{DVec3, Ray};
+use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
 use crate::trace::camera::{Bounce, Finding};
@@ -54,7 +54,8 @@ fn of_room<const N: usize>(world: &World) -> Option<RoomLight> {
     let room = Room::of(world, bounces::<N>(world, SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
     let openings = openings(&room, if is_rare { MOST_PIECES } else { 1 });
-    Some(RoomLight { places: learned(&room), openings: bright_openings::<N>(&room, &openings), is_rare })
+    let openings = openings.and_then(|(walls, openings)| bright_openings::<N>(&room, walls, &openings));
+    Some(RoomLight { places: learned(&room), openings, is_rare })
 }
 
 /// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
@@ -78,25 +79,22 @@ fn learned(room: &Room) -> Option<BrightPlaces> {
     let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
     let step = points.len().div_ceil(POINTS).max(1);
     let found = clusters(points.into_iter().step_by(step).collect(), MOST);
-    bright_of(room, found.iter().map(Cluster::rectangle), false)
+    bright_of(room, found.iter().map(Cluster::rectangle))
 }
 
-/// Those openings through which most light comes.
-fn bright_openings<const N: usize>(room: &Room, openings: &[Rectangle]) -> Option<BrightPlaces> {
+/// Those openings through which most light comes. All within the walls aim at them.
+fn bright_openings<const N: usize>(room: &Room, walls: Bounds, openings: &[Rectangle]) -> Option<BrightPlaces> {
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
     let places: Vec<BrightPlace> = openings.iter().map(place).collect();
-    if places.is_empty() {
-        return None;
-    }
+    let aimed = BrightPlaces { within: walls, places, elsewhere: 0.0, only: true };
     // What light comes through them, bounces tell that are aimed at them.
-    let places = BrightPlaces { within: room.bounds, places, elsewhere: 0.0, only: true };
-    let world = room.world.with_bright(Some(places));
+    let world = room.world.with_bright(Some(aimed));
     let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
-    bright_of(&room, openings.iter().copied(), true)
+    Some(BrightPlaces { within: walls, only: true, ..bright_of(&room, openings.iter().copied())? })
 }
 
 /// Those of some rectangles from or through which more light comes than from elsewhere.
-fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>, only: bool) -> Option<BrightPlaces> {
+fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
     let mut places: Vec<Place> = rectangles.filter_map(Place::of).collect();
     let mut elsewhere = Squares::default();
     for bounce in &room.bounces {
@@ -116,7 +114,12 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>, only: boo
     let elsewhere = elsewhere.root() + mean;
     let stands_out = |place: &BrightPlace| place.radiance > elsewhere;
     let places: Vec<BrightPlace> = places.into_iter().filter_map(Place::bright).filter(stands_out).collect();
-    (!places.is_empty() && elsewhere > 0.0).then_some(BrightPlaces { within: room.bounds, places, elsewhere, only })
+    (!places.is_empty() && elsewhere > 0.0).then_some(BrightPlaces {
+        within: room.bounds,
+        places,
+        elsewhere,
+        only: false,
+    })
 }
 
 /// A place that is being learned.

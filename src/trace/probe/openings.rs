@@ -15,16 +15,19 @@ const RAYS: u32 = 1 << 14;
 const ENOUGH: usize = 64;
 /// Rounds in which rays do: each begins at what the one before has found, so that slits are found from end to end.
 const ROUNDS: usize = 4;
-/// The numbers of the first piece that does so, and of that which looks for walls.
+/// How much larger than what they found is looked at evenly.
+const ABOUT: f64 = 1.5;
+/// The numbers of the first piece that looks closely, of that which looks evenly and of that which looks for walls.
 const CLOSELY: usize = 1 << 16;
-const WALLS: usize = CLOSELY + ROUNDS;
+const EVENLY: usize = CLOSELY + ROUNDS;
+const WALLS: usize = EVENLY + 1;
 /// How far beside a way out rays look closely, in sizes of the room: a power of two, from the first to the last alike.
 const BESIDE: [f64; 2] = [-14.0, -3.0];
 /// Nearer places, in squares of the size of the room, weigh no less.
 const LEAST: f64 = 1.0 / (1 << 28) as f64;
 /// An opening is taken to be so many times as large as what was found of it: the rest would be met by chance alone, and
 /// be much too bright.
-const MARGIN: f64 = 1.05;
+const MARGIN: f64 = 1.03;
 /// Two parts are one opening if a rectangle about both is no more than so many times as large as theirs.
 const ONE: f64 = 1.3;
 /// Uses of random numbers; those of looks around come before.
@@ -37,17 +40,17 @@ type Toward<'a> = &'a (dyn Fn(&Bounce, u32, [f64; 4]) -> DVec3 + Sync);
 /// What is kept of it.
 type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 
-/// The openings of a room to where the sky is seen, each held by a rectangle. So many pieces of work look for them, or
-/// fewer if they find some.
-pub fn openings(room: &Room, pieces: usize) -> Vec<Rectangle> {
-    let Some(walls) = walls(room) else { return Vec::new() };
+/// A box around the walls of a room, and its openings to where the sky is seen, each held by a rectangle. So many pieces
+/// of work look for them, or fewer if they find some.
+pub fn openings(room: &Room, pieces: usize) -> Option<(Bounds, Vec<Rectangle>)> {
+    let walls = walls(room)?;
     let way_out = |bounce: &Bounce, direction, sampler: &Sampler| room.way_out(&walls, bounce, direction, sampler);
     let mut ways_out = ways_out(room, pieces, &way_out);
     let size = (walls.max - walls.min).length();
     let mut points = Vec::new();
     for round in 0..ROUNDS {
         if ways_out.is_empty() {
-            break;
+            return None;
         }
         let beside = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
             let way_out = ways_out[number as usize % ways_out.len()];
@@ -63,7 +66,23 @@ pub fn openings(room: &Room, pieces: usize) -> Vec<Rectangle> {
         let step = found.len().div_ceil(ENOUGH).max(1);
         ways_out = found.into_iter().step_by(step).collect();
     }
-    joined(clusters(points, MOST)).iter().map(|cluster| cluster.around_all().times(MARGIN)).collect()
+    // Where their ends are, rays tell that fall evenly all over them and beyond.
+    let about: Vec<Rectangle> = rectangles(points).into_iter().map(|rectangle| rectangle.times(ABOUT)).collect();
+    let evenly = |bounce: &Bounce, number: u32, [a, b, ..]: [f64; 4]| {
+        let Rectangle { center, half: [u, v] } = about[number as usize % about.len()];
+        center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0) - bounce.from
+    };
+    if about.is_empty() {
+        return None;
+    }
+    let found = looked(room, EVENLY..EVENLY + 1, &evenly, &way_out);
+    let found = rectangles(found.into_iter().map(|place| (place, 1.0)).collect());
+    Some((walls, found.into_iter().map(|rectangle| rectangle.times(MARGIN)).collect()))
+}
+
+/// The rectangles that hold some weighted points of openings.
+fn rectangles(points: Vec<(DVec3, f64)>) -> Vec<Rectangle> {
+    joined(clusters(points, MOST)).iter().map(Cluster::around_all).collect()
 }
 
 /// Clusters of which those that lie side by side are one.
