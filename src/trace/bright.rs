@@ -104,8 +104,7 @@ impl Bright {
         Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere, left }
     }
 
-    /// How bounces are drawn at a point of a surface of the given unit normal, which sends on so much of the light; none
-    /// where they are not aimed.
+    /// How bounces are drawn at a point of a surface, by its unit normal and albedo; none where they are not aimed.
     pub(super) fn at(&self, from: DVec3, normal: DVec3, albedo: impl FnOnce() -> f64) -> Option<Aiming<'_>> {
         if !self.within.contains(from) {
             return None;

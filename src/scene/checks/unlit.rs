@@ -16,8 +16,9 @@ use crate::spectrum::Curve;
 const PATHS: u32 = 256;
 /// Points of all clear bodies that may stand in the light of the sky.
 const POINTS: usize = 1024;
-/// Rays that look for a hole to the sky.
+/// Rays that look for a hole to the sky, and how many of them find more than a small one.
 const LOOKS: u32 = 1 << 19;
+const FEW: u32 = 1 << 8;
 /// Rays after which no more lights are looked at.
 const MOST_RAYS: u64 = 1 << 20;
 /// Lights that are told of one by one.
@@ -135,14 +136,15 @@ fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
     })
 }
 
-/// Whether the sky is seen from some place, if only through a small hole.
+/// Whether the sky is seen through a hole that few rays find: what it lights beyond may be seen through it as well.
 fn sees_through_a_hole(view: &View) -> bool {
-    (0..LOOKS).any(|number| {
+    let sees = |number: u32| {
         let place = &view.places[number as usize % view.places.len()];
         let [u, v, ..] = Sampler::new(5, [number, 0], 0).four_plain(BranchKey::CAMERA, 0);
         let ray = place.point.leave(cosine_about(place.normal, [u, v]));
         !view.is_occluded(&ray, f64::INFINITY, None)
-    })
+    };
+    !(0..FEW).any(sees) && (FEW..LOOKS).any(sees)
 }
 
 /// Follows paths from a lamp, a point or a spot.

@@ -2,9 +2,9 @@
 
 use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
-use super::openings::openings;
+use super::openings::Openings;
 use super::room::Room;
-use crate::math::{Bounds, DVec3, Ray};
+use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
 use crate::trace::camera::{Bounce, Finding};
@@ -53,8 +53,8 @@ fn of_room<const N: usize>(world: &World) -> Option<RoomLight> {
     Room::of(world, bounces::<N>(world, FEW), SEED)?;
     let room = Room::of(world, bounces::<N>(world, SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
-    let openings = openings(&room, if is_rare { MOST_PIECES } else { 1 });
-    let openings = openings.and_then(|(walls, openings)| bright_openings::<N>(&room, walls, &openings));
+    let openings = Openings::of(&room, if is_rare { MOST_PIECES } else { 1 });
+    let openings = openings.and_then(|openings| bright_openings::<N>(world, &openings));
     Some(RoomLight { places: learned(&room), openings, is_rare })
 }
 
@@ -83,14 +83,14 @@ fn learned(room: &Room) -> Option<BrightPlaces> {
 }
 
 /// Those openings through which most light comes. All within the walls aim at them.
-fn bright_openings<const N: usize>(room: &Room, walls: Bounds, openings: &[Rectangle]) -> Option<BrightPlaces> {
+fn bright_openings<const N: usize>(world: &World, Openings { walls, rectangles }: &Openings) -> Option<BrightPlaces> {
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
-    let places: Vec<BrightPlace> = openings.iter().map(place).collect();
-    let aimed = BrightPlaces { within: walls, places, elsewhere: 0.0, only: true };
+    let places = rectangles.iter().map(place).collect();
     // What light comes through them, bounces tell that are aimed at them.
-    let world = room.world.with_bright(Some(aimed));
+    let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, only: true };
+    let world = world.with_bright(Some(aimed));
     let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
-    Some(BrightPlaces { within: walls, only: true, ..bright_of(&room, openings.iter().copied())? })
+    Some(BrightPlaces { within: *walls, only: true, ..bright_of(&room, rectangles.iter().copied())? })
 }
 
 /// Those of some rectangles from or through which more light comes than from elsewhere.

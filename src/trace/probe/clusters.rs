@@ -209,7 +209,7 @@ impl Dispersion {
 }
 
 /// The direction in which points vary least. That in which they vary most is found by squaring; it may be any of the
-/// plane where they vary alike in all of it. What is left is a matrix of 2 x 2, so that a narrow slit has its own plane.
+/// plane where they vary alike in all of it. A matrix of 2 x 2 is left, so that a narrow slit has its own plane.
 fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
     let times = |x: DVec3| {

@@ -40,89 +40,99 @@ type Toward<'a> = &'a (dyn Fn(&Bounce, u32, [f64; 4]) -> DVec3 + Sync);
 /// What is kept of it.
 type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 
-/// A box around the walls of a room, and its openings to where the sky is seen, each held by a rectangle. So many pieces
-/// of work look for them, or fewer if they find some.
-pub fn openings(room: &Room, pieces: usize) -> Option<(Bounds, Vec<Rectangle>)> {
-    let walls = walls(room)?;
-    let way_out = |bounce: &Bounce, direction, sampler: &Sampler| room.way_out(&walls, bounce, direction, sampler);
-    let mut ways_out = ways_out(room, pieces, &way_out);
-    let size = (walls.max - walls.min).length();
-    let mut points = Vec::new();
-    for round in 0..ROUNDS {
-        if ways_out.is_empty() {
-            return None;
+/// Openings of a room to where the sky is seen.
+pub struct Openings {
+    /// A box around the walls of the room.
+    pub walls: Bounds,
+    /// The rectangles that hold the openings.
+    pub rectangles: Vec<Rectangle>,
+}
+
+impl Openings {
+    /// Those of a room, if it has some. So many pieces of work look for them, or fewer if they find any.
+    pub fn of(room: &Room, pieces: usize) -> Option<Self> {
+        let search = Search { room, walls: walls(room)? };
+        let mut ways_out = search.ways_out(pieces);
+        let mut points = Vec::new();
+        for round in 0..ROUNDS {
+            if ways_out.is_empty() {
+                return None;
+            }
+            let found = search.beside(&ways_out, CLOSELY + round);
+            let step = found.len().div_ceil(ENOUGH).max(1);
+            ways_out = found.iter().step_by(step).map(|point| point.0).collect();
+            points.extend(found);
         }
-        let beside = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
+        let about: Vec<Rectangle> = rectangles(points).into_iter().map(|found| found.times(ABOUT)).collect();
+        let found = if about.is_empty() { Vec::new() } else { search.evenly(&about) };
+        let found = rectangles(found.into_iter().map(|place| (place, 1.0)).collect());
+        let rectangles: Vec<Rectangle> = found.into_iter().map(|found| found.times(MARGIN)).collect();
+        (!rectangles.is_empty()).then_some(Self { walls: search.walls, rectangles })
+    }
+}
+
+/// A search for openings.
+struct Search<'a> {
+    room: &'a Room<'a>,
+    walls: Bounds,
+}
+
+impl Search<'_> {
+    /// Where some of the rays that bounces might take leave the room.
+    fn ways_out(&self, most: usize) -> Vec<DVec3> {
+        let (mut found, mut pieces) = (self.found(0..1, &by_cosine), 1);
+        while pieces < most && found.len() < ENOUGH {
+            found.extend(self.found(pieces..2 * pieces, &by_cosine));
+            pieces *= 2;
+        }
+        found.truncate(ENOUGH);
+        found
+    }
+
+    /// Where rays leave the room that fall beside ways out, weighted by how few fall there: the less densely by the
+    /// square of the distance.
+    fn beside(&self, ways_out: &[DVec3], piece: usize) -> Vec<(DVec3, f64)> {
+        let size = (self.walls.max - self.walls.min).length();
+        let toward = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
             let way_out = ways_out[number as usize % ways_out.len()];
             let radius = size * libm::exp2(BESIDE[0] + (BESIDE[1] - BESIDE[0]) * exponent);
             way_out + ball_surface([a, b]) * radius - bounce.from
         };
-        let found = looked(room, CLOSELY + round..CLOSELY + round + 1, &beside, &way_out);
-        // Rays fall the less densely the farther they are from the way out, by the square of that.
-        let nearest = |place: DVec3| {
-            ways_out.iter().map(|way_out| place.distance_squared(*way_out)).fold(f64::INFINITY, f64::min)
+        let weight = |place: DVec3| {
+            let squares = ways_out.iter().map(|way_out| place.distance_squared(*way_out));
+            squares.fold(f64::INFINITY, f64::min).max(LEAST * size * size)
         };
-        points.extend(found.iter().map(|&place| (place, nearest(place).max(LEAST * size * size))));
-        let step = found.len().div_ceil(ENOUGH).max(1);
-        ways_out = found.into_iter().step_by(step).collect();
+        self.found(piece..piece + 1, &toward).into_iter().map(|place| (place, weight(place))).collect()
     }
-    // Where their ends are, rays tell that fall evenly all over them and beyond.
-    let about: Vec<Rectangle> = rectangles(points).into_iter().map(|rectangle| rectangle.times(ABOUT)).collect();
-    let evenly = |bounce: &Bounce, number: u32, [a, b, ..]: [f64; 4]| {
-        let Rectangle { center, half: [u, v] } = about[number as usize % about.len()];
-        center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0) - bounce.from
-    };
-    if about.is_empty() {
+
+    /// Where rays leave the room that fall evenly on rectangles.
+    fn evenly(&self, about: &[Rectangle]) -> Vec<DVec3> {
+        let toward = |bounce: &Bounce, number: u32, [a, b, ..]: [f64; 4]| {
+            let Rectangle { center, half: [u, v] } = about[number as usize % about.len()];
+            center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0) - bounce.from
+        };
+        self.found(EVENLY..EVENLY + 1, &toward)
+    }
+
+    /// Where rays leave the room.
+    fn found(&self, pieces: Range<usize>, toward: Toward) -> Vec<DVec3> {
+        looked(self.room, pieces, toward, &|bounce, direction, sampler| {
+            self.room.way_out(&self.walls, bounce, direction, sampler)
+        })
+    }
+}
+
+/// A box around the walls of a room, by where bounces began and where rays end inside.
+fn walls(room: &Room) -> Option<Bounds> {
+    let ends = looked(room, WALLS..WALLS + 1, &by_cosine, &|bounce, direction, sampler| {
+        room.end_inside(bounce, direction, sampler)
+    });
+    if ends.is_empty() {
         return None;
     }
-    let found = looked(room, EVENLY..EVENLY + 1, &evenly, &way_out);
-    let found = rectangles(found.into_iter().map(|place| (place, 1.0)).collect());
-    Some((walls, found.into_iter().map(|rectangle| rectangle.times(MARGIN)).collect()))
-}
-
-/// The rectangles that hold some weighted points of openings.
-fn rectangles(points: Vec<(DVec3, f64)>) -> Vec<Rectangle> {
-    joined(clusters(points, MOST)).iter().map(Cluster::around_all).collect()
-}
-
-/// Clusters of which those that lie side by side are one.
-fn joined(mut clusters: Vec<Cluster>) -> Vec<Cluster> {
-    let pair = |clusters: &[Cluster]| {
-        let pairs = (0..clusters.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
-        let area = |cluster: &Cluster| cluster.rectangle().area();
-        let join = |[i, j]: [usize; 2]| {
-            let both = clusters[i].joined(&clusters[j])?;
-            (area(&both) <= ONE * (area(&clusters[i]) + area(&clusters[j]))).then_some(([i, j], both))
-        };
-        pairs.filter_map(join).min_by(|a, b| area(&a.1).total_cmp(&area(&b.1)))
-    };
-    while let Some(([i, j], both)) = pair(&clusters) {
-        clusters.swap_remove(j);
-        clusters[i] = both;
-    }
-    clusters
-}
-
-/// A box around the walls of a room, by where rays end inside.
-fn walls(room: &Room) -> Option<Bounds> {
-    let end = |bounce: &Bounce, direction, sampler: &Sampler| room.end_inside(bounce, direction, sampler);
-    let ends: Vec<(DVec3, f64)> =
-        looked(room, WALLS..WALLS + 1, &by_cosine, &end).into_iter().map(|end| (end, 1.0)).collect();
-    let begun =
-        room.bounces.iter().step_by(room.bounces.len().div_ceil(ends.len().max(1))).map(|bounce| (bounce.from, 1.0));
-    let points: Vec<(DVec3, f64)> = begun.chain(ends.iter().copied()).collect();
-    (!ends.is_empty()).then(|| box_around(&points, points.len() as f64))
-}
-
-/// Where some of the rays that bounces might take leave the room.
-fn ways_out(room: &Room, most: usize, way_out: Keep) -> Vec<DVec3> {
-    let (mut found, mut pieces) = (looked(room, 0..1, &by_cosine, way_out), 1);
-    while pieces < most && found.len() < ENOUGH {
-        found.extend(looked(room, pieces..2 * pieces, &by_cosine, way_out));
-        pieces *= 2;
-    }
-    found.truncate(ENOUGH);
-    found
+    let begun = room.bounces.iter().map(|bounce| bounce.from).step_by(room.bounces.len().div_ceil(ends.len()));
+    let points: Vec<(DVec3, f64)> = begun.chain(ends.iter().copied()).map(|place| (place, 1.0)).collect();
+    Some(box_around(&points, points.len() as f64))
 }
 
 /// As a bounce from a matte surface would go on.
@@ -144,4 +154,27 @@ fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<
         (0..RAYS).filter_map(kept).collect()
     };
     in_parallel(pieces.len(), &of_piece).concat()
+}
+
+/// The rectangles that hold some weighted points of openings.
+fn rectangles(points: Vec<(DVec3, f64)>) -> Vec<Rectangle> {
+    joined(clusters(points, MOST)).iter().map(Cluster::around_all).collect()
+}
+
+/// Clusters of which those that lie side by side are one.
+fn joined(mut clusters: Vec<Cluster>) -> Vec<Cluster> {
+    let area = |cluster: &Cluster| cluster.rectangle().area();
+    let pair = |clusters: &[Cluster]| {
+        let pairs = (0..clusters.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        let join = |[i, j]: [usize; 2]| {
+            let both = clusters[i].joined(&clusters[j])?;
+            (area(&both) <= ONE * (area(&clusters[i]) + area(&clusters[j]))).then_some(([i, j], both))
+        };
+        pairs.filter_map(join).min_by(|a, b| area(&a.1).total_cmp(&area(&b.1)))
+    };
+    while let Some(([i, j], both)) = pair(&clusters) {
+        clusters.swap_remove(j);
+        clusters[i] = both;
+    }
+    clusters
 }
