@@ -1,7 +1,7 @@
 //! A room, as bounces know it that begin inside.
 
 use super::clusters::bounds_of_most;
-use crate::math::{Bounds, BranchKey, DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
+use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, cosine_about};
 use crate::shape::SurfacePoint;
 use crate::trace::World;
 use crate::trace::camera::Bounce;
@@ -115,12 +115,10 @@ fn weight(bounces: &[Bounce]) -> f64 {
 
 /// Whether less than a quarter of the sky, weighed by the cosine, is seen from a place.
 fn is_inside(world: &World, place: DVec3, normal: DVec3, sampler: &Sampler) -> bool {
-    let frame = Frame::about(normal);
-    let from = off(place, normal);
+    let origin = off(place, normal);
     let sees = |look: &u32| {
-        let u = sampler.four_plain(BranchKey::CAMERA, *look);
-        let direction = unit(frame.to_world(cosine_hemisphere([u[0], u[1]])));
-        let ray = Ray { origin: from, direction };
+        let [u, v, ..] = sampler.four_plain(BranchKey::CAMERA, *look);
+        let ray = Ray { origin, direction: cosine_about(normal, [u, v]) };
         world.scene.nearest(&ray, f64::INFINITY, &|object| !world.is_see_through(object)).is_none()
     };
     (0..LOOKS).filter(sees).count() <= INSIDE
