@@ -102,7 +102,7 @@ impl Way<'_> {
 /// What bounces are aimed at.
 fn described(places: &BrightPlaces) -> String {
     let count = places.places.len();
-    let what = match (places.only, count) {
+    let what = match (places.are_openings, count) {
         (false, 1) => "1 bright place that lights it".into(),
         (false, _) => format!("{count} bright places that light it"),
         (true, 1) => "1 opening that lets light in".into(),

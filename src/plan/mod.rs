@@ -71,7 +71,7 @@ const TOGETHER_PIXELS: f64 = 0.01;
 /// Decides how to render a scene.
 ///
 /// # Panics
-/// If a program has made another scene of it since it was compiled, such as one without pixels.
+/// If a program has changed the scene since it was compiled, such as to one without pixels.
 pub fn plan(scene: &Scene<Curve>) -> Plan {
     let Model { basis, missed, error: model_error, because: mut decisions, next, candidates } = model::model(scene);
     let (method, reason) = before_light(scene, basis, model_error);

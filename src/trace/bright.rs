@@ -50,7 +50,7 @@ pub struct BrightPlaces {
     /// Root of the mean square of the radiance from elsewhere.
     pub elsewhere: f64,
     /// Whether they are openings to the sky.
-    pub only: bool,
+    pub are_openings: bool,
 }
 
 /// A place, ready to be aimed at.
@@ -100,7 +100,7 @@ impl Bright {
             }
         };
         let targets = found.places.iter().take(MOST).map(target).collect();
-        let left = if found.only { EQUAL } else { FINITE };
+        let left = if found.are_openings { EQUAL } else { FINITE };
         Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere, left }
     }
 
@@ -200,7 +200,7 @@ mod tests {
             place([1.0, 1.0, 1.0], [0.2, 0.1, 0.0], [-0.05, 0.1, 0.3], 5.0),
         ];
         let within = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(3.0) };
-        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05, only: false })
+        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05, are_openings: false })
     }
 
     const ROWS: usize = 12;

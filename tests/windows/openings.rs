@@ -87,8 +87,8 @@ fn each_opening_is_held_by_a_rectangle() {
 fn l13_a_white_room_with_a_small_opening_is_calm() {
     let text = room(&[[-0.05, 0.05]], "diffuse = { reflectance = 0.9 }", 64, &environment(1.0));
     let found = openings(&text);
-    let of_sample = |only: bool| {
-        let films = films(&text, Some(&BrightPlaces { only, ..found.clone() }), 8);
+    let of_sample = |are_openings: bool| {
+        let films = films(&text, Some(&BrightPlaces { are_openings, ..found.clone() }), 8);
         let (mean, pixels) = (Mean::over_seeds(&films).value[1], films[0].pixels.len() as f64);
         64.0 * variance(&films) / pixels / (mean * mean)
     };

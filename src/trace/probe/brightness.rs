@@ -21,8 +21,6 @@ const NEARLY: f64 = 0.9;
 /// rays look for openings, by pieces.
 const OFTEN: f64 = 32.0;
 const MOST_PIECES: usize = 64;
-/// Points that are gathered into places.
-const POINTS: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6272_6967;
 
@@ -77,9 +75,7 @@ fn is_lit_often(room: &Room) -> bool {
 fn learned(room: &Room) -> Option<BrightPlaces> {
     let lit = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
     let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
-    let step = points.len().div_ceil(POINTS).max(1);
-    let found = clusters(points.into_iter().step_by(step).collect(), MOST);
-    bright_of(room, found.iter().map(Cluster::rectangle))
+    bright_of(room, clusters(points, MOST).iter().map(Cluster::rectangle))
 }
 
 /// Those openings through which most light comes. All within the walls aim at them.
@@ -87,10 +83,10 @@ fn bright_openings<const N: usize>(world: &World, Openings { walls, rectangles }
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
     let places = rectangles.iter().map(place).collect();
     // What light comes through them, bounces tell that are aimed at them.
-    let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, only: true };
+    let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
     let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
-    Some(BrightPlaces { within: *walls, only: true, ..bright_of(&room, rectangles.iter().copied())? })
+    Some(BrightPlaces { within: *walls, are_openings: true, ..bright_of(&room, rectangles.iter().copied())? })
 }
 
 /// Those of some rectangles from or through which more light comes than from elsewhere.
@@ -118,15 +114,14 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
         within: room.bounds,
         places,
         elsewhere,
-        only: false,
+        are_openings: false,
     })
 }
 
 /// A place that is being learned.
 struct Place {
     shape: Shape,
-    center: DVec3,
-    half: [DVec3; 2],
+    rectangle: Rectangle,
     squares: Squares,
 }
 
@@ -136,14 +131,13 @@ impl Place {
         let spans = u.cross(v).length();
         (spans > 0.0 && spans.is_finite()).then(|| Self {
             shape: Shape::Quad(Quad::new(center, u, v)),
-            center,
-            half: [u, v],
+            rectangle,
             squares: Squares::default(),
         })
     }
 
     fn bright(self) -> Option<BrightPlace> {
-        let Self { center, half, squares, .. } = self;
+        let Self { rectangle: Rectangle { center, half }, squares, .. } = self;
         Some(BrightPlace { center, half, radiance: squares.root() }).filter(|place| place.radiance > 0.0)
     }
 }

@@ -34,13 +34,18 @@ const REFINED: u32 = 24;
 const CUTS: usize = 7;
 /// What a split must save of all weights times areas.
 const WORTH: f64 = 0.05;
+/// Most points that are looked at.
+const POINTS: usize = 2048;
 /// Fewest points of a cluster.
 const FEWEST: usize = 8;
 /// Steps in which the longest direction of points is found.
 const STEPS: u32 = 24;
 
-/// The rectangles, at most so many: those that make the sum of weights times areas least, found by splitting in two.
+/// The rectangles, at most so many: those that make the sum of weights times areas least, found by splitting in two. Of
+/// very many points, some tell enough.
 pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
+    let step = points.len().div_ceil(POINTS).max(1);
+    let points = points.into_iter().step_by(step).collect();
     let Some(first) = Cluster::around(points) else { return Vec::new() };
     let mut found = vec![(first.split(), first)];
     while found.len() < most {

@@ -28,8 +28,6 @@ const LEAST: f64 = 1.0 / (1 << 28) as f64;
 /// An opening is taken to be so many times as large as what was found of it: the rest would be met by chance alone, and
 /// be much too bright.
 const MARGIN: f64 = 1.03;
-/// Points that tell where an opening is.
-const POINTS: usize = 2048;
 /// Two parts are one opening if a rectangle about both is no more than so many times as large as theirs.
 const ONE: f64 = 1.3;
 /// Uses of random numbers; those of looks around come before.
@@ -158,10 +156,9 @@ fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<
     in_parallel(pieces.len(), &of_piece).concat()
 }
 
-/// The rectangles that hold some weighted points of openings; of very many, some tell enough.
+/// The rectangles that hold some weighted points of openings.
 fn rectangles(points: Vec<(DVec3, f64)>) -> Vec<Rectangle> {
-    let step = points.len().div_ceil(POINTS).max(1);
-    joined(clusters(points.into_iter().step_by(step).collect(), MOST)).iter().map(Cluster::around_all).collect()
+    joined(clusters(points, MOST)).iter().map(Cluster::around_all).collect()
 }
 
 /// Clusters of which those that lie side by side are one.
