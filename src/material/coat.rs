@@ -2,7 +2,7 @@ use std::array;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
-use super::film_averages::FilmAverages;
+use super::film_averages::{FilmAverages, HatWeights};
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{Block, Interface, RoughSurface, Roughness, reflect};
@@ -44,6 +44,8 @@ pub(super) struct Crossing {
     pub(super) to: f64,
     /// Share of the light from all around that gets in.
     pub(super) around: f64,
+    /// Share of what a rough coat's facets would reflect more than once as perfect mirrors that the coat reflects.
+    pub(super) again: f64,
     /// Square of the relative index.
     squared: f64,
     /// Of diffuse light from inside, what a film absorbs, times that.
@@ -66,8 +68,40 @@ impl Crossing {
         [1.0 - self.from, self.from * self.around * r / self.unabsorbed(r)]
     }
 
+    /// What crosses under a film, of which a smooth one lets these shares through from the two directions.
+    pub(super) fn under(&self, averages: &FilmAverages, [from, to]: [f64; 2]) -> Self {
+        Self { from, to, around: averages.mean[1], lost: self.squared * averages.lost_inside, ..*self }
+    }
+
     fn unabsorbed(&self, r: f64) -> f64 {
         self.squared * (1.0 - r) + r * (self.around + self.lost)
+    }
+}
+
+/// What facets of a rough coat block of the light from two directions, the same for all lanes.
+pub(super) struct BlockedByCoat<'a> {
+    surface: &'a RoughSurface,
+    /// If they were perfect mirrors.
+    by_mirrors: [f64; 2],
+    /// Of what a film changes, and of that from all around.
+    by_hats: [HatWeights; 2],
+    by_hats_around: &'a HatWeights,
+}
+
+impl BlockedByCoat<'_> {
+    /// What crosses the coat and a film, where `bare` crosses it without that.
+    ///
+    /// Of light that the coat would reflect more than once, what is not reflected gets in.
+    pub(super) fn crossing_under(&self, averages: &FilmAverages, bare: &Crossing) -> Crossing {
+        let again = self.surface.reflected_again(averages.mean[0]);
+        let less = bare.again - again;
+        let [from, to] = [(bare.from, 0), (bare.to, 1)].map(|(bare, end)| {
+            let more = averages.added(&self.by_hats[end]) + less * self.by_mirrors[end];
+            (bare + more).clamp(0.0, 1.0)
+        });
+        let around = bare.around + averages.added(self.by_hats_around) + less * self.surface.mean_blocked();
+        let lost = bare.squared * averages.lost_inside;
+        Crossing { from, to, around: around.max(f64::MIN_POSITIVE), again, lost, ..*bare }
     }
 }
 
@@ -90,7 +124,7 @@ impl Coat {
         let around = diffuse_transmittance(m);
         let [from_smooth, to_smooth] = [from, to].map(|cos| Interface::new(n1, n2, cos).transmittance);
         let Some(surface) = self.roughness.surface() else {
-            return Crossing { from: from_smooth, to: to_smooth, around, squared, lost: 0.0 };
+            return Crossing { from: from_smooth, to: to_smooth, around, again: 0.0, squared, lost: 0.0 };
         };
         let again = surface.reflected_again(1.0 - around);
         let rows = around_index(&self.rows, m, |m| row(surface, m));
@@ -101,35 +135,19 @@ impl Coat {
         };
         let more: f64 = rows.iter().map(|(part, row)| part * row.mean()).sum();
         let around = around - more - again * surface.mean_blocked();
-        Crossing { from: rough(from_smooth, from), to: rough(to_smooth, to), around, squared, lost: 0.0 }
+        Crossing { from: rough(from_smooth, from), to: rough(to_smooth, to), around, again, squared, lost: 0.0 }
     }
 
-    /// The same under a film, of which `smooth` lets through a share of the light from a cosine.
-    ///
-    /// Of light that a rough one would reflect more than once, what is not reflected gets in.
-    pub(super) fn crossing_under(
-        &self,
-        averages: &FilmAverages,
-        indices @ [n1, n2]: [f64; 2],
-        cosines @ [from, to]: [f64; 2],
-        smooth: impl Fn(f64) -> f64,
-    ) -> Crossing {
-        let bare = self.crossing(indices, cosines);
-        let lost = bare.squared * averages.lost_inside;
-        let Some(surface) = self.roughness.surface() else {
-            return Crossing { from: smooth(from), to: smooth(to), around: averages.mean[1], lost, ..bare };
-        };
+    /// What a rough one blocks of the light from two directions; none of a smooth one.
+    pub(super) fn blocked(&self, cosines: [f64; 2]) -> Option<BlockedByCoat<'_>> {
+        let surface = self.roughness.surface()?;
         let kernel = self.kernel.get_or_init(|| kernel(surface));
-        let again = Self::reflected_again(surface, n1, n2) - surface.reflected_again(averages.mean[0]);
-        let more = |cos: f64| kernel.added(averages, cos) + again * surface.blocked(cos);
-        let around = bare.around + kernel.mean_added(averages) + again * surface.mean_blocked();
-        let [from, to] = [(bare.from, from), (bare.to, to)].map(|(bare, cos)| (bare + more(cos)).clamp(0.0, 1.0));
-        Crossing { from, to, around: around.max(f64::MIN_POSITIVE), lost, ..bare }
-    }
-
-    /// What of the light reflected by perfect mirrors more than once the coat reflects.
-    pub(super) fn reflected_again(surface: &RoughSurface, n1: f64, n2: f64) -> f64 {
-        surface.reflected_again(1.0 - diffuse_transmittance(n2 / n1))
+        Some(BlockedByCoat {
+            surface,
+            by_mirrors: cosines.map(|cos| surface.blocked(cos)),
+            by_hats: cosines.map(|cos| kernel.at(cos)),
+            by_hats_around: kernel.mean(),
+        })
     }
 
     /// The degree to which light that crosses from a direction of a cosine is polarized, across the plane of incidence

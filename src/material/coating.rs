@@ -1,4 +1,5 @@
 use std::cell::RefCell;
+use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use super::Arrival;
@@ -90,6 +91,25 @@ thread_local! {
     static LAST: RefCell<[Option<Answer>; MAX_LANES]> = const { RefCell::new([const { None }; MAX_LANES]) };
 }
 
+/// What a film makes of light from many directions, large enough not to be copied.
+pub(super) enum Averages<'a> {
+    /// It is the same everywhere.
+    Known(&'a FilmAverages),
+    /// It is that of one place or one sample.
+    Made(Box<FilmAverages>),
+}
+
+impl Deref for Averages<'_> {
+    type Target = FilmAverages;
+
+    fn deref(&self) -> &FilmAverages {
+        match self {
+            Self::Known(averages) => averages,
+            Self::Made(averages) => averages,
+        }
+    }
+}
+
 /// A coating where light arrives.
 pub(super) struct MetCoating<'a, const N: usize> {
     coating: &'a Coating<Table>,
@@ -100,7 +120,7 @@ pub(super) struct MetCoating<'a, const N: usize> {
     thicknesses: Vec<Lanes<N>>,
 }
 
-impl<const N: usize> MetCoating<'_, N> {
+impl<'a, const N: usize> MetCoating<'a, N> {
     /// Whether it is met at its inner side.
     pub(super) fn is_inside(&self) -> bool {
         self.inside
@@ -114,12 +134,12 @@ impl<const N: usize> MetCoating<'_, N> {
         inside: bool,
         indices: [f64; 4],
         make: impl Fn() -> FilmAverages,
-    ) -> FilmAverages {
+    ) -> Averages<'a> {
         if !self.thicknesses.is_empty() || !self.arrival.draw.is_fixed(lane) {
-            return make();
+            return Averages::Made(Box::new(make()));
         }
         let (known, averages) = self.coating.known[usize::from(inside)][lane].get_or_init(|| (indices, make()));
-        if *known == indices { *averages } else { make() }
+        if *known == indices { Averages::Known(averages) } else { Averages::Made(Box::new(make())) }
     }
 
     /// What the layers do with a lane between index `n1` and `n2` beyond: [`Stack::shares`].

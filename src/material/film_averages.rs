@@ -7,13 +7,15 @@ use crate::math::gauss_legendre;
 /// Cosines at which a film is compared with the bare surface, between which the difference is taken as linear: those in
 /// the rarer medium, from which light crosses at every angle, and of which shares are a smooth function.
 pub(super) const HATS: usize = 20;
+/// For each hat, what is told of the light that is reflected and of that which crosses.
+pub(super) type HatWeights = [[f64; 2]; HATS];
 /// Places that give the mean over the hemisphere of films that change slowly with the angle, and of others.
 const PLACES: [usize; 2] = [5, 32];
 
 /// How a film differs from the bare surface, and its means over the hemisphere, by cosine: each (reflected, crossing).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FilmAverages {
-    pub(super) differences: [[f64; 2]; HATS],
+    pub(super) differences: HatWeights,
     pub(super) mean: [f64; 2],
     /// Of diffuse light from inside, the share that is absorbed.
     pub(super) lost_inside: f64,
@@ -46,10 +48,10 @@ impl FilmAverages {
         Self { differences: [[0.0; 2]; HATS], mean, lost_inside: 0.0 }
     }
 
-    /// The sum of both differences over the hats, each with its own weight.
-    pub(super) fn weighted(&self, weight: impl Fn(usize, usize) -> f64) -> f64 {
-        let both = |hat: usize| (0..2).map(|way| self.differences[hat][way] * weight(hat, way)).sum::<f64>();
-        (0..HATS).map(both).sum()
+    /// What the film adds to the two shares that are blocked of the light that meets each hat.
+    pub(super) fn added(&self, blocked: &HatWeights) -> f64 {
+        let of_hat = |hat: usize| (0..2).map(|way| self.differences[hat][way] * blocked[hat][way]).sum::<f64>();
+        (0..HATS).map(of_hat).sum()
     }
 }
 

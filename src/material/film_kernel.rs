@@ -1,12 +1,18 @@
 //! What facets block of the light that each hat of a film's differences stands for.
 
+use std::array;
+
 use super::albedo_table::AlbedoTable;
-use super::film_averages::{FilmAverages, HATS, hats};
+use super::film_averages::{HATS, HatWeights, hats};
 
 /// For each hat, two shares of the light from a cosine that meets facets at that hat's cosine, as tables.
 #[derive(Clone, Debug)]
 pub(super) struct FilmKernel {
-    tables: Vec<[AlbedoTable; 2]>,
+    /// Tells where a cosine lies among the rows.
+    grid: AlbedoTable,
+    rows: Vec<HatWeights>,
+    /// Their means over the hemisphere, by cosine.
+    mean: HatWeights,
 }
 
 impl FilmKernel {
@@ -29,21 +35,25 @@ impl FilmKernel {
             row
         };
         let rows: Vec<_> = (0..=steps).map(row).collect();
-        let table = |number: usize, way: usize| {
+        let mean = |number: usize, way: usize| {
             let mut values = rows.iter().map(|row| row[number][way]);
-            AlbedoTable::new(alpha, steps, |_| values.next().unwrap_or_default())
+            AlbedoTable::new(alpha, steps, |_| values.next().unwrap_or_default()).mean()
         };
-        Self { tables: (0..HATS).map(|number| [table(number, 0), table(number, 1)]).collect() }
+        let mean = array::from_fn(|number| array::from_fn(|way| mean(number, way)));
+        Self { grid, rows, mean }
     }
 
-    /// What a film adds to the first share of what is reflected and the second of what crosses, from a cosine.
-    pub(super) fn added(&self, averages: &FilmAverages, cos: f64) -> f64 {
-        let place = self.tables[0][0].place(cos);
-        averages.weighted(|hat, way| self.tables[hat][way].at(place))
+    /// What is blocked from a cosine, linear between the rows.
+    pub(super) fn at(&self, cos: f64) -> HatWeights {
+        let steps = self.rows.len() - 1;
+        let place = self.grid.place(cos) * steps as f64;
+        let below = (place as usize).min(steps - 1);
+        let (part, [low, high]) = (place - below as f64, [&self.rows[below], &self.rows[below + 1]]);
+        array::from_fn(|hat| array::from_fn(|way| low[hat][way] + part * (high[hat][way] - low[hat][way])))
     }
 
     /// The mean of that over the hemisphere, by cosine.
-    pub(super) fn mean_added(&self, averages: &FilmAverages) -> f64 {
-        averages.weighted(|hat, way| self.tables[hat][way].mean())
+    pub(super) fn mean(&self) -> &HatWeights {
+        &self.mean
     }
 }

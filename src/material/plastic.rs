@@ -54,12 +54,12 @@ impl Plastic<Table> {
                 return;
             }
             let wi = cosine_hemisphere(u);
-            let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], CoatLane::base);
+            let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], |lane| lane.base());
             branches.push(branch(arrival, wi, base, wi.z * FRAC_1_PI));
             return;
         };
         let wo = above(&Frame::about(arrival.normal), arrival.wo);
-        let chance = self.chance_of_coat(arrival, &self.lanes(arrival, [wo.z; 2], CoatLane::reflected));
+        let chance = self.chance_of_coat(arrival, &self.lanes(arrival, [wo.z; 2], |lane| lane.reflected()));
         let wi = if u[0] < chance {
             surface.scatter(wo, [u[0] / chance, u[1]]).map(|reflection| reflection.wi)
         } else {
@@ -138,8 +138,8 @@ impl Plastic<Table> {
         let mut last = Last::NONE;
         let lanes = self.lanes(arrival, [wo.z, wi.z], |lane| {
             let coat = match lane.film {
-                Some(_) => lane.coat(surface, &reflection),
-                None => last.of(lane.indices, |_| lane.coat(surface, &reflection)),
+                Some(_) => lane.coat(&reflection),
+                None => last.of(lane.indices, |_| lane.coat(&reflection)),
             };
             (of_coat * coat + of_base * lane.base() * base_pdf, lane.reflected())
         });
@@ -166,10 +166,11 @@ impl Plastic<Table> {
         &self,
         arrival: &Arrival<N>,
         cosines: [f64; 2],
-        mut of_lane: impl FnMut(&CoatLane) -> T,
+        mut of_lane: impl FnMut(&CoatLane<N>) -> T,
     ) -> [T; N] {
         let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
         let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+        let blocked = met.as_ref().and_then(|_| self.coat.blocked(cosines));
         let mut last = Last::NONE;
         std::array::from_fn(|i| {
             if arrival.present[i] == 0.0 {
@@ -177,10 +178,8 @@ impl Plastic<Table> {
             }
             let indices = [arrival.incident_of(i), index[i]];
             let film = met.as_ref().map(|met| PlasticFilm::new(met, i, indices));
-            let crossing = match &film {
-                Some(film) => film.crossing(&self.coat, cosines),
-                None => last.of(indices, |indices| self.coat.crossing(indices, cosines)),
-            };
+            let bare = last.of(indices, |indices| self.coat.crossing(indices, cosines));
+            let crossing = film.as_ref().map_or(bare, |film| film.crossing(&bare, blocked.as_ref(), cosines));
             of_lane(&CoatLane { crossing, r: f64::from(base[i]), indices, film })
         })
     }
@@ -297,17 +296,17 @@ impl Plastic<Table> {
 }
 
 /// What the light of a lane meets.
-struct CoatLane {
+struct CoatLane<'a, const N: usize> {
     /// What crosses the coat from two directions.
     crossing: Crossing,
     /// The base's reflectance.
     r: f64,
     /// On both sides of the coat.
     indices: [f64; 2],
-    film: Option<PlasticFilm>,
+    film: Option<PlasticFilm<'a, N>>,
 }
 
-impl CoatLane {
+impl<const N: usize> CoatLane<'_, N> {
     /// BRDF times pi of the base.
     fn base(&self) -> f64 {
         self.crossing.base(self.r)
@@ -319,13 +318,13 @@ impl CoatLane {
     }
 
     /// BRDF times cosine of a rough coat.
-    fn coat(&self, surface: &RoughSurface, reflection: &RoughReflection) -> f64 {
+    fn coat(&self, reflection: &RoughReflection) -> f64 {
         let (cos, [n1, n2]) = (reflection.cos, self.indices);
-        let [once, again] = match &self.film {
-            Some(film) => [film.shares(cos).reflected.mean(), surface.reflected_again(film.averages.mean[0])],
-            None => [Interface::new(n1, n2, cos).reflectance, Coat::reflected_again(surface, n1, n2)],
+        let once = match &self.film {
+            Some(film) => film.shares(cos).reflected.mean(),
+            None => Interface::new(n1, n2, cos).reflectance,
         };
-        once * reflection.once + again * reflection.again
+        once * reflection.once + self.crossing.again * reflection.again
     }
 }
 

@@ -1,32 +1,37 @@
-use super::coat::{Coat, Crossing};
-use super::coating::MetCoating;
+use super::coat::{BlockedByCoat, Crossing};
+use super::coating::{Averages, MetCoating};
 use super::film_averages::{FilmAverages, mean};
 use super::{Interface, Stack, StackShares};
 
 /// The film on the coat of an opaque body, for one lane.
-pub(super) struct PlasticFilm {
-    stack: Stack,
+pub(super) struct PlasticFilm<'a, const N: usize> {
+    met: &'a MetCoating<'a, N>,
+    lane: usize,
     /// On the viewer's side, and of the coat.
     indices: [f64; 2],
-    pub(super) averages: FilmAverages,
+    pub(super) averages: Averages<'a>,
 }
 
-impl PlasticFilm {
-    pub(super) fn new<const N: usize>(met: &MetCoating<N>, lane: usize, indices: [f64; 2]) -> Self {
-        let stack = met.stack(lane);
-        let averages = met.averages(lane, false, [indices[0], indices[1], 0.0, 0.0], || averages(&stack, indices));
-        Self { stack, indices, averages }
+impl<'a, const N: usize> PlasticFilm<'a, N> {
+    pub(super) fn new(met: &'a MetCoating<'a, N>, lane: usize, indices: [f64; 2]) -> Self {
+        let [n1, n2] = indices;
+        let averages = met.averages(lane, false, [n1, n2, 0.0, 0.0], || averages(&met.stack(lane), indices));
+        Self { met, lane, indices, averages }
     }
 
     /// What it reflects and lets through of the light from a cosine.
     pub(super) fn shares(&self, cos: f64) -> StackShares {
         let [n1, n2] = self.indices;
-        self.stack.shares(n1, n2.into(), n1 * cos.clamp(0.0, 1.0))
+        self.met.at_cosine(self.lane, n1, n2, cos)
     }
 
-    /// What crosses it and the coat.
-    pub(super) fn crossing(&self, coat: &Coat, cosines: [f64; 2]) -> Crossing {
-        coat.crossing_under(&self.averages, self.indices, cosines, |cos| self.shares(cos).refracted.mean())
+    /// What crosses it and a coat from two directions, where `bare` crosses the coat alone, and a rough one blocks so
+    /// much.
+    pub(super) fn crossing(&self, bare: &Crossing, blocked: Option<&BlockedByCoat>, cosines: [f64; 2]) -> Crossing {
+        match blocked {
+            Some(blocked) => blocked.crossing_under(&self.averages, bare),
+            None => bare.under(&self.averages, cosines.map(|cos| self.shares(cos).refracted.mean())),
+        }
     }
 }
 

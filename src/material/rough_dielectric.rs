@@ -2,7 +2,7 @@
 
 use super::coated_boundary::{block_at, shares_at};
 use super::coating::MetCoating;
-use super::rough_coating::CoatedLane;
+use super::rough_coating::{self, BlockedLight};
 use super::roughness::above;
 use super::{Arrival, Block, Branch, Coating, Facet, Flow, Incoming, Interface, Mueller, RoughInterface, Sides, Way};
 use crate::math::{DVec3, Frame, unit};
@@ -133,6 +133,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     fn coated(&self, interface: &RoughInterface, met: &MetCoating<N>, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let ([here, beyond], crosses) = (kind.indices, self.crosses);
         let kernels = interface.film_kernels(here, beyond);
+        let blocked = BlockedLight::new(&kind.sides, kernels, [self.wo.z, self.cos], crosses);
         Lanes::from_fn(|lane| {
             if kind.present[lane] == 0.0 {
                 return 0.0;
@@ -143,8 +144,8 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
             // What one facet sends beyond is already converted by the ray's indices.
             let converted = if crosses { square * (beyond / here) * (beyond / here) } else { 1.0 };
             let once = converted * if crosses { shares.refracted.mean() } else { shares.reflected.mean() };
-            let coated = CoatedLane::new(met, self.arrival, lane, &kind.sides, kernels);
-            (factor * coated.value(&kind.flow, once, [self.wo.z, self.cos], crosses, square)) as f32
+            let averages = rough_coating::averages(met, self.arrival, lane);
+            (factor * blocked.value(&averages, &kind.flow, once, square)) as f32
         })
     }
 
