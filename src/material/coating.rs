@@ -1,9 +1,9 @@
 use std::cell::RefCell;
 use std::ops::Deref;
-use std::sync::{Arc, OnceLock};
 
 use super::Arrival;
 use super::film_averages::FilmAverages;
+use super::known::KnownLanes;
 use super::stack::{Layer, Stack, StackShares};
 use crate::math::Complex;
 use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
@@ -26,12 +26,9 @@ use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 pub struct Coating<S> {
     /// From the outside inward.
     pub layers: Vec<CoatingLayer<S>>,
-    /// From outside and from inside, what fixed lanes make of light from many directions.
-    known: Arc<[[Known; MAX_LANES]; 2]>,
+    /// From outside and from inside, what the film makes of light from many directions, by the indices around it.
+    known: [KnownLanes<[f64; 4], FilmAverages>; 2],
 }
-
-/// The indices around a film, and its averages between them.
-type Known = OnceLock<([f64; 4], FilmAverages)>;
 
 /// One layer.
 #[derive(Clone, Debug)]
@@ -49,7 +46,7 @@ pub struct CoatingLayer<S> {
 impl<S> Coating<S> {
     /// Layers from the outside inward.
     pub fn new(layers: Vec<CoatingLayer<S>>) -> Self {
-        Self { layers, known: Arc::new([const { [const { OnceLock::new() }; MAX_LANES] }; 2]) }
+        Self { layers, known: [KnownLanes::new(), KnownLanes::new()] }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Coating<T> {
@@ -135,11 +132,10 @@ impl<'a, const N: usize> MetCoating<'a, N> {
         indices: [f64; 4],
         make: impl Fn() -> FilmAverages,
     ) -> Averages<'a> {
-        if !self.thicknesses.is_empty() || !self.arrival.draw.is_fixed(lane) {
-            return Averages::Made(Box::new(make()));
-        }
-        let (known, averages) = self.coating.known[usize::from(inside)][lane].get_or_init(|| (indices, make()));
-        if *known == indices { Averages::Known(averages) } else { Averages::Made(Box::new(make())) }
+        let known = &self.coating.known[usize::from(inside)];
+        let is_even = self.thicknesses.is_empty();
+        let known = is_even.then(|| known.get(self.arrival.draw, lane, indices, &make)).flatten();
+        known.map_or_else(|| Averages::Made(Box::new(make())), Averages::Known)
     }
 
     /// What the layers do with a lane between index `n1` and `n2` beyond: [`Stack::shares`].

@@ -1,6 +1,7 @@
 use super::coating::MetCoating;
 use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
+use super::known::KnownLanes;
 use super::last::Last;
 use super::roughness::above;
 use super::{
@@ -27,16 +28,20 @@ pub struct Conductor<S> {
     pub roughness: Roughness,
     /// Layers on it in which light interferes.
     pub coating: Option<Coating<S>>,
+    /// Of an uncoated one, [`RoughSurface::reflected_again`], by its indices.
+    again: KnownLanes<[f64; 3], f64>,
 }
 
 impl<S> Conductor<S> {
+    /// The metal of index n - i k, as rough and coated as given.
+    pub fn new([n, k]: [S; 2], roughness: Roughness, coating: Option<Coating<S>>) -> Self {
+        Self { n, k, roughness, coating, again: KnownLanes::new() }
+    }
+
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Conductor<T> {
-        Conductor {
-            n: convert(Quantity::MetalIndex, &self.n),
-            k: convert(Quantity::MetalExtinction, &self.k),
-            roughness: self.roughness.clone(),
-            coating: self.coating.as_ref().map(|coating| coating.map(convert)),
-        }
+        let indices = [convert(Quantity::MetalIndex, &self.n), convert(Quantity::MetalExtinction, &self.k)];
+        let coating = self.coating.as_ref().map(|coating| coating.map(convert));
+        Conductor::new(indices, self.roughness.clone(), coating)
     }
 }
 
@@ -84,18 +89,21 @@ impl Conductor<Table> {
         factor: f64,
     ) -> Lanes<N> {
         let (met, mut last) = (self.met(arrival), Last::NONE);
-        let light = |[once, mean]: [f64; 2]| {
-            factor * (once * reflection.once + surface.reflected_again(mean) * reflection.again)
-        };
+        let light = |once: f64, again: f64| factor * (once * reflection.once + again * reflection.again);
         Lanes::from_fn(|i| {
             if arrival.present[i] == 0.0 {
                 return 0.0;
             }
             let light = match &met.coating {
-                Some(coating) => light(coated_by_facets(coating, i, met.indices(i), reflection.cos)),
-                None => last.of(met.indices(i), |[n1, n, k]| {
+                Some(coating) => {
+                    let [once, mean] = coated_by_facets(coating, i, met.indices(i), reflection.cos);
+                    light(once, surface.reflected_again(mean))
+                }
+                None => last.of(met.indices(i), |indices @ [n1, n, k]| {
                     let [s, p] = conductor_reflectance(n1, n, k, reflection.cos);
-                    light([0.5 * (s + p), mean_reflectance(n1, n, k)])
+                    let again = || surface.reflected_again(mean_reflectance(n1, n, k));
+                    let known = self.again.get(arrival.draw, i, indices, again).copied();
+                    light(0.5 * (s + p), known.unwrap_or_else(again))
                 }),
             };
             light as f32

@@ -21,6 +21,7 @@ mod film_kernel;
 mod fluorescence;
 mod fresnel;
 mod kinds;
+mod known;
 mod last;
 mod lobes;
 mod mask;

@@ -138,7 +138,7 @@ fn conductor<'d>(_: &mut Context, value: Value<'d>, fields: &mut Fields<'d>) -> 
         _ if fields.has_unknown() => return None,
         _ => return value.refuse("a conductor needs either `metal`, or both `n` and `k`"),
     };
-    Some(Draft::Whole(Material::Conductor(Conductor { n, k, roughness, coating: coating? })))
+    Some(Draft::Whole(Material::Conductor(Conductor::new([n, k], roughness, coating?))))
 }
 
 fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
