@@ -1,6 +1,9 @@
+use std::array;
+
 use super::coating::MetCoating;
 use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
+use super::fresnel::conductor_reflectances;
 use super::known::KnownLanes;
 use super::last::Last;
 use super::roughness::above;
@@ -64,9 +67,8 @@ impl Conductor<Table> {
     /// Of a smooth metal.
     fn mirror<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
         let (met, cos) = (self.met(arrival), arrival.wo.dot(arrival.normal));
-        let reflected: [[f64; 2]; N] =
-            std::array::from_fn(|i| if arrival.present[i] == 0.0 { [0.0; 2] } else { met.reflected(i, cos) });
-        let share = Lanes::from_fn(|i| (0.5 * (reflected[i][0] + reflected[i][1])) as f32);
+        let reflected = met.reflected(cos);
+        let share = Lanes::from_fn(|i| mean_of(reflected[i]) as f32);
         let polarization = match met.coating {
             None => largest(reflected.into_iter().map(degree)),
             Some(_) => of_all_lanes(reflected.into_iter()) as f32,
@@ -89,24 +91,19 @@ impl Conductor<Table> {
         factor: f64,
     ) -> Lanes<N> {
         let (met, mut last) = (self.met(arrival), Last::NONE);
-        let light = |once: f64, again: f64| factor * (once * reflection.once + again * reflection.again);
+        let once = met.reflected(reflection.cos);
         Lanes::from_fn(|i| {
             if arrival.present[i] == 0.0 {
                 return 0.0;
             }
-            let light = match &met.coating {
-                Some(coating) => {
-                    let [once, mean] = coated_by_facets(coating, i, met.indices(i), reflection.cos);
-                    light(once, surface.reflected_again(mean))
-                }
-                None => last.of(met.indices(i), |indices @ [n1, n, k]| {
-                    let [s, p] = conductor_reflectance(n1, n, k, reflection.cos);
-                    let again = || surface.reflected_again(mean_reflectance(n1, n, k));
-                    let known = self.again.get(arrival.draw, i, indices, again).copied();
-                    light(0.5 * (s + p), known.unwrap_or_else(again))
+            let again = match &met.coating {
+                Some(coating) => surface.reflected_again(coated_mean(coating, i, met.indices(i))),
+                None => last.of(met.indices(i), |indices| {
+                    let again = || surface.reflected_again(mean_reflectance(indices));
+                    self.again.get(arrival.draw, i, indices, again).copied().unwrap_or_else(again)
                 }),
             };
-            light as f32
+            (factor * (mean_of(once[i]) * reflection.once + again * reflection.again)) as f32
         })
     }
 
@@ -115,7 +112,7 @@ impl Conductor<Table> {
     pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
         let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
         let (met, cos) = (self.met(arrival), arrival.wo.dot(h));
-        largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(met.reflected(lane, cos))))
+        largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(met.reflected_of(lane, cos))))
     }
 
     /// By the facet that mirrors the light; what is reflected more than once leaves unpolarized.
@@ -152,8 +149,19 @@ impl<const N: usize> MetConductor<'_, N> {
         [self.arrival.incident_of(lane), self.n[lane], self.k[lane]]
     }
 
-    /// What it reflects of a lane, (s, p), of light that meets it at an angle of a cosine.
-    fn reflected(&self, lane: usize, cos: f64) -> [f64; 2] {
+    /// What it reflects of each lane on the ray, (s, p), of light that meets it at an angle of a cosine.
+    fn reflected(&self, cos: f64) -> [[f64; 2]; N] {
+        let is_here = |lane: usize| self.arrival.present[lane] != 0.0;
+        if self.coating.is_some() {
+            return array::from_fn(|lane| if is_here(lane) { self.reflected_of(lane, cos) } else { [0.0; 2] });
+        }
+        let n1 = array::from_fn(|lane| self.arrival.incident_of(lane));
+        let [s, p] = conductor_reflectances(&n1, [&self.n, &self.k], cos);
+        array::from_fn(|lane| if is_here(lane) { [s[lane], p[lane]] } else { [0.0; 2] })
+    }
+
+    /// The same of one lane, on the ray or not.
+    fn reflected_of(&self, lane: usize, cos: f64) -> [f64; 2] {
         match self.coated(lane, cos) {
             Some(PolarizedShare { s, p, .. }) => [s, p],
             None => {
@@ -170,20 +178,25 @@ impl<const N: usize> MetConductor<'_, N> {
     }
 }
 
-/// The reflectance of a coated metal at a cosine, and its mean over the hemisphere.
-fn coated_by_facets<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3], cos: f64) -> [f64; 2] {
-    let stack = met.stack(lane);
-    let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
+/// Of unpolarized light, the share that is reflected where (s, p) are.
+fn mean_of([s, p]: [f64; 2]) -> f64 {
+    0.5 * (s + p)
+}
+
+/// A coated metal's reflectance of diffuse light.
+fn coated_mean<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
     let averages = met.averages(lane, false, [n1, n, k, 0.0], || {
+        let stack = met.stack(lane);
+        let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
         FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
     });
-    [at(cos), averages.mean[0]]
+    averages.mean[0]
 }
 
 /// A metal's reflectance of diffuse light: twice the integral of reflectance times cosine over the cosine.
 ///
 /// The Gauss rule of order 10 for this weight.
-fn mean_reflectance(n1: f64, n: f64, k: f64) -> f64 {
+fn mean_reflectance([n1, n, k]: [f64; 3]) -> f64 {
     const RULE: [[f64; 2]; 5] = [
         [0.098_535_085_798_826_43, 0.031_495_829_043_383_45],
         [0.304_535_726_646_363_9, 0.147_817_740_145_233_22],
@@ -210,7 +223,7 @@ mod tests {
             let at = |i| (f64::from(i) + 0.5) / f64::from(STEPS);
             let reflected = |cos: f64| conductor_reflectance(1.0, n, k, cos).iter().sum::<f64>() * cos;
             let exact = (0..STEPS).map(|i| reflected(at(i))).sum::<f64>() / f64::from(STEPS);
-            let mean = mean_reflectance(1.0, n, k);
+            let mean = mean_reflectance([1.0, n, k]);
             assert!((mean - exact).abs() < 1e-3, "{n}, {k}: {mean} for {exact}");
         }
     }

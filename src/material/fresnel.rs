@@ -180,6 +180,7 @@ pub fn diffuse_transmittance(m: f64) -> f64 {
 /// Reflectances (s, p) of a metal n - i k under a medium of index `n1`, met at an angle with cosine `c`.
 ///
 /// Born & Wolf 1999, section 14.4, in the real form of Lagarde 2013, *Memo on Fresnel equations*.
+#[inline]
 pub fn conductor_reflectance(n1: f64, n: f64, k: f64, c: f64) -> [f64; 2] {
     let c = c.clamp(0.0, 1.0);
     let (eta, kappa) = (n / n1, k / n1);
@@ -188,8 +189,18 @@ pub fn conductor_reflectance(n1: f64, n: f64, k: f64, c: f64) -> [f64; 2] {
     let modulus = (t0 * t0 + 4.0 * eta * eta * kappa * kappa).sqrt();
     let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
     let (t1, t2) = (modulus + c2, 2.0 * a * c);
-    let r_s = if t1 + t2 == 0.0 { 1.0 } else { (t1 - t2) / (t1 + t2) };
-    let (t3, t4) = (c2 * modulus + s2 * s2, t2 * s2);
-    let r_p = if t3 + t4 == 0.0 { 1.0 } else { r_s * (t3 - t4) / (t3 + t4) };
-    [r_s, r_p]
+    // Without a branch, of many lanes several are computed at once.
+    let (s, p) = ((t1 - t2) / (t1 + t2), [c2 * modulus + s2 * s2, t2 * s2]);
+    let r_s = if t1 + t2 == 0.0 { 1.0 } else { s };
+    let ratio = r_s * (p[0] - p[1]) / (p[0] + p[1]);
+    [r_s, if p[0] + p[1] == 0.0 { 1.0 } else { ratio }]
+}
+
+/// [`conductor_reflectance`] of each lane, of s and of p.
+pub(super) fn conductor_reflectances<const N: usize>(n1: &[f64; N], [n, k]: [&[f64; N]; 2], cos: f64) -> [[f64; N]; 2] {
+    let [mut s, mut p] = [[0.0; N]; 2];
+    for i in 0..N {
+        [s[i], p[i]] = conductor_reflectance(n1[i], n[i], k[i], cos);
+    }
+    [s, p]
 }
