@@ -98,7 +98,7 @@ fn checked(job: &Job, source: &Source) -> Result<()> {
 /// Does a frame. What was warned of in another one is not said again.
 fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<ExitCode> {
     let began = Instant::now();
-    let mut scene = source.compile_with(&job.set)?;
+    let mut scene = progress::during("reading the scene", || source.compile_with(&job.set))?;
     // A plan is of the spectra as well.
     if let (Output::Image { exr: None, .. }, None) = (&job.output, &job.options.plan) {
         scene.format.spectral = None;
@@ -122,7 +122,7 @@ fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
     check_outputs(scene, &files)?;
     check_words("--plan-file", "frame.plan", file)?;
     let _folders = Folders::of_files(&files)?;
-    let plan = plan(scene);
+    let plan = progress::during("planning", || plan(scene));
     messages::answer_plan(&plan)?;
     if let Some(file) = file {
         write_plan(&plan, scene, file)?;
@@ -159,7 +159,7 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     if keep.has_finished(scene, &job.options, &files) {
         return Ok(ExitCode::SUCCESS);
     }
-    let mut rendering = Rendering::new(scene, &job.options)?.since(began);
+    let mut rendering = progress::during("planning", || Rendering::new(scene, &job.options))?.since(began);
     messages::print_plan(rendering.plan());
     if !keep.resume(&mut rendering, &files)? {
         return Ok(ExitCode::SUCCESS);

@@ -63,7 +63,7 @@ impl Counts {
     }
 }
 
-/// Renders shorter than this say nothing where there is no terminal.
+/// What is shorter says nothing, but for a bar on a terminal.
 const QUIET: Duration = Duration::from_secs(10);
 /// The time between two lines.
 const PERIOD: Duration = Duration::from_secs(30);
@@ -170,6 +170,13 @@ impl Drop for Progress {
     }
 }
 
+/// Does work of which nobody knows how much there is, and says from time to time that it goes on.
+pub fn during<T>(doing: &'static str, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let _lines = Lines::new(QUIET, PERIOD, move || say(&going_on(doing, start.elapsed().as_secs_f64())));
+    work()
+}
+
 /// The bar on the terminal, if there is one.
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
@@ -257,6 +264,11 @@ fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     format!("{percent} %, {}", times(passed, left))
 }
 
+/// What has been done for so many seconds and is not finished.
+fn going_on(doing: &str, passed: f64) -> String {
+    format!("{doing}, {}", times(passed, None))
+}
+
 fn times(passed: f64, left: Option<f64>) -> String {
     let left = left.map_or(String::new(), |left| format!(", about {} left", spoken(left)));
     format!("{} passed{left}", spoken(passed))
@@ -283,6 +295,7 @@ mod tests {
         assert_eq!(after([0.0, 0.999], 3000.0), "99 %, 50 min passed, about 3 s left");
         assert_eq!(after([0.0, 0.1], 7200.0), "10 %, 2.0 h passed, about 18.0 h left");
         assert_eq!(after([0.5, 0.6], 10.0), "60 %, 10 s passed, about 40 s left");
+        assert_eq!(going_on("planning", 40.0), "planning, 40 s passed");
     }
 
     #[test]

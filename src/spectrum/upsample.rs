@@ -1,5 +1,8 @@
 //! From three color numbers to a smooth spectrum within 0..1.
 
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
 use serde::{Deserialize, Serialize};
 
 use super::color::{ColorSpace, Matrix, adaptation, apply, factors, inverse, product};
@@ -30,18 +33,38 @@ fn sigmoid(x: f64) -> f64 {
 }
 
 /// Finds the sigmoid spectra that look like linear Rec.709 colors under a film's white.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Upsampler {
     /// Rec.709 red, green and blue of a reflectance of 1 within one step of the visible range; each sums to 1.
     steps: Vec<[f64; 3]>,
+    /// What was found, by the bits of the colors: a plan asks for each a dozen times, and to find it takes 0.1 ms.
+    #[serde(skip)]
+    found: Arc<Mutex<HashMap<[u64; 3], Sigmoid>>>,
 }
+
+impl PartialEq for Upsampler {
+    fn eq(&self, other: &Self) -> bool {
+        self.steps == other.steps
+    }
+}
+
+/// Most colors that are kept, which take 8 MB.
+const MOST_FOUND: usize = 1 << 16;
+/// How many color spaces there are.
+const SPACES: usize = ColorSpace::Xyz as usize + 1;
 
 /// Largest residual of a fit, in linear Rec.709.
 const CLOSE: f64 = 1e-4;
 
 impl Upsampler {
-    /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white.
+    /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white. All of one space know what any has
+    /// found.
     pub fn new(space: ColorSpace) -> Self {
+        static MADE: [OnceLock<Upsampler>; SPACES] = [const { OnceLock::new() }; SPACES];
+        MADE[space as usize].get_or_init(|| Self::made(space)).clone()
+    }
+
+    fn made(space: ColorSpace) -> Self {
         let white = space.white_light();
         let spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
         let correction = factors(visible::xyz(&spectrum), space.white());
@@ -49,7 +72,11 @@ impl Upsampler {
         let to_rec709 = product(&ColorSpace::Rec709.of_xyz(), &adapted);
         let steps = spectrum.iter().skip(ULTRAVIOLET).zip(data::color_matching());
         let color = |(power, cmf): (&f64, &[f64; 3])| std::array::from_fn(|c| power * cmf[c] * correction[c]);
-        Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect() }
+        Self { steps: steps.map(|step| apply(&to_rec709, color(step))).collect(), found: Arc::default() }
+    }
+
+    fn found(&self) -> MutexGuard<'_, HashMap<[u64; 3], Sigmoid>> {
+        self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The spectrum of a reflectance, each number within 0..1. A color that no sigmoid has is moved toward gray until
@@ -59,6 +86,22 @@ impl Upsampler {
         if rgb.iter().all(|&x| x == gray) {
             return Sigmoid { coefficients: [0.0, 0.0, inverse_sigmoid(gray)], saturation: 1.0 };
         }
+        let bits = rgb.map(f64::to_bits);
+        if let Some(&known) = self.found().get(&bits) {
+            return known;
+        }
+        // Meanwhile others may look for theirs, or for the same one.
+        let sigmoid = self.search(rgb, gray);
+        let mut found = self.found();
+        if found.len() >= MOST_FOUND {
+            found.clear();
+        }
+        found.insert(bits, sigmoid);
+        sigmoid
+    }
+
+    /// The spectrum of a color that is no gray, of which this is the mean.
+    fn search(&self, rgb: [f64; 3], gray: f64) -> Sigmoid {
         let toward = |saturation: f64| rgb.map(|x| gray + saturation * (x - gray));
         let solved = |saturation: f64| {
             let (coefficients, residual) = self.solve(toward(saturation), gray);
@@ -144,4 +187,21 @@ fn gauss_newton_step(slopes: &Matrix, residual: [f64; 3], damping: f64) -> [f64;
 fn inverse_sigmoid(value: f64) -> f64 {
     let y = 2.0 * value - 1.0;
     y / (1.0 - y * y).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_color_is_looked_for_once_whoever_asks() {
+        let (space, rgb) = (ColorSpace::Aces2065, [0.9, 0.1, 0.02]);
+        let found = Upsampler::new(space).fit(rgb);
+        // What would not be found, if it were looked for again.
+        let planted = Sigmoid { saturation: 0.5 * found.saturation, ..found };
+        Upsampler::new(space).found().insert(rgb.map(f64::to_bits), planted);
+        assert_eq!(Upsampler::new(space).fit(rgb), planted);
+        Upsampler::new(space).found().clear();
+        assert_eq!(Upsampler::new(space).fit(rgb), found);
+    }
 }

@@ -1,6 +1,7 @@
 //! Clear bodies and flat lamps that share a part of their surface with something else.
 
 use super::context::Context;
+use super::near_pairs::{NEAR, near_pairs};
 use super::place::Placed;
 use crate::material::Material;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler};
@@ -12,10 +13,6 @@ use crate::shape::Shape;
 const RAYS: u32 = 256;
 /// Surfaces of a body that one ray is followed through.
 const DEEP: usize = 4;
-/// Surfaces nearer than this part of a body's size lie in one place: far above rounding, far below anything meant.
-const NEAR: f64 = 1e-9;
-/// Pairs of bodies that are compared at most; a scene with more is not searched further.
-const MOST_PAIRS: usize = 20_000;
 
 /// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp
 /// in another surface nothing may be seen.
@@ -59,56 +56,6 @@ fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
     pairs.sort_unstable();
     pairs.retain(|&(first, second)| share_a_surface(&objects[first], &objects[second]));
     pairs
-}
-
-/// Pairs whose boxes meet, the first one such as counts: of objects in the order in which they begin along the longest
-/// side of the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and
-/// prune).
-fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)> {
-    if !counting.contains(&true) {
-        return Vec::new();
-    }
-    let size = Bounds::around(boxes.iter().flatten().map(Bounds::center));
-    let size = size.max - size.min;
-    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-    let from = |object: usize| boxes[object].map_or(f64::NEG_INFINITY, |of| of.min[axis] - reach(&of));
-    let to = |object: usize| boxes[object].map_or(f64::INFINITY, |of| of.max[axis] + reach(&of));
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&a, &b| from(a).total_cmp(&from(b)));
-    let (mut open, mut pairs) = (Vec::<usize>::new(), Vec::new());
-    for object in order {
-        open.retain(|&other| to(other) >= from(object));
-        for &other in &open {
-            let (low, high) = (object.min(other), object.max(other));
-            // Of a plane there is no box to look around: where both count, the other one is the body.
-            let is_first = counting[low] && (boxes[low].is_some() || !counting[high]);
-            let (first, second) = if is_first { (low, high) } else { (high, low) };
-            if counting[first] && may_touch(boxes[first], boxes[second]) {
-                pairs.push((first, second));
-                if pairs.len() == MOST_PAIRS {
-                    return pairs;
-                }
-            }
-        }
-        open.push(object);
-    }
-    pairs
-}
-
-/// How far apart surfaces of a body and another may lie in one place.
-fn reach(of: &Bounds) -> f64 {
-    (of.max - of.min).max_element() * NEAR
-}
-
-/// Whether a body's box and another's meet; infinite ones have none, and are compared with one another and as what a
-/// body meets.
-fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
-    let (a, b) = match (a, b) {
-        (Some(a), Some(b)) => (a, b),
-        (a, b) => return a.is_some() || b.is_none(),
-    };
-    let reach = reach(&a);
-    (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
 }
 
 fn share_a_surface(body: &Object, other: &Object) -> bool {

@@ -21,6 +21,7 @@ mod light;
 mod material;
 mod measures;
 mod mesh;
+mod near_pairs;
 mod object;
 mod parts;
 mod place;

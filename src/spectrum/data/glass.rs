@@ -1,5 +1,7 @@
 //! Clear materials: glasses of the makers, crystals, gems, liquids, plastics and gases.
 
+use std::sync::LazyLock;
+
 use super::rows::{Row, Rows, fields, has_alias, key_of, names, number, numbers, samples};
 use crate::math::interpolate;
 
@@ -165,6 +167,26 @@ fn common_rows() -> impl Iterator<Item = Row> {
 /// Every glass, in the order of the keys.
 pub fn glasses() -> impl Iterator<Item = Glass> {
     ROWS.all().map(Glass::read)
+}
+
+/// How much a glass bends light, and how far it spreads it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bending {
+    /// The full name of the glass.
+    pub key: &'static str,
+    /// See [`Glass::n_d`].
+    pub n_d: f64,
+    /// See [`Glass::v_d`].
+    pub v_d: Option<f64>,
+}
+
+/// That of every glass, in the order of the keys. A scene may compare thousands of materials with all of them, and to
+/// read these takes 2 ms.
+pub fn bendings() -> &'static [Bending] {
+    static ALL: LazyLock<Vec<Bending>> = LazyLock::new(|| {
+        glasses().map(|glass| Bending { key: glass.key, n_d: glass.n_d(), v_d: glass.v_d() }).collect()
+    });
+    &ALL
 }
 
 /// The keys of all glasses.

@@ -8,5 +8,7 @@ mod rows;
 mod tests;
 
 pub use color::{Grid, color_matching, illuminant, illuminants, reflectance, reflectances};
-pub use glass::{Formula, GLASS_MAKERS, Glass, bare, glass, glass_makers, glass_names, glasses, known_as};
+pub use glass::{
+    Bending, Formula, GLASS_MAKERS, Glass, bare, bendings, glass, glass_makers, glass_names, glasses, known_as,
+};
 pub use metal::{Metal, metal, metal_names, metals};

@@ -1,0 +1,196 @@
+//! Objects whose boxes meet.
+
+use crate::math::Bounds;
+
+/// Surfaces nearer than this part of a body's size lie in one place: far above rounding, far below anything meant.
+pub(super) const NEAR: f64 = 1e-9;
+/// Most pairs that are found; of a scene with more, the others are not.
+const MOST_PAIRS: usize = 20_000;
+/// Cells of the grid that an object covers at most; a larger one is compared with each.
+const MOST_CELLS: usize = 16;
+
+/// Pairs whose boxes meet, the first one such as counts: of objects in the order in which they begin along the longest
+/// side of the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and
+/// prune), as far as they cover a cell of a grid across that side that it covers too.
+pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)> {
+    if !counting.contains(&true) {
+        return Vec::new();
+    }
+    let grid = Grid::new(boxes);
+    let from = |object: usize| boxes[object].map_or(f64::NEG_INFINITY, |of| of.min[grid.along] - reach(&of));
+    let to = |object: usize| boxes[object].map_or(f64::INFINITY, |of| of.max[grid.along] + reach(&of));
+    let mut order: Vec<usize> = (0..boxes.len()).collect();
+    order.sort_by(|&a, &b| from(a).total_cmp(&from(b)));
+    // Most objects of most scenes do not count, and are compared only with the few that do.
+    let (mut open, mut open_that_count) = (Open::new(&grid), Open::new(&grid));
+    let (mut pairs, mut near) = (Vec::new(), Vec::new());
+    for (place, &object) in order.iter().enumerate() {
+        let others = if counting[object] { &mut open } else { &mut open_that_count };
+        others.find(&grid, boxes[object], |other| to(order[other]) >= from(object), &mut near);
+        for &other in &near {
+            if let Some(pair) = pair(boxes, counting, object, order[other]) {
+                pairs.push(pair);
+                if pairs.len() == MOST_PAIRS {
+                    return pairs;
+                }
+            }
+        }
+        open.add(&grid, boxes[object], place);
+        if counting[object] {
+            open_that_count.add(&grid, boxes[object], place);
+        }
+    }
+    pairs
+}
+
+/// Two objects, the first one such as counts, if there is one and their boxes meet.
+fn pair(boxes: &[Option<Bounds>], counting: &[bool], one: usize, other: usize) -> Option<(usize, usize)> {
+    let (low, high) = (one.min(other), one.max(other));
+    // Of a plane there is no box to look around: where both count, the other one is the body.
+    let is_first = counting[low] && (boxes[low].is_some() || !counting[high]);
+    let (first, second) = if is_first { (low, high) } else { (high, low) };
+    (counting[first] && may_touch(boxes[first], boxes[second])).then_some((first, second))
+}
+
+/// How far apart surfaces of a body and another may lie in one place.
+fn reach(of: &Bounds) -> f64 {
+    (of.max - of.min).max_element() * NEAR
+}
+
+/// Whether a body's box and another's meet; infinite ones have none, and are compared with one another and as what a
+/// body meets.
+fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
+    let (a, b) = match (a, b) {
+        (Some(a), Some(b)) => (a, b),
+        (a, b) => return a.is_some() || b.is_none(),
+    };
+    let reach = reach(&a);
+    (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
+}
+
+/// Cells across the longest side of a scene: as many each way as there would be along it of a cell for each object.
+struct Grid {
+    along: usize,
+    across: [usize; 2],
+    /// Where it begins, and how many cells there are in a length.
+    from: [f64; 2],
+    per_length: [f64; 2],
+    cells: usize,
+}
+
+impl Grid {
+    fn new(boxes: &[Option<Bounds>]) -> Self {
+        let around = Bounds::around(boxes.iter().flatten().map(Bounds::center));
+        let size = around.max - around.min;
+        let along = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+        let across = [(along + 1) % 3, (along + 2) % 3];
+        let cells = (boxes.len() as f64).cbrt().ceil();
+        let per_length = across.map(|axis| if size[axis] > 0.0 { cells / size[axis] } else { 0.0 });
+        Self { along, across, from: across.map(|axis| around.min[axis]), per_length, cells: cells as usize }
+    }
+
+    /// The first and the last cell that an object covers each way.
+    fn covered(&self, of: &Bounds) -> [[usize; 2]; 2] {
+        let (reach, last) = (reach(of), self.cells.saturating_sub(1));
+        [0, 1].map(|way| {
+            let axis = self.across[way];
+            // Numbers beyond the ends, and those that are none, go into the cells there.
+            let cell = |at: f64| (((at - self.from[way]) * self.per_length[way]) as usize).min(last);
+            [cell(of.min[axis] - reach), cell(of.max[axis] + reach)]
+        })
+    }
+
+    /// The numbers of the cells that an object covers.
+    fn cells(&self, of: &Bounds) -> impl Iterator<Item = usize> {
+        let (cells, [[left, right], [low, high]]) = (self.cells, self.covered(of));
+        (low..=high).flat_map(move |row| (left..=right).map(move |column| row * cells + column))
+    }
+
+    /// Whether an object covers few cells.
+    fn is_small(&self, of: &Bounds) -> bool {
+        self.covered(of).map(|[first, last]| last - first + 1).iter().product::<usize>() <= MOST_CELLS
+    }
+}
+
+/// Objects that have begun, by their places in the order, and as far as it is known have not ended.
+struct Open {
+    by_cell: Vec<Vec<usize>>,
+    /// Those that cover many cells, or have no box.
+    large: Vec<usize>,
+}
+
+impl Open {
+    fn new(grid: &Grid) -> Self {
+        Self { by_cell: vec![Vec::new(); grid.cells * grid.cells], large: Vec::new() }
+    }
+
+    fn add(&mut self, grid: &Grid, of: Option<Bounds>, place: usize) {
+        match of.filter(|of| grid.is_small(of)) {
+            Some(of) => grid.cells(&of).for_each(|cell| self.by_cell[cell].push(place)),
+            None => self.large.push(place),
+        }
+    }
+
+    /// Those that may meet an object, in their order, without those that have ended.
+    fn find(&mut self, grid: &Grid, of: Option<Bounds>, is_open: impl Fn(usize) -> bool, found: &mut Vec<usize>) {
+        found.clear();
+        let mut take = |places: &mut Vec<usize>| {
+            places.retain(|&place| is_open(place));
+            found.extend_from_slice(places);
+        };
+        take(&mut self.large);
+        match of {
+            Some(of) => grid.cells(&of).for_each(|cell| take(&mut self.by_cell[cell])),
+            None => self.by_cell.iter_mut().for_each(take),
+        }
+        found.sort_unstable();
+        found.dedup();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{BranchKey, DVec3, Sampler};
+
+    fn around(center: DVec3, half: DVec3) -> Option<Bounds> {
+        Some(Bounds { min: center - half, max: center + half })
+    }
+
+    #[test]
+    fn all_pairs_are_found_whatever_the_sizes() {
+        for sides in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(0.2, 5.0, 1.0), DVec3::new(0.0, 0.0, 3.0)] {
+            let random = |number, of| DVec3::from_slice(&Sampler::new(0, [0, of], number).four(BranchKey::CAMERA, 0));
+            // Small ones, large ones, and some that have no end.
+            let size = |number: u32| [0.02, 0.05, 0.5][number as usize % 3];
+            let boxed = |number: u32| {
+                (number % 40 != 7).then(|| around(random(number, 0) * sides, random(number, 1) * size(number)))
+            };
+            let boxes: Vec<Option<Bounds>> = (0..300).map(|number| boxed(number).flatten()).collect();
+            let counting: Vec<bool> = (0..300).map(|number| number % 4 == 0).collect();
+            let all = (0..300).flat_map(|low| (low + 1..300).map(move |high| [low, high]));
+            let mut wanted: Vec<_> = all.filter_map(|[low, high]| pair(&boxes, &counting, low, high)).collect();
+            wanted.sort_unstable();
+            let mut found = near_pairs(&boxes, &counting);
+            found.sort_unstable();
+            assert_eq!(found, wanted);
+        }
+    }
+
+    /// A million beads were each compared with ten thousand others.
+    #[test]
+    fn beads_in_a_lattice_are_compared_with_their_neighbors_alone() {
+        let places =
+            (0..8000).map(|number| DVec3::new((number / 400).into(), (number / 20 % 20).into(), (number % 20).into()));
+        let boxes: Vec<Option<Bounds>> = places.map(|place| around(place, DVec3::splat(0.4))).collect();
+        let grid = Grid::new(&boxes);
+        let (mut open, mut near, mut compared) = (Open::new(&grid), Vec::new(), 0);
+        for (place, of) in boxes.iter().enumerate() {
+            let from = of.map_or(0.0, |of| of.min[grid.along]);
+            open.find(&grid, *of, |other| boxes[other].is_some_and(|other| other.max[grid.along] >= from), &mut near);
+            compared += near.len();
+            open.add(&grid, *of, place);
+        }
+        assert!(compared < 10 * boxes.len(), "{compared} comparisons");
+    }
+}
