@@ -6,7 +6,8 @@ use super::words::as_long;
 use crate::light::Light;
 use crate::spectrum::Table;
 use crate::trace::{
-    BrightPlaces, PhotonWorth, PilotNoise, RoomLight, World, pilot_noise, room_light, with_light_vertices,
+    BrightPlaces, PhotonWorth, PilotNoise, RoomLight, World, light_paths_reach, pilot_noise, room_light,
+    with_light_vertices,
 };
 
 /// Fewest camera samples of an image with light vertices: of a smaller one there would be so few light paths that their
@@ -74,7 +75,8 @@ impl Way<'_> {
         {
             return None;
         }
-        self.improved(with_light_vertices(&self.world)?, |world, without| {
+        let with_vertices = with_light_vertices(&self.world).filter(light_paths_reach)?;
+        self.improved(with_vertices, |world, without| {
             let light = carried(world);
             format!("{light} is looked for at light vertices; without them, {without}")
         })

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use abbe::math::DVec3;
+use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness, Sunlit, World};
 
 use super::{LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, room, screen, smooth, walls};
-use crate::support::scenes::{body, environment, quad, view};
+use crate::support::scenes::{body, environment, quad, scene, view};
 
 const SUN: &str = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = { rgb = [15, 13, 10] } }\n";
 
@@ -252,5 +253,19 @@ fn what_a_sunlit_disc_sends_has_its_closed_form() {
         let expected = 0.5 / PI * 0.6 * irradiance * factor;
         let films = films(&text, &|_| (), Some(&looking), 10 * SEEDS);
         assert_shows(&format!("radius {radius}, height {height}"), &films, expected, [1e-4, 0.02]);
+    }
+}
+
+/// Hardly any path from a lamp that is as far away as a sun lands in the room. Without vertices of them a pilot had no
+/// noise, and a quarter of the light was lost.
+#[test]
+fn a_lamp_far_away_has_no_light_vertices() {
+    for (distance, expected) in [(3.0, true), (1e4, false)] {
+        let toward = DVec3::new(1.0, 0.7, 0.1);
+        let (center, radius) = (toward * distance, 0.1 * distance);
+        let shape = format!("sphere = {{ center = [{}, {}, {}], radius = {radius} }}", center.x, center.y, center.z);
+        let text = open("", &[body("lamp", "emissive = { radiance = 300 }", &[&shape]), cubes()]);
+        let decided = plan(&scene(&text.replace("width = 12\nheight = 12", "width = 384\nheight = 384")));
+        assert_eq!(decided.method.light_vertices, expected, "at {distance}: {:?}", decided.because);
     }
 }

@@ -13,7 +13,7 @@ use super::follow::{Landing, Photon, Surfaces, follow_photon};
 use super::light_vertices::{LightVertex, LightVertices, holds_vertices};
 use super::usefulness::{Place, places, usefulness};
 use crate::film::Layer;
-use crate::light::{Light, LightId};
+use crate::light::{LeSample, Light, LightId};
 use crate::material::Material;
 use crate::math::{BranchKey, DVec3, Distribution, Sampler, seed_of};
 use crate::shape::SurfacePoint;
@@ -51,6 +51,11 @@ const PHOTON_SEED: u64 = 0x6169_6d65;
 const START: u32 = 0;
 const LIGHT: u32 = 1;
 
+/// Least paths of a pilot that land near what the camera sees: of a largest set, as many as a smallest one has. Near is
+/// so many median distances from its middle.
+const LANDING: usize = (OF_A_PILOT * FEWEST / MOST) as usize;
+const NEARBY: f64 = 8.0;
+
 /// How much fainter than the brightest one a lamp may be that has a layer of its own. One that is ten times fainter had
 /// nine times the noise in means over 32 x 32 pixels.
 const FAINT: f64 = 0.25;
@@ -64,6 +69,11 @@ pub fn can_be_followed(world: &World) -> bool {
     !world.method.basis.draws_wavelengths()
         && matches!(world.method.transport, Transport::Random { .. })
         && objects.into_iter().all(|object| !(world.ends_light_paths(object) && world.is_see_through(object)))
+}
+
+/// Whether the light paths that a world's method asks for land where their vertices tell of the light that is seen.
+pub fn light_paths_reach(world: &World) -> bool {
+    LightPaths::new(world, world.method.seed).is_some_and(|paths| paths.reach_what_is_seen())
 }
 
 /// A few vertices of the light paths that a world's method asks for, for a pilot; none where no light can be followed.
@@ -114,6 +124,34 @@ impl<'a> LightPaths<'a> {
         started().fold(1.0, f64::min) < FAINT * started().fold(0.0, f64::max)
     }
 
+    /// Whether enough of some paths land near what the camera sees. From a lamp that is far away, even the brightest,
+    /// hardly any do, and a pilot without them would show no noise: its light would be lost.
+    fn reach_what_is_seen(&self) -> bool {
+        let scene = &self.world.scene;
+        let (center, distance) = middle(&self.places.iter().map(Place::position).collect::<Vec<_>>());
+        let near = if distance > 0.0 { NEARBY * distance } else { f64::INFINITY };
+        let lands = |number: &u32| {
+            let sampler = self.sampler(PILOT, *number);
+            let Some((_, LeSample { ray, .. })) = self.start(&sampler) else { return false };
+            let hit = scene.nearest(&ray, f64::INFINITY, &|object| !self.world.is_see_through(object));
+            hit.is_some_and(|hit| (ray.at(hit.crossing.t) - center).length() <= near)
+        };
+        (0..OF_A_PILOT as u32).filter(lands).nth(LANDING - 1).is_some()
+    }
+
+    /// The random numbers of a path of a set.
+    fn sampler(&self, set: u32, number: u32) -> Sampler {
+        Sampler::new(self.seed ^ SEED, [set, 0], number)
+    }
+
+    /// The light of a path and how the path leaves it, if it does.
+    fn start(&self, sampler: &Sampler) -> Option<(LightId, LeSample)> {
+        let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
+        let (light, u) = (drawn.index, sampler.four(BranchKey::CAMERA, START));
+        let emitted = self.world.path_starts[light].emit(&self.world.scene, &self.world.scene.lights[light], u)?;
+        Some((light, LeSample { factor: emitted.factor / drawn.probability, ..emitted }))
+    }
+
     /// The vertices for some samples of each pixel, at most `SHARED`.
     pub fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
         let all = self.world.scene.film.whole().pixels() * samples.len() as u64;
@@ -149,11 +187,8 @@ impl<'a> LightPaths<'a> {
     /// they are of would be biased.
     fn scale<const N: usize, P: Polarization<N>>(&self) -> (DVec3, f64) {
         let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
-        // Medians: some vertices may lie far outside of all that is seen.
-        let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
-        let center = DVec3::new(middle(0), middle(1), middle(2));
-        let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
-        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
+        let (center, distance) = middle(&vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>());
+        let near = if vertices.is_empty() { 1.0 } else { (NEAR * distance).max(f64::MIN_POSITIVE) };
         (center, near)
     }
 
@@ -180,13 +215,8 @@ impl<'a> LightPaths<'a> {
         let over = if self.finds_all || !world.has_map() { Surfaces::All } else { Surfaces::AllButPhotons };
         let mut vertices = Vec::new();
         for number in paths {
-            let sampler = Sampler::new(self.seed ^ SEED, [set, 0], number as u32);
-            let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
-            let light = drawn.index;
-            let u = sampler.four(BranchKey::CAMERA, START);
-            let emitted = world.path_starts[light].emit(&world.scene, &world.scene.lights[light], u);
-            let Some(mut emitted) = emitted else { continue };
-            emitted.factor /= drawn.probability;
+            let sampler = self.sampler(set, number as u32);
+            let Some((light, emitted)) = self.start(&sampler) else { continue };
             let photon = Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over, early: true };
             follow_photon(&mut walker, &photon, &mut |_, landing| vertices.extend(kept(world, landing, false)));
         }
@@ -204,6 +234,13 @@ impl<'a> LightPaths<'a> {
         let shares = usefulness(world, &self.places, &positions, &powers);
         powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
     }
+}
+
+/// The middle of some points, and the median of their distances from it: some may lie far outside of all others.
+fn middle(points: &[DVec3]) -> (DVec3, f64) {
+    let middle = |axis: usize| median(points.iter().map(|point| point[axis]).collect());
+    let center = DVec3::new(middle(0), middle(1), middle(2));
+    (center, median(points.iter().map(|point| (*point - center).length()).collect()))
 }
 
 /// The median of some numbers; 0 of none.

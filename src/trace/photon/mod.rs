@@ -14,7 +14,7 @@ mod usefulness;
 
 pub use batch::{Batch, batches, batches_of_pass, send};
 pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
-pub use light_paths::{LightPaths, SHARED, can_be_followed, few_vertices};
+pub use light_paths::{LightPaths, SHARED, can_be_followed, few_vertices, light_paths_reach};
 pub use light_vertices::{LightVertex, LightVertices, holds_vertices};
 pub use pass_light::PassLight;
 pub use photon_map::{PhotonMap, photons, send_kept};

@@ -23,6 +23,12 @@ pub struct Place {
     primitive: Primitive,
 }
 
+impl Place {
+    pub fn position(&self) -> DVec3 {
+        self.point.position
+    }
+}
+
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
 /// each other are neighbors, and each has the power of what leaves it. The whole image counts, also where only a part
 /// of it is made.
