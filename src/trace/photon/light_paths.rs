@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use super::batch::{PHOTONS, batches_of_pass, send};
 use super::follow::{Landing, Photon, Surfaces, follow_photon};
 use super::light_vertices::{LightVertex, LightVertices, holds_vertices};
-use super::usefulness::{Place, places, usefulness};
+use super::usefulness::{Place, is_seen, places, usefulness};
 use crate::film::Layer;
 use crate::light::{LeSample, Light, LightId};
 use crate::material::Material;
@@ -22,6 +22,7 @@ use crate::trace::parallel::in_parallel;
 use crate::trace::path_start::PathStart;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{PathKind, Polarization, Polarized, Walker};
+use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
 
 /// Samples of each pixel that share light paths.
@@ -51,10 +52,8 @@ const PHOTON_SEED: u64 = 0x6169_6d65;
 const START: u32 = 0;
 const LIGHT: u32 = 1;
 
-/// Least paths of a pilot that land near what the camera sees: of a largest set, as many as a smallest one has. Near is
-/// so many median distances from its middle.
-const LANDING: usize = (OF_A_PILOT * FEWEST / MOST) as usize;
-const NEARBY: f64 = 8.0;
+/// Fewest paths of a pilot that reach what is seen: of a largest set, as many as a smallest one has.
+const REACHING: usize = (OF_A_PILOT * FEWEST / MOST) as usize;
 
 /// How much fainter than the brightest one a lamp may be that has a layer of its own. One that is ten times fainter had
 /// nine times the noise in means over 32 x 32 pixels.
@@ -71,9 +70,12 @@ pub fn can_be_followed(world: &World) -> bool {
         && objects.into_iter().all(|object| !(world.ends_light_paths(object) && world.is_see_through(object)))
 }
 
-/// Whether the light paths that a world's method asks for land where their vertices tell of the light that is seen.
+/// Whether enough of the light paths that a world's method asks for reach what the camera sees. From a lamp that is far
+/// away or behind a small hole hardly any do: what they bring would be bright or dark all over an image, and a pilot
+/// without any would show no noise.
 pub fn light_paths_reach(world: &World) -> bool {
-    LightPaths::new(world, world.method.seed).is_some_and(|paths| paths.reach_what_is_seen())
+    let paths = LightPaths::new(world, world.method.seed);
+    paths.is_some_and(|paths| in_lanes!(&world.method.basis, N => paths.reaching::<N>()) >= REACHING)
 }
 
 /// A few vertices of the light paths that a world's method asks for, for a pilot; none where no light can be followed.
@@ -124,19 +126,15 @@ impl<'a> LightPaths<'a> {
         started().fold(1.0, f64::min) < FAINT * started().fold(0.0, f64::max)
     }
 
-    /// Whether enough of some paths land near what the camera sees. From a lamp that is far away, even the brightest,
-    /// hardly any do, and a pilot without them would show no noise: its light would be lost.
-    fn reach_what_is_seen(&self) -> bool {
-        let scene = &self.world.scene;
-        let (center, distance) = middle(&self.places.iter().map(Place::position).collect::<Vec<_>>());
-        let near = if distance > 0.0 { NEARBY * distance } else { f64::INFINITY };
-        let lands = |number: &u32| {
-            let sampler = self.sampler(PILOT, *number);
-            let Some((_, LeSample { ray, .. })) = self.start(&sampler) else { return false };
-            let hit = scene.nearest(&ray, f64::INFINITY, &|object| !self.world.is_see_through(object));
-            hit.is_some_and(|hit| (ray.at(hit.crossing.t) - center).length() <= near)
+    /// How many paths of a pilot leave a vertex that is seen from what the camera sees.
+    fn reaching<const N: usize>(&self) -> usize {
+        let reaches = |path: usize| {
+            let number = path as u64;
+            let (vertices, _) = self.follow::<N, Polarized>(PILOT, number..number + 1);
+            let mut keyed = (0..).zip(&vertices);
+            keyed.any(|(key, vertex)| is_seen(self.world, &self.places, vertex.position, [path as u32, key]))
         };
-        (0..OF_A_PILOT as u32).filter(lands).nth(LANDING - 1).is_some()
+        in_parallel(OF_A_PILOT as usize, &reaches).into_iter().filter(|&reaches| reaches).count()
     }
 
     /// The random numbers of a path of a set.
@@ -187,8 +185,11 @@ impl<'a> LightPaths<'a> {
     /// they are of would be biased.
     fn scale<const N: usize, P: Polarization<N>>(&self) -> (DVec3, f64) {
         let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
-        let (center, distance) = middle(&vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>());
-        let near = if vertices.is_empty() { 1.0 } else { (NEAR * distance).max(f64::MIN_POSITIVE) };
+        // Medians: some vertices may lie far outside of all that is seen.
+        let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
+        let center = DVec3::new(middle(0), middle(1), middle(2));
+        let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
+        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
         (center, near)
     }
 
@@ -234,13 +235,6 @@ impl<'a> LightPaths<'a> {
         let shares = usefulness(world, &self.places, &positions, &powers);
         powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
     }
-}
-
-/// The middle of some points, and the median of their distances from it: some may lie far outside of all others.
-fn middle(points: &[DVec3]) -> (DVec3, f64) {
-    let middle = |axis: usize| median(points.iter().map(|point| point[axis]).collect());
-    let center = DVec3::new(middle(0), middle(1), middle(2));
-    (center, median(points.iter().map(|point| (*point - center).length()).collect()))
 }
 
 /// The median of some numbers; 0 of none.

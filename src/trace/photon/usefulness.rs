@@ -23,12 +23,6 @@ pub struct Place {
     primitive: Primitive,
 }
 
-impl Place {
-    pub fn position(&self) -> DVec3 {
-        self.point.position
-    }
-}
-
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
 /// each other are neighbors, and each has the power of what leaves it. The whole image counts, also where only a part
 /// of it is made.
@@ -56,6 +50,14 @@ pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3], powers: &
     // Above 0: what is tried never is left out.
     let fewer = if of_seen > 0.0 { (UNSEEN * of_seen / unseen).clamp(f64::from(f32::EPSILON), 1.0) } else { 1.0 };
     seen.into_iter().map(|seen| (share(seen) * if seen > 0 { 1.0 } else { fewer }) as f32).collect()
+}
+
+/// Whether one of a few looks from places that the camera sees sees a vertex. `key` sets their random numbers apart.
+pub fn is_seen(world: &World, places: &[Place], vertex: DVec3, key: [u32; 2]) -> bool {
+    let last_occluder = Cell::new(None);
+    let looks = Sampler::new(world.method.seed ^ SEED, key, LOOKS).four(BranchKey::CAMERA, 0);
+    let place = |u: f64| &places[((u * places.len() as f64) as usize).min(places.len() - 1)];
+    places.is_empty() || looks.iter().any(|&u| sees(world, place(u), vertex, &last_occluder))
 }
 
 /// Some such places, all over the image.
