@@ -83,9 +83,15 @@ struct Answer {
     shares: StackShares,
 }
 
+/// The last two answers for a lane: a coat is crossed in two directions, of which one stays the same.
+struct Answers {
+    kept: [Option<Answer>; 2],
+    newest: usize,
+}
+
 thread_local! {
-    /// The last answer for each lane.
-    static LAST: RefCell<[Option<Answer>; MAX_LANES]> = const { RefCell::new([const { None }; MAX_LANES]) };
+    static LAST: RefCell<[Answers; MAX_LANES]> =
+        const { RefCell::new([const { Answers { kept: [const { None }; 2], newest: 0 } }; MAX_LANES]) };
 }
 
 /// What a film makes of light from many directions, large enough not to be copied.
@@ -143,14 +149,21 @@ impl<'a, const N: usize> MetCoating<'a, N> {
     /// A surface asks up to four times, for what goes straight on, what is mirrored and how each is polarized.
     pub(super) fn shares(&self, lane: usize, n1: f64, n2: Complex, q1: f64) -> StackShares {
         let boundary = [n1, n2.re, n2.im, q1];
-        LAST.with_borrow_mut(|last| match &mut last[lane] {
-            Some(last) if last.boundary == boundary && last.stack.is(self.arrival.wave(lane), self.layers(lane)) => {
-                last.shares
+        LAST.with_borrow_mut(|last| {
+            let Answers { kept, newest } = &mut last[lane];
+            let is_it = |answer: &&Answer| {
+                answer.boundary == boundary && answer.stack.is(self.arrival.wave(lane), self.layers(lane))
+            };
+            let known = |place: usize| Some((place, kept[place].as_ref().filter(is_it)?.shares));
+            if let Some((place, shares)) = known(0).or_else(|| known(1)) {
+                *newest = place;
+                return shares;
             }
-            last => {
-                let stack = self.stack(lane);
-                last.insert(Answer { boundary, shares: stack.shares(n1, n2, q1), stack }).shares
-            }
+            let stack = self.stack(lane);
+            let shares = stack.shares(n1, n2, q1);
+            *newest = 1 - *newest;
+            kept[*newest] = Some(Answer { boundary, stack, shares });
+            shares
         })
     }
 

@@ -177,7 +177,7 @@ impl Plastic<Table> {
                 return T::default();
             }
             let indices = [arrival.incident_of(i), index[i]];
-            let film = met.as_ref().map(|met| PlasticFilm::new(met, i, indices));
+            let film = met.as_ref().map(|met| PlasticFilm::new(met, i, indices, blocked.is_some()));
             let bare = last.of(indices, |indices| self.coat.crossing(indices, cosines));
             let crossing = film.as_ref().map_or(bare, |film| film.crossing(&bare, blocked.as_ref(), cosines));
             of_lane(&CoatLane { crossing, r: f64::from(base[i]), indices, film })

@@ -13,9 +13,9 @@ pub(super) struct PlasticFilm<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> PlasticFilm<'a, N> {
-    pub(super) fn new(met: &'a MetCoating<'a, N>, lane: usize, indices: [f64; 2]) -> Self {
+    pub(super) fn new(met: &'a MetCoating<'a, N>, lane: usize, indices: [f64; 2], is_rough: bool) -> Self {
         let [n1, n2] = indices;
-        let averages = met.averages(lane, false, [n1, n2, 0.0, 0.0], || averages(&met.stack(lane), indices));
+        let averages = met.averages(lane, false, [n1, n2, 0.0, 0.0], || averages(&met.stack(lane), indices, is_rough));
         Self { met, lane, indices, averages }
     }
 
@@ -35,14 +35,19 @@ impl<'a, const N: usize> PlasticFilm<'a, N> {
     }
 }
 
-fn averages(stack: &Stack, [n1, n2]: [f64; 2]) -> FilmAverages {
+/// Of a smooth coat only the means are asked for.
+fn averages(stack: &Stack, [n1, n2]: [f64; 2], is_rough: bool) -> FilmAverages {
     let film = |cos: f64| stack.shares(n1, n2.into(), n1 * cos).means();
     let bare = |cos: f64| {
         let crosses = Interface::new(n1, n2, cos).transmittance;
         [1.0 - crosses, crosses]
     };
     // In a denser medium layers may reflect totally, from other angles on than the coat.
-    let averages = FilmAverages::new(stack.is_slow() && n1 <= n2, [n1, n2], n1.max(n2), film, bare);
+    let is_slow = stack.is_slow() && n1 <= n2;
+    let averages = match is_rough {
+        true => FilmAverages::new(is_slow, [n1, n2], n1.max(n2), film, bare),
+        false => FilmAverages::of_mean(mean(is_slow, n2 / n1, film)),
+    };
     if stack.layers().iter().all(|layer| layer.index.im == 0.0) {
         return averages;
     }
