@@ -9,11 +9,8 @@ use crate::trace::bright::MOST;
 use crate::trace::camera::Bounce;
 use crate::trace::parallel::in_parallel;
 
-/// Rays of a piece of work: first one piece looks for ways out of the room, then twice as many each time. Of an image
-/// of few camera samples a piece has fewer, one for so many, so that the search takes less time than the image.
-const RAYS: f64 = (1 << 14) as f64;
-const FEWEST: f64 = 1024.0;
-const SAMPLES_OF_A_RAY: f64 = 16.0;
+/// Rays of a piece of work: first one piece looks for ways out of the room, then twice as many each time.
+const RAYS: u32 = 1 << 14;
 /// Ways out that tell where to look closely.
 const ENOUGH: usize = 64;
 /// Rounds in which rays do: each begins at what the one before has found, so that slits are found from end to end.
@@ -145,7 +142,6 @@ fn by_cosine(bounce: &Bounce, _: u32, [a, b, ..]: [f64; 4]) -> DVec3 {
 
 /// What is kept of the rays of some pieces of work.
 fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<DVec3> {
-    let rays = (room.world.samples_of_the_format() / SAMPLES_OF_A_RAY).clamp(FEWEST, RAYS) as u32;
     let of_piece = |piece: usize| -> Vec<DVec3> {
         let kept = |number: u32| {
             let key = [(pieces.start + piece) as u32, 0];
@@ -155,7 +151,7 @@ fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<
             let direction = toward(bounce, number, u).try_normalize()?;
             if direction.dot(bounce.normal) > 0.0 { keep(bounce, direction, &sampler) } else { None }
         };
-        (0..rays).filter_map(kept).collect()
+        (0..RAYS).filter_map(kept).collect()
     };
     in_parallel(pieces.len(), &of_piece).concat()
 }
