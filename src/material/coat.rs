@@ -44,8 +44,8 @@ pub(super) struct Crossing {
     pub(super) to: f64,
     /// Share of the light from all around that gets in.
     pub(super) around: f64,
-    /// Of the light that a rough coat's facets would reflect more than once if they were perfect mirrors, the share that
-    /// is reflected.
+    /// Of the light that a rough coat's facets would reflect more than once if they were perfect mirrors, the share
+    /// that is reflected.
     pub(super) again: f64,
     /// Square of the relative index.
     squared: f64,

@@ -5,7 +5,8 @@ use std::array;
 use super::albedo_table::AlbedoTable;
 use super::film_averages::{HATS, HatWeights, hats};
 
-/// For each hat, two shares of the light from a cosine that meets facets at that hat's cosine, as a table over the cosine.
+/// For each hat, two shares of the light from a cosine that meets facets at that hat's cosine: a table over the
+/// former.
 #[derive(Clone, Debug)]
 pub(super) struct FilmKernel {
     /// Tells where a cosine lies among the rows.
