@@ -119,8 +119,13 @@ impl AlbedoTable {
 
 /// A table, linear between its places.
 fn between(table: &[f64], place: f64) -> f64 {
-    let steps = table.len() - 1;
+    let (step, part) = step_at(place, table.len() - 1);
+    table[step] + part * (table[step + 1] - table[step])
+}
+
+/// The step in which a place of 0..1 lies, and the part of it that lies below.
+pub(super) fn step_at(place: f64, steps: usize) -> (usize, f64) {
     let place = place * steps as f64;
     let step = (place as usize).min(steps - 1);
-    table[step] + (place - step as f64) * (table[step + 1] - table[step])
+    (step, place - step as f64)
 }

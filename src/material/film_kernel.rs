@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::albedo_table::AlbedoTable;
+use super::albedo_table::{AlbedoTable, step_at};
 use super::film_averages::{HATS, HatWeights, hats};
 
 /// For each hat, two shares of the light from a cosine that meets facets at that hat's cosine: a table over the
@@ -46,10 +46,8 @@ impl FilmKernel {
 
     /// What is blocked from a cosine, linear between the rows.
     pub(super) fn at(&self, cos: f64) -> HatWeights {
-        let steps = self.rows.len() - 1;
-        let place = self.grid.place(cos) * steps as f64;
-        let below = (place as usize).min(steps - 1);
-        let (part, [low, high]) = (place - below as f64, [&self.rows[below], &self.rows[below + 1]]);
+        let (below, part) = step_at(self.grid.place(cos), self.rows.len() - 1);
+        let [low, high] = [&self.rows[below], &self.rows[below + 1]];
         array::from_fn(|hat| array::from_fn(|way| low[hat][way] + part * (high[hat][way] - low[hat][way])))
     }
 

@@ -35,9 +35,7 @@ pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3], powers: &
         let seen = (0..LOOKS).filter(|&look| {
             let [u, v, ..] =
                 Sampler::new(world.method.seed ^ SEED, [number as u32, 0], look).four(BranchKey::CAMERA, 0);
-            let chosen = |u: f64, count: usize| ((u * count as f64) as usize).min(count - 1);
-            let (vertex, place) = (group[chosen(u, group.len())], &places[chosen(v, places.len())]);
-            sees(world, place, vertex, &last_occluder)
+            sees(world, chosen(places, v), *chosen(group, u), &last_occluder)
         });
         std::iter::repeat_n(seen.count(), group.len())
     };
@@ -56,8 +54,12 @@ pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3], powers: &
 pub fn is_seen(world: &World, places: &[Place], vertex: DVec3, key: [u32; 2]) -> bool {
     let last_occluder = Cell::new(None);
     let looks = Sampler::new(world.method.seed ^ SEED, key, LOOKS).four(BranchKey::CAMERA, 0);
-    let place = |u: f64| &places[((u * places.len() as f64) as usize).min(places.len() - 1)];
-    places.is_empty() || looks.iter().any(|&u| sees(world, place(u), vertex, &last_occluder))
+    places.is_empty() || looks.iter().any(|&u| sees(world, chosen(places, u), vertex, &last_occluder))
+}
+
+/// One of some, each as likely, for a random number.
+fn chosen<T>(some: &[T], u: f64) -> &T {
+    &some[((u * some.len() as f64) as usize).min(some.len() - 1)]
 }
 
 /// Some such places, all over the image.
