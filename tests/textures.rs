@@ -79,6 +79,10 @@ fn a_film_is_as_thick_as_its_image_says() {
         "conductor = { metal = \"Ti\", coating = [{ index = 2.4, thickness_nm = THICKNESS }] }",
         "dielectric = { index = 1.5, coating = [{ index = 2.1, thickness_nm = THICKNESS }] }",
         "plastic = { reflectance = 0.2, coating = [{ index = 2.1, thickness_nm = THICKNESS }] }",
+        "conductor = { metal = \"Ti\", roughness = 0.4, coating = [{ index = 2.4, thickness_nm = THICKNESS }] }",
+        "dielectric = { index = 1.5, roughness = 0.4, coating = [{ index = 2.1, thickness_nm = THICKNESS }] }",
+        "plastic = { reflectance = 0.8, roughness = 0.4, coating = [{ index = 2.1, k = 0.03, thickness_nm = THICKNESS }, \
+         { index = 1.38, thickness_nm = 90 }] }",
     ];
     for material in materials {
         let of = |x: f64, thickness: &str| {

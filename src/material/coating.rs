@@ -3,6 +3,7 @@ use std::ops::Deref;
 
 use super::Arrival;
 use super::film_averages::FilmAverages;
+use super::film_table::FilmTable;
 use super::known::KnownLanes;
 use super::stack::{Layer, Stack, StackShares};
 use crate::math::Complex;
@@ -28,6 +29,8 @@ pub struct Coating<S> {
     pub layers: Vec<CoatingLayer<S>>,
     /// From outside and from inside, what the film makes of light from many directions, by the indices around it.
     known: [KnownLanes<[f64; 4], FilmAverages>; 2],
+    /// The same by the thickness of the layer that alone varies over the surface.
+    by_thickness: [KnownLanes<[f64; 4], FilmTable>; 2],
 }
 
 /// One layer.
@@ -46,7 +49,8 @@ pub struct CoatingLayer<S> {
 impl<S> Coating<S> {
     /// Layers from the outside inward.
     pub fn new(layers: Vec<CoatingLayer<S>>) -> Self {
-        Self { layers, known: [KnownLanes::new(), KnownLanes::new()] }
+        let known = [KnownLanes::new(), KnownLanes::new()];
+        Self { layers, known, by_thickness: [KnownLanes::new(), KnownLanes::new()] }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Coating<T> {
@@ -68,10 +72,21 @@ impl Coating<Table> {
 
     /// The coating where light arrives; `inside`: at its inner side.
     pub(super) fn met<'a, const N: usize>(&'a self, arrival: &'a Arrival<'a, N>, inside: bool) -> MetCoating<'a, N> {
-        let varies = self.layers.iter().any(|layer| layer.thickness.varies());
         let read = |layer: &CoatingLayer<Table>| arrival.read(&layer.thickness);
-        let thicknesses = if varies { self.layers.iter().map(read).collect() } else { Vec::new() };
+        let is_even = self.varying().next().is_none();
+        let thicknesses = if is_even { Vec::new() } else { self.layers.iter().map(read).collect() };
         MetCoating { coating: self, arrival, inside, thicknesses }
+    }
+
+    /// The layers whose thickness varies over the surface.
+    fn varying(&self) -> impl Iterator<Item = usize> {
+        (0..self.layers.len()).filter(|&number| self.layers[number].thickness.varies())
+    }
+
+    /// The layer that alone varies.
+    fn varying_alone(&self) -> Option<usize> {
+        let mut varying = self.varying();
+        varying.next().filter(|_| varying.next().is_none())
     }
 }
 
@@ -130,18 +145,34 @@ impl<'a, const N: usize> MetCoating<'a, N> {
     }
 
     /// What a film makes of light from many directions, between `indices`: made once where it is the same everywhere
-    /// and in every sample. `inside`: of light that comes from inside.
+    /// and in every sample, and read from a table where one layer's thickness varies. `inside`: of light that comes
+    /// from inside.
     pub(super) fn averages(
         &self,
         lane: usize,
         inside: bool,
         indices: [f64; 4],
-        make: impl Fn() -> FilmAverages,
+        make: impl Fn(&Stack) -> FilmAverages,
     ) -> Averages<'a> {
-        let known = &self.coating.known[usize::from(inside)];
-        let is_even = self.thicknesses.is_empty();
-        let known = is_even.then(|| known.get(self.arrival.draw, lane, indices, &make)).flatten();
-        known.map_or_else(|| Averages::Made(Box::new(make())), Averages::Known)
+        let Self { coating, arrival: Arrival { draw, .. }, .. } = self;
+        let make_here = || make(&self.stack(lane));
+        let side = usize::from(inside);
+        if self.thicknesses.is_empty() {
+            let known = coating.known[side].get(draw, lane, indices, make_here);
+            return known.map_or_else(|| Averages::Made(Box::new(make_here())), Averages::Known);
+        }
+        let read = || {
+            let number = coating.varying_alone()?;
+            let layer = self.layer(number, lane);
+            let new = || FilmTable::new(&layer, self.arrival.wave(lane)[0], coating.layers[number].thickness.range().1);
+            let table = coating.by_thickness[side].get(draw, lane, indices, new)?;
+            table.read(layer.thickness_nm, |thickness_nm| {
+                let with = |at: usize| Layer { thickness_nm, ..self.layer(at, lane) };
+                let layers = self.in_order().map(|at| if at == number { with(at) } else { self.layer(at, lane) });
+                make(&Stack::new(self.arrival.wave(lane), layers))
+            })
+        };
+        Averages::Made(Box::new(read().unwrap_or_else(make_here)))
     }
 
     /// What the layers do with a lane between index `n1` and `n2` beyond: [`Stack::shares`].
@@ -178,13 +209,22 @@ impl<'a, const N: usize> MetCoating<'a, N> {
     }
 
     fn layers(&self, lane: usize) -> impl Iterator<Item = Layer> {
-        let layers = &self.coating.layers;
-        (0..layers.len()).map(move |place| {
-            let number = if self.inside { layers.len() - 1 - place } else { place };
-            let read = |table| self.arrival.draw.read_lane(table, lane);
-            let exact = || read(&layers[number].thickness);
-            let thickness_nm = self.thicknesses.get(number).map_or_else(exact, |thickness| f64::from(thickness[lane]));
-            Layer { index: Complex::new(read(&layers[number].index), -read(&layers[number].k)), thickness_nm }
-        })
+        self.in_order().map(move |number| self.layer(number, lane))
+    }
+
+    /// The numbers of the layers, the viewer's side first.
+    fn in_order(&self) -> impl Iterator<Item = usize> {
+        let last = self.coating.layers.len().wrapping_sub(1);
+        (0..self.coating.layers.len()).map(move |place| if self.inside { last - place } else { place })
+    }
+
+    fn layer(&self, number: usize, lane: usize) -> Layer {
+        let layer = &self.coating.layers[number];
+        let read = |table| self.arrival.draw.read_lane(table, lane);
+        let thickness_nm = match self.thicknesses.get(number) {
+            Some(thickness) => f64::from(thickness[lane]),
+            None => read(&layer.thickness),
+        };
+        Layer { index: Complex::new(read(&layer.index), -read(&layer.k)), thickness_nm }
     }
 }

@@ -185,8 +185,7 @@ fn mean_of([s, p]: [f64; 2]) -> f64 {
 
 /// A coated metal's reflectance of diffuse light.
 fn coated_mean<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
-    let averages = met.averages(lane, false, [n1, n, k, 0.0], || {
-        let stack = met.stack(lane);
+    let averages = met.averages(lane, false, [n1, n, k, 0.0], |stack| {
         let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
         FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
     });

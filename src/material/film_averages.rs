@@ -48,6 +48,25 @@ impl FilmAverages {
         Self { differences: [[0.0; 2]; HATS], mean, lost_inside: 0.0 }
     }
 
+    /// The sum of films, each times its weight.
+    pub(super) fn sum<const M: usize>(films: &[Self; M], weights: &[f64; M]) -> Self {
+        let mut sum = Self::of_mean([0.0; 2]);
+        for (film, weight) in films.iter().zip(weights) {
+            for (sum, film) in sum.differences.iter_mut().zip(&film.differences) {
+                (0..2).for_each(|way| sum[way] += weight * film[way]);
+            }
+            (0..2).for_each(|way| sum.mean[way] += weight * film.mean[way]);
+            sum.lost_inside += weight * film.lost_inside;
+        }
+        sum
+    }
+
+    /// The largest difference between the numbers of two films.
+    pub(super) fn differs_by(&self, other: &Self) -> f64 {
+        let numbers = |film: &Self| film.differences.into_iter().chain([film.mean, [film.lost_inside, 0.0]]).flatten();
+        numbers(self).zip(numbers(other)).fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+    }
+
     /// What the film adds to the two shares that are blocked of the light that meets each hat.
     pub(super) fn added(&self, blocked: &HatWeights) -> f64 {
         let of_hat = |hat: usize| (0..2).map(|way| self.differences[hat][way] * blocked[hat][way]).sum::<f64>();

@@ -18,6 +18,7 @@ mod facet;
 mod facets;
 mod film_averages;
 mod film_kernel;
+mod film_table;
 mod fluorescence;
 mod fresnel;
 mod kinds;

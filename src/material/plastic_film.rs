@@ -15,7 +15,7 @@ pub(super) struct PlasticFilm<'a, const N: usize> {
 impl<'a, const N: usize> PlasticFilm<'a, N> {
     pub(super) fn new(met: &'a MetCoating<'a, N>, lane: usize, indices: [f64; 2], is_rough: bool) -> Self {
         let [n1, n2] = indices;
-        let averages = met.averages(lane, false, [n1, n2, 0.0, 0.0], || averages(&met.stack(lane), indices, is_rough));
+        let averages = met.averages(lane, false, [n1, n2, 0.0, 0.0], |stack| averages(stack, indices, is_rough));
         Self { met, lane, indices, averages }
     }
 

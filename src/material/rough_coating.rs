@@ -66,8 +66,8 @@ pub(super) fn averages<'a, const N: usize>(
     let turned = arrival.turned_around();
     [(arrival, false), (&turned, true)].map(|(from, is_beyond)| {
         let ([here, there], own) = (from.refracting(lane), [from.incident_of(lane), from.beyond_of(lane)]);
-        met.averages(lane, met.is_inside() != is_beyond, [own[0], own[1], here, there], || {
-            let stack = if is_beyond { met.stack(lane).turned_around() } else { met.stack(lane) };
+        met.averages(lane, met.is_inside() != is_beyond, [own[0], own[1], here, there], |stack| {
+            let stack = if is_beyond { &stack.turned_around() } else { stack };
             let bare = |cos: f64| {
                 let interface = Interface::new(here, there, cos);
                 [interface.reflectance, interface.transmittance]
