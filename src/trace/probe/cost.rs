@@ -62,8 +62,10 @@ const FEW: u64 = 64;
 const TIMES: u64 = 64;
 /// Most photons of the map that is gathered from.
 const GATHERED: u64 = 4096;
-/// Time after which the probe has seen enough.
+/// Time after which enough camera samples have been seen.
 const ENOUGH: Duration = Duration::from_millis(300);
+/// Time after which enough photons have been: they differ less.
+const ENOUGH_PHOTONS: Duration = Duration::from_millis(100);
 
 /// Traces single samples of pixels spread over the part of the image that is made.
 pub fn probe(world: &World) -> Probe {
@@ -190,7 +192,7 @@ fn photon_time(targets: &PhotonTargets, seed: u64, follow: Follow) -> Duration {
         Timed { time: start.elapsed(), rays: stats.rays }
     };
     let (start, mut batches) = (Instant::now(), Vec::new());
-    while batches.len() < TIMES as usize && start.elapsed() < ENOUGH {
+    while batches.len() < TIMES as usize && start.elapsed() < ENOUGH_PHOTONS {
         batches.push(take(batches.len() as u64));
     }
     let photons = batches.len() as f64 * FEW as f64;
