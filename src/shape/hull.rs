@@ -9,7 +9,8 @@ use crate::math::{Bounds, DVec3};
 /// Each more piece saves at least so many times half the surface of a box that the shape would fill: fewer than of
 /// triangles, several of which are met at once.
 const LEAST_GAIN: f64 = 2.0;
-/// Pieces of a shape at most, and so many of all in any scene: their boxes take some 200 bytes each.
+/// Pieces of a shape at most, and so many of all in any scene, for their boxes take memory. In a scene of more, each has
+/// two at most.
 const MOST: usize = 16;
 const FREE: usize = 1 << 20;
 
@@ -33,7 +34,7 @@ impl Hull {
     /// How many pieces are worth their boxes, of one of so many shapes.
     pub(super) fn count(&self, shapes: usize) -> usize {
         let [a, b, c] = self.axes.map(|axis| 2.0 * axis.length());
-        let (most, least) = (MOST.min(FREE / shapes.max(1)), LEAST_GAIN * (a * b + b * c + c * a));
+        let (most, least) = (MOST.min((FREE / shapes.max(1)).max(2)), LEAST_GAIN * (a * b + b * c + c * a));
         let surface = |count| self.pieces(count).map(|piece| piece.half_area()).sum::<f64>();
         let (mut count, mut now) = (1, surface(1));
         while 2 * count <= most {
