@@ -9,9 +9,9 @@ use crate::math::{Bounds, DVec3};
 /// Each more piece saves at least so many times half the surface of a box that the shape would fill: fewer than of
 /// triangles, several of which are met at once.
 const LEAST_GAIN: f64 = 2.0;
-/// Pieces of a shape at most, and so many of all in any scene, for their boxes take memory. In a scene of more, each has
-/// two at most.
+/// Pieces of a shape at most.
 const MOST: usize = 16;
+/// So many pieces there are in any scene, for their boxes take memory. In one of more shapes each has two at most.
 const FREE: usize = 1 << 20;
 
 /// What contains a shape that may run aslant: `center` and each of three axes up to its length either way. What is
