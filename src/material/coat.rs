@@ -2,10 +2,11 @@ use std::array;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
+use super::facets::OfFacet;
 use super::film_averages::{FilmAverages, HatWeights};
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
-use super::{Block, Interface, RoughSurface, Roughness, reflect};
+use super::{Block, Facets, Interface, RoughSurface, Roughness, reflect};
 use crate::math::DVec3;
 
 /// The clear surface of an opaque body, smooth or rough: what of the light it lets in, and out again.
@@ -187,38 +188,63 @@ fn around_index(rows: &Rows, m: f64, row: impl Fn(f64) -> AlbedoTable) -> [(f64,
     [(1.0 - part, numbered(below)), (part, numbered(below + 1))]
 }
 
-/// What a rough surface reflects once, beyond a smooth one of the same relative index m.
+/// What a rough surface reflects once and no facet blocks, beyond a smooth one of the same relative index m.
 fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     // At the very horizon a rough surface still lets light in, which a smooth one does not.
-    AlbedoTable::new(surface.facets().alpha(), STEPS, |z| {
+    let (facets, visible) = (surface.facets(), surface.facets().visible(m));
+    AlbedoTable::new(facets.alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
-        reflected_once(surface, m, z) - (1.0 - Interface::new(1.0, m, z).transmittance)
+        visible.mean(z, ReflectedOnce { facets: *facets, m }) - (1.0 - Interface::new(1.0, m, z).transmittance)
     })
+}
+
+/// The share that facets of relative index m reflect and no facet blocks.
+struct ReflectedOnce {
+    facets: Facets,
+    m: f64,
+}
+
+impl OfFacet for ReflectedOnce {
+    #[inline(always)]
+    fn of(&self, wo: DVec3, h: DVec3) -> f64 {
+        let reflectance = 1.0 - Interface::new(1.0, self.m, wo.dot(h)).transmittance;
+        reflectance * self.facets.left_and_blocked(wo, reflect(wo, h))[0]
+    }
 }
 
 /// By how much what a rough surface reflects once of light from all around is polarized across the plane of
 /// incidence, beyond a smooth one of the same relative index m.
 fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
-    let facets = surface.facets();
-    let polarized = |[wo, h]: [DVec3; 2]| {
+    let (facets, visible) = (surface.facets(), surface.facets().visible(m));
+    AlbedoTable::new(facets.alpha(), STEPS, |z| {
+        let z = z.max(HORIZON);
+        visible.mean(z, Polarized { facets: *facets, m }) - Block::at_boundary([1.0, m, z], false).d
+    })
+}
+
+/// How much of the same is polarized across the plane of incidence.
+struct Polarized {
+    facets: Facets,
+    m: f64,
+}
+
+impl OfFacet for Polarized {
+    #[inline(always)]
+    fn of(&self, wo: DVec3, h: DVec3) -> f64 {
         // Across the surface's plane of incidence is y.
         let across = wo.cross(h);
         let cos_squared = if across == DVec3::ZERO { 0.5 } else { across.y * across.y / across.length_squared() };
-        let of_facet = Block::at_boundary([1.0, m, wo.dot(h)], false).d;
-        of_facet * (2.0 * cos_squared - 1.0) * facets.left_and_blocked(wo, reflect(wo, h))[0]
-    };
-    AlbedoTable::new(facets.alpha(), STEPS, |z| {
-        let z = z.max(HORIZON);
-        facets.mean_over_visible(z, m, polarized) - Block::at_boundary([1.0, m, z], false).d
-    })
+        let of_facet = Block::at_boundary([1.0, self.m, wo.dot(h)], false).d;
+        of_facet * (2.0 * cos_squared - 1.0) * self.facets.left_and_blocked(wo, reflect(wo, h))[0]
+    }
 }
 
 /// What of the light that facets would reflect is blocked, and all that they would let through.
 fn kernel(surface: &RoughSurface) -> FilmKernel {
-    let facets = surface.facets();
+    let (facets, visible) = (surface.facets(), surface.facets().visible(1.0));
     // As if the body were denser than what is around it, which it nearly always is.
     FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
-        for ([wo, h], weight) in facets.visible_from(z.max(HORIZON), 1.0) {
+        for ([wo, h], weight) in visible.from(z.max(HORIZON)) {
             let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
             add(wo.dot(h), weight, [blocked, 1.0]);
         }
@@ -227,12 +253,3 @@ fn kernel(surface: &RoughSurface) -> FilmKernel {
 
 /// Cosine taken for the horizon's.
 const HORIZON: f64 = 1e-9;
-
-/// Share of the light from the cosine `z` that facets of relative index m reflect and no facet blocks.
-fn reflected_once(surface: &RoughSurface, m: f64, z: f64) -> f64 {
-    let facets = surface.facets();
-    facets.mean_over_visible(z, m, |[wo, h]| {
-        let reflectance = 1.0 - Interface::new(1.0, m, wo.dot(h)).transmittance;
-        reflectance * facets.left_and_blocked(wo, reflect(wo, h))[0]
-    })
-}

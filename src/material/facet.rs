@@ -44,6 +44,7 @@ pub struct Facet {
 impl Facet {
     /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known
     /// already.
+    #[inline(always)]
     pub(super) fn new(
         facets: &Facets,
         [n1, n2]: [f64; 2],

@@ -1,6 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::math::DVec3;
+use crate::shape::{Computation, Instructions, Vectors};
 
 /// Microscopic mirrors whose slopes are distributed as GGX, in the frame in which +z is the surface's normal.
 ///
@@ -33,6 +34,7 @@ impl Facets {
     }
 
     /// S = sqrt(alpha^2 (x^2 + y^2) + z^2), of which Smith's masking is G1 = 2 z / (z + S).
+    #[inline(always)]
     pub fn slant(&self, w: DVec3) -> f64 {
         (self.alpha * self.alpha * (w.x * w.x + w.y * w.y) + w.z * w.z).sqrt()
     }
@@ -59,6 +61,7 @@ impl Facets {
     }
 
     /// Smith's masking G1 of a direction above or below the surface, and 1 - G1 with all its digits.
+    #[inline(always)]
     pub fn masking(&self, w: DVec3) -> [f64; 2] {
         let (z, slant) = (w.z.abs(), self.slant(w));
         let excess = self.alpha * self.alpha * (w.x * w.x + w.y * w.y) / (slant + z);
@@ -71,6 +74,7 @@ impl Facets {
     /// Both directions see a facet as often as G1 G1 if they do so by chance each, and as often as min(G1, G1) if what
     /// one sees the other does as far as it can (the two ends between which Ashikhmin, Premoze & Shirley 2000, *A
     /// Microfacet-Based BRDF Generator*, blend). `straight` is the share of the latter.
+    #[inline(always)]
     pub fn passed(&self, wo: DVec3, wi: DVec3, straight: f64) -> [f64; 2] {
         let ([seen, hidden], [from, _]) = (self.masking(wi), self.masking(wo));
         let [most, least] = if seen < from { [seen / from, 1.0 - seen / from] } else { [1.0, 0.0] };
@@ -79,6 +83,7 @@ impl Facets {
 
     /// The share of the light from a visible facet toward `wi` that leaves that way, G2 / G1, and the share that meets
     /// another facet; both with all their digits, by S^2 - z^2 = alpha^2 (x^2 + y^2).
+    #[inline(always)]
     pub fn left_and_blocked(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
         if wi.z <= 0.0 {
             return [0.0, 1.0];
@@ -93,37 +98,124 @@ impl Facets {
     /// Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*. `u[1]` goes from facets that mirror
     /// straight up, after stretching to a hemisphere, down to upright ones.
     pub fn visible_normal(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
-        self.visible_normal_from_end(wo, u[0], 1.0 - u[1])
+        let (sin, cos) = libm::sincos(TAU * u[0]);
+        self.visible_normal_from_end(wo, [cos, sin], 1.0 - u[1])
     }
 
     /// The same for `left` = 1 - `u[1]`, with all its digits where few facets are left.
-    fn visible_normal_from_end(&self, wo: DVec3, around: f64, left: f64) -> DVec3 {
+    #[inline(always)]
+    fn visible_normal_from_end(&self, wo: DVec3, around: [f64; 2], left: f64) -> DVec3 {
         let slant = self.slant(wo);
         let stretched = DVec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z) / slant;
         let height = 1.0 + stretched.z;
         let (down, up) = ((1.0 - left) * height, 1.0 - stretched.z + left * height);
         let sin = (down * up).max(0.0).sqrt();
-        let (y, x) = libm::sincos(TAU * around);
+        let [x, y] = around;
         let cap = DVec3::new(stretched.x + sin * x, stretched.y + sin * y, left * height);
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
 
-    /// The visible facets from the cosine `z` for a quadrature, where the index beyond is `ratio` times that on this
-    /// side: the direction they are seen from, their normals, and weights that sum to 1.
-    pub(super) fn visible_from(&self, z: f64, ratio: f64) -> impl Iterator<Item = ([DVec3; 2], f64)> {
-        let (wo, places) = (DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z), places(ratio));
-        (0..places).map(move |i| {
+    /// The visible facets for a quadrature, where the index beyond is `ratio` times that on this side.
+    pub(super) fn visible(&self, ratio: f64) -> VisibleFacets {
+        VisibleFacets {
+            facets: *self,
+            rows: (0..places(ratio)).step_by(ROW).map(|first| Row::new(first, ratio)).collect(),
+        }
+    }
+}
+
+/// What a mean over visible facets is of.
+///
+/// Vectors hold several facets where nothing is called and nothing is read but values that are there: implementations
+/// are `#[inline(always)]`, which closures cannot be, and hold no references.
+pub(super) trait OfFacet {
+    /// What it is of the facet of normal `h`, seen from `wo`.
+    fn of(&self, wo: DVec3, h: DVec3) -> f64;
+}
+
+/// So many visible facets are looked at at once.
+const ROW: usize = 16;
+
+/// Visible facets for a quadrature from any direction.
+pub(super) struct VisibleFacets {
+    facets: Facets,
+    rows: Vec<Row>,
+}
+
+/// What is the same of some of them from everywhere.
+struct Row {
+    /// Cosine and sine of the angle around.
+    around: [[f64; ROW]; 2],
+    /// The root of how many facets are left: dense among upright facets, which are few and block most.
+    v: [f64; ROW],
+    /// Weights, which sum to 1 over all rows.
+    weights: [f64; ROW],
+}
+
+impl Row {
+    fn new(first: u32, ratio: f64) -> Self {
+        let places = f64::from(places(ratio));
+        let mut row = Self { around: [[0.0; ROW]; 2], v: [0.0; ROW], weights: [0.0; ROW] };
+        for (i, place) in (first..).take(ROW).map(f64::from).enumerate() {
             // A lattice of the golden ratio, whose rows lie along no edge: total reflection sets in along a curve.
-            let turn = (f64::from(i) * GOLDEN).fract();
-            // left = v^2: dense among upright facets, which are few and block most.
-            let v = (f64::from(i) + 0.5) / f64::from(places);
-            ([wo, self.visible_normal_from_end(wo, turn, v * v)], 2.0 * v / f64::from(places))
-        })
+            (row.around[1][i], row.around[0][i]) = libm::sincos(TAU * (place * GOLDEN).fract());
+            row.v[i] = (place + 0.5) / places;
+            row.weights[i] = 2.0 * row.v[i] / places;
+        }
+        row
+    }
+
+    #[inline(always)]
+    fn normal(&self, facets: &Facets, wo: DVec3, i: usize) -> DVec3 {
+        facets.visible_normal_from_end(wo, [self.around[0][i], self.around[1][i]], self.v[i] * self.v[i])
+    }
+}
+
+impl VisibleFacets {
+    /// Those from the cosine `z`: the direction they are seen from, their normals, and their weights.
+    pub(super) fn from(&self, z: f64) -> impl Iterator<Item = ([DVec3; 2], f64)> {
+        let wo = direction(z);
+        self.rows
+            .iter()
+            .flat_map(move |row| (0..ROW).map(move |i| ([wo, row.normal(&self.facets, wo, i)], row.weights[i])))
     }
 
     /// The mean over these of something that a facet does with light.
-    pub(super) fn mean_over_visible(&self, z: f64, ratio: f64, of: impl Fn([DVec3; 2]) -> f64) -> f64 {
-        self.visible_from(z, ratio).map(|(directions, weight)| weight * of(directions)).sum()
+    pub(super) fn mean(&self, z: f64, of: impl OfFacet) -> f64 {
+        Instructions::best().run(Mean { facets: self.facets, rows: &self.rows, wo: direction(z), of })
+    }
+}
+
+/// A direction of the cosine `z`.
+fn direction(z: f64) -> DVec3 {
+    DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z)
+}
+
+/// A mean over visible facets, seen from `wo`.
+struct Mean<'a, F> {
+    facets: Facets,
+    rows: &'a [Row],
+    wo: DVec3,
+    of: F,
+}
+
+impl<F: OfFacet> Computation for Mean<'_, F> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) -> f64 {
+        let Self { facets, rows, wo, of } = self;
+        let mut sum = 0.0;
+        for row in rows {
+            let mut parts = [0.0; ROW];
+            for (i, part) in parts.iter_mut().enumerate() {
+                *part = row.weights[i] * of.of(wo, row.normal(&facets, wo, i));
+            }
+            for part in parts {
+                sum += part;
+            }
+        }
+        sum
     }
 }
 

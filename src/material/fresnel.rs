@@ -25,6 +25,7 @@ impl Interface {
     /// Fresnel 1823, Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance has its own formula,
     /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which keeps its digits at grazing angles; the
     /// squared cosine beyond is (n2^2 - n1^2) / n2^2 + (n1 c1 / n2)^2, which keeps them for nearly equal indices.
+    #[inline(always)]
     pub fn new(n1: f64, n2: f64, c1: f64) -> Self {
         let c1 = c1.clamp(0.0, 1.0);
         let eta = n1 / n2;
@@ -67,6 +68,7 @@ impl Interface {
     }
 
     /// Direction of the refracted ray for a unit vector `wo` back to where the ray came from (Snell's law).
+    #[inline]
     pub fn refract(&self, wo: DVec3, normal: DVec3) -> DVec3 {
         let c1 = wo.dot(normal);
         unit(normal * (self.eta * c1 - self.cos_beyond) - wo * self.eta)
@@ -74,6 +76,7 @@ impl Interface {
 }
 
 /// The mirror image of the unit vector `wo` about the unit `normal`, normalized so that bounces do not drift.
+#[inline]
 pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
     unit(normal * (2.0 * wo.dot(normal)) - wo)
 }

@@ -2,7 +2,7 @@ use std::f64::consts::{LN_10, PI};
 use std::sync::OnceLock;
 
 use super::albedo_table::AlbedoTable;
-use super::facets::later_digits;
+use super::facets::{OfFacet, later_digits};
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
 use super::{Facet, Facets, Flow};
@@ -81,10 +81,7 @@ impl RoughInterface {
     }
 
     fn row(&self, denser: bool, row: usize) -> &AlbedoTable {
-        self.rows[row + if denser { RATIOS + 1 } else { 0 }].get_or_init(|| {
-            let ratio = ratio(denser, row);
-            AlbedoTable::new(self.facets.alpha(), STEPS, |z| blocked(&self.facets, z, ratio))
-        })
+        self.rows[row + if denser { RATIOS + 1 } else { 0 }].get_or_init(|| blocked(&self.facets, ratio(denser, row)))
     }
 }
 
@@ -105,20 +102,34 @@ fn ratio(denser: bool, row: usize) -> f64 {
 
 /// What is blocked of the light that facets would reflect, all of it, or let through.
 fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
-    let straight = straight(ratio);
+    let (straight, visible) = (straight(ratio), facets.visible(ratio));
     FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
-        for (directions, weight) in facets.visible_from(z, ratio) {
+        for (directions, weight) in visible.from(z) {
             let facet = Facet::new(facets, [1.0, ratio], straight, directions, None);
             add(facet.cos[0], weight, facet.all.map(|left| 1.0 - left));
         }
     })
 }
 
-/// The share of the light from the cosine `z` that meets a second facet: the mean over the visible facets, where the
-/// index beyond is `ratio` times that on this side.
-fn blocked(facets: &Facets, z: f64, ratio: f64) -> f64 {
-    let straight = straight(ratio);
-    facets.mean_over_visible(z, ratio, |directions| Facet::new(facets, [1.0, ratio], straight, directions, None).again)
+/// The share of the light from each cosine that meets a second facet: the mean over the visible facets, where the index
+/// beyond is `ratio` times that on this side.
+fn blocked(facets: &Facets, ratio: f64) -> AlbedoTable {
+    let (straight, visible) = (straight(ratio), facets.visible(ratio));
+    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Again { facets: *facets, ratio, straight }))
+}
+
+/// The share that meets a second facet.
+struct Again {
+    facets: Facets,
+    ratio: f64,
+    straight: f64,
+}
+
+impl OfFacet for Again {
+    #[inline(always)]
+    fn of(&self, wo: DVec3, h: DVec3) -> f64 {
+        Facet::new(&self.facets, [1.0, self.ratio], self.straight, [wo, h], None).again
+    }
 }
 
 /// The share of light from all around that crosses a boundary both there and back, the same from either side.

@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
+use super::facets::OfFacet;
 use super::{Arrival, Facets, Lobes, RoughInterface, reflect};
 use crate::math::{DVec3, Frame};
 
@@ -110,7 +111,7 @@ const STEPS: usize = 64;
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
         let facets = Facets::new(alpha);
-        Self { facets, blocked: AlbedoTable::new(alpha, STEPS, |z| blocked(&facets, z)) }
+        Self { facets, blocked: blocked(&facets) }
     }
 
     /// The facets themselves.
@@ -180,7 +181,18 @@ pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
     DVec3 { z: local.z.max(0.0), ..local }
 }
 
-/// The share of light from the cosine `z` that meets a second facet: the mean over the visible facets.
-fn blocked(facets: &Facets, z: f64) -> f64 {
-    facets.mean_over_visible(z, 1.0, |[wo, h]| facets.left_and_blocked(wo, reflect(wo, h))[1])
+/// The share of light from each cosine that meets a second facet: the mean over the visible facets.
+fn blocked(facets: &Facets) -> AlbedoTable {
+    let visible = facets.visible(1.0);
+    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Blocked(*facets)))
+}
+
+/// The share that meets a second facet, where the first one reflects all light.
+struct Blocked(Facets);
+
+impl OfFacet for Blocked {
+    #[inline(always)]
+    fn of(&self, wo: DVec3, h: DVec3) -> f64 {
+        self.0.left_and_blocked(wo, reflect(wo, h))[1]
+    }
 }

@@ -24,6 +24,7 @@ impl Ray {
 /// The unit vector along `v`, whose length is 1 within 2 roundings.
 ///
 /// Scaling alone leaves up to 3; one Newton step for 1 / |v| takes back what it can see.
+#[inline]
 pub fn unit(v: DVec3) -> DVec3 {
     let near = v.normalize();
     near + near * (0.5 * (1.0 - near.length_squared()))

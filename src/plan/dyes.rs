@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use super::survey::{Survey, Tint, lanes, missed, strongest};
-use crate::spectrum::{Basis, Curve, Draw, Dye, Emission, Lanes, MAX_LANES, Quantity, Upsampler, visible};
+use crate::spectrum::{
+    Basis, Curve, Draw, Dye, Emission, Excitable, FilmColors, Lanes, MAX_LANES, Quantity, Upsampler, visible,
+};
 
 /// Most tints of each way that are combined, those farthest from gray.
 const MOST: usize = 8;
@@ -37,13 +39,15 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     }
     let tints = survey.scattering(MOST).into_iter().chain(survey.smooth(MOST)).map(Some);
     let ways = Ways { tints: std::iter::once(None).chain(tints).collect() };
-    let lights: Vec<&Curve> = survey.judged().map(|(curve, _)| curve).collect();
+    let judged: Vec<&(Curve, Emission)> = survey.judged().collect();
+    let lights: Vec<&Curve> = judged.iter().map(|(curve, _)| curve).collect();
     let dyes: Vec<Dye> = survey.dyes.iter().map(|(dye, _)| dye.clone()).collect();
     let basis = &basis.clone().exciting(&dyes, &lights);
     let mut worst: f64 = 0.0;
     for (dye, reflectance) in &survey.dyes {
-        for (curve, light) in survey.judged() {
-            let lit = Lit { dye, reflectance, curve, light };
+        let (dye, glow) = (&dye.excitable(), &dye.shines(basis.color_space()).film_colors());
+        for (curve, light) in &judged {
+            let lit = Lit { dye, glow, reflectance, curve, light };
             worst = worst.max(lit.missed(&ways, basis));
         }
     }
@@ -52,7 +56,9 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
 
 /// A surface with a dye under a light.
 struct Lit<'a> {
-    dye: &'a Dye,
+    dye: &'a Excitable<'a>,
+    /// What it shines.
+    glow: &'a FilmColors,
     reflectance: &'a Curve,
     /// The light as it is written, and as it shines.
     curve: &'a Curve,
@@ -61,11 +67,10 @@ struct Lit<'a> {
 
 impl Lit<'_> {
     fn missed(&self, ways: &Ways, basis: &Basis) -> f64 {
-        let Self { dye, reflectance, curve, light } = *self;
-        let shines = dye.shines(basis.color_space());
-        let (colors, glow) = (light.film_colors(), shines.film_colors());
+        let Self { dye, glow, reflectance, curve, light } = *self;
+        let colors = light.film_colors();
         let wavelengths = &colors.wavelengths_nm;
-        let excited: Vec<f64> = dye.excited_by(light).parts().collect();
+        let excited: Vec<f64> = dye.by(light).parts().collect();
         let exact = ways.at(wavelengths, basis.upsampler());
         let paper = Tint::Diffuse(Cow::Borrowed(reflectance));
         let (reflected, reflected_lanes) = (paper.at(wavelengths, basis.upsampler()), lanes(&paper.on(basis)));
@@ -73,7 +78,7 @@ impl Lit<'_> {
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let in_lanes = ways.on(basis);
         let emission = draw.read(&basis.tabulate(Quantity::Emission, curve));
-        let (excitation, response) = (basis.excitation(dye, curve), basis.response(&dye.emission));
+        let (excitation, response) = (basis.excitation(dye, light), basis.response(&dye.dye().emission));
         let (response_to_light, of_paper) = (basis.response(curve), emission * reflected_lanes);
         let brightness: Vec<[f64; 2]> = exact
             .iter()

@@ -1,6 +1,7 @@
 //! Which lanes carry the light, and whether they part.
 
 use std::cell::LazyCell;
+use std::collections::BTreeSet;
 
 use super::candidates::{Candidate, LANES_SAFETY, bands_beside, bands_showing, candidates, error, own_lines};
 use super::dyes::spoken as spoken_dyes;
@@ -9,7 +10,7 @@ use super::seen::Seen;
 use super::survey::{Survey, disperses, method_of_a_look, tolerance};
 use super::words::{at_most, percent};
 use crate::material::{Dielectric, Material};
-use crate::scene::{ModelText, Scene};
+use crate::scene::{ModelText, NamedMaterial, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
 use crate::trace::{COLORS_NM, Dispersion, World, dispersion as measured_dispersion};
 
@@ -235,35 +236,46 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
     (count > 0).then(|| format!("{colors} more saturated than a smooth reflectance can be, and moved toward gray"))
 }
 
-/// Where the numbers of clear bodies and metals come from.
+/// So many materials are told of one by one.
+const TOLD: usize = 20;
+
+/// Where the numbers of clear bodies and metals come from, and what is known of films and dyes.
 fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
-    let mut lines = Vec::new();
-    for named in &scene.materials {
-        let dyes: Vec<Dye> = named.material.dyes().into_iter().map(|dye| dye.dye()).collect();
-        lines.extend(spoken_dyes(&dyes, basis).map(|dyes| format!("material {}: {dyes}", named.name)));
-        let film = spoken_film(&named.material, basis).map(|film| format!("material {}: {film}", named.name));
+    let mut known = BTreeSet::new();
+    let about = |named: &NamedMaterial<Curve>| {
+        let lines = about_material(&named.material, basis);
+        let lines = lines.into_iter().map(|line| format!("material {}: {line}", named.name));
         // Each object has a sheet of its own, turned with it.
-        lines.extend(film.filter(|film| !lines.contains(film)));
-        match &named.material {
-            Material::Dielectric(glass) => {
-                let table = basis.tabulate(Quantity::Index, &glass.index);
-                let (low, high) = table.range();
-                let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
-                let index = match (table.is_flat(), table.direction()) {
-                    (true, _) => format!("index {low:.4} in every lane{source}, so lanes stay together"),
-                    (_, Some(one)) => format!(
-                        "index {low:.4} to {high:.4}{source}; all lanes are refracted by {one:.4}, so lanes stay together"
-                    ),
-                    _ => format!("index {low:.4} to {high:.4}{source}, so lanes separate"),
-                };
-                lines.push(format!("material {}: {index}", named.name));
-            }
-            Material::Conductor(metal) => {
-                lines
-                    .extend(provenance(&metal.n).map(|source| format!("material {}: n and k of {source}", named.name)));
-            }
-            _ => {}
+        let new: Vec<String> = lines.filter(|line| known.insert(line.clone())).collect();
+        (!new.is_empty()).then_some(new)
+    };
+    let told: Vec<Vec<String>> = scene.materials.iter().filter_map(about).collect();
+    let more = match told.len().saturating_sub(TOLD) {
+        0 => None,
+        1 => Some("1 more material is clear, a metal, coated or fluorescent".to_owned()),
+        more => Some(format!("{more} more materials are clear, metals, coated or fluorescent")),
+    };
+    told.into_iter().take(TOLD).flatten().chain(more).collect()
+}
+
+/// What is said of a material.
+fn about_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
+    let dyes: Vec<Dye> = material.dyes().into_iter().map(|dye| dye.dye()).collect();
+    let numbers = match material {
+        Material::Dielectric(glass) => {
+            let table = basis.tabulate(Quantity::Index, &glass.index);
+            let (low, high) = table.range();
+            let source = provenance(&glass.index).map_or(String::new(), |source| format!(" ({source})"));
+            Some(match (table.is_flat(), table.direction()) {
+                (true, _) => format!("index {low:.4} in every lane{source}, so lanes stay together"),
+                (_, Some(one)) => format!(
+                    "index {low:.4} to {high:.4}{source}; all lanes are refracted by {one:.4}, so lanes stay together"
+                ),
+                _ => format!("index {low:.4} to {high:.4}{source}, so lanes separate"),
+            })
         }
-    }
-    lines
+        Material::Conductor(metal) => provenance(&metal.n).map(|source| format!("n and k of {source}")),
+        _ => None,
+    };
+    [spoken_dyes(&dyes, basis), spoken_film(material, basis), numbers].into_iter().flatten().collect()
 }

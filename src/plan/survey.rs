@@ -10,8 +10,8 @@ use crate::material::{
 };
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::{
-    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Lanes, MAX_LANES, Quantity, Upsampler, normal_reflectance,
-    visible,
+    Basis, ColorSpace, Curve, CurveKind, Dye, Emission, Excitable, Lanes, MAX_LANES, Quantity, Upsampler,
+    normal_reflectance, visible,
 };
 use crate::trace::{Method, Transport};
 
@@ -169,14 +169,15 @@ impl<'a> Survey<'a> {
 
     /// Whether dyes absorb light that the eye does not see: more than one part in a thousand of what excites them.
     pub(super) fn needs_ultraviolet(&self) -> bool {
-        let invisible = |dye: &Dye, light: &Emission| {
-            let excited = dye.excited_by(light);
+        let invisible = |dye: &Excitable, light: &Emission| {
+            let excited = dye.by(light);
             let smooth = visible::wavelengths().zip(&excited.smooth).filter(|part| part.0 < ULTRAVIOLET_NM);
             let lines = excited.lines.iter().filter(|line| line[0] < ULTRAVIOLET_NM);
             let below: f64 = smooth.map(|part| *part.1).chain(lines.map(|line| line[1])).sum();
             below > 1e-3 * excited.parts().sum::<f64>()
         };
-        self.dyes.iter().any(|(dye, _)| self.judged().any(|(_, light)| invisible(dye, light)))
+        let mut dyes = self.dyes.iter().map(|(dye, _)| dye.excitable());
+        dyes.any(|dye| self.judged().any(|(_, light)| invisible(&dye, light)))
     }
 
     /// The light of the whole scene, if all lights have the same spectrum.

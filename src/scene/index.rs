@@ -27,22 +27,15 @@ impl Index {
     pub(super) fn new<'a>(shapes: impl Iterator<Item = &'a Shape> + Clone) -> Self {
         let pools = shapes.clone().filter(|shape| Pool::takes(shape)).count() > 1;
         let pool = pools.then(|| Pool::new((0..).zip(shapes.clone())));
-        let (mut always, mut bounded, mut bounds) = (Vec::new(), Vec::new(), Vec::new());
-        for (object, shape) in shapes.enumerate().filter(|(_, shape)| !(pools && Pool::takes(shape))) {
-            match shape.bounds() {
-                Some(boxed) => {
-                    bounded.push(object as u32);
-                    bounds.push(boxed);
-                }
-                None => always.push(object as u32),
-            }
+        let own = (0..).zip(shapes).filter(|(_, shape)| !(pools && Pool::takes(shape)));
+        let is_treed = own.clone().filter(|(_, shape)| shape.is_bounded()).count() > FEW;
+        let (treed, always): (Vec<_>, Vec<_>) = own.partition(|(_, shape)| is_treed && shape.is_bounded());
+        let mut boxes = Vec::with_capacity(treed.len());
+        for (item, (_, shape)) in (0..).zip(&treed) {
+            shape.boxes(treed.len(), |bounds| boxes.push((item, bounds)));
         }
-        if bounded.len() <= FEW {
-            always.append(&mut bounded);
-            always.sort_unstable();
-            bounds.clear();
-        }
-        Self { always, tree: Bvh::new::<1>(bounds.into_iter()), bounded, pool }
+        let [always, bounded] = [always, treed].map(|objects| objects.into_iter().map(|object| object.0).collect());
+        Self { always, tree: Bvh::of_parts::<1>(boxes.into_iter()), bounded, pool }
     }
 
     /// Objects that have no bounds, and some that have.

@@ -87,6 +87,15 @@ impl Cube {
         self.faces[crossing.part as usize].point(crossing.uv)
     }
 
+    pub(super) fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// From the center to the middles of three of its faces.
+    pub(super) fn half_edges(&self) -> [DVec3; 3] {
+        self.half_edges
+    }
+
     /// Three of its edges, each along one axis before a transform.
     pub fn edges(&self) -> [DVec3; 3] {
         self.half_edges.map(|half| 2.0 * half)

@@ -46,6 +46,15 @@ impl Ellipsoid {
         (self.inverse * (point - self.center)).normalize()
     }
 
+    pub(super) fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// From the center to three points of it, which need not be at right angles.
+    pub(super) fn half_axes(&self) -> [DVec3; 3] {
+        [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis]
+    }
+
     pub(super) fn is_outside(&self, point: DVec3) -> bool {
         (self.inverse * (point - self.center)).length_squared() > 1.0
     }

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use super::hull::Hull;
 use super::{Crossing, Mesh, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, unit};
 
@@ -110,6 +111,16 @@ impl Instance {
 
     pub(super) fn bounds(&self) -> Bounds {
         self.bounds
+    }
+
+    /// The mesh's box in the world, where that is rounded as well.
+    pub(super) fn hull(&self, rounding: DVec3) -> Hull {
+        let (own, Bounds { min, max }) = (self.mesh.bounds(), self.bounds);
+        let reach = own.min.abs().max(own.max.abs());
+        let pad = 2.0 * self.error(reach, min.abs().max(max.abs()), reach * gamma(16)) + rounding;
+        let half = 0.5 * (own.max - own.min);
+        let axes = DVec3::AXES.map(|axis| self.to_world.vector(axis * half));
+        Hull::new(self.to_world.point(own.center()), axes, false, pad)
     }
 
     /// A triangle of the mesh, in the world.

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use super::hull::Hull;
 use super::{
     Ball, Crossing, Cube, Density, Disc, Ellipsoid, Instance, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
     SurfacePoint, Triangle,
 };
-use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, triangle_coordinates};
+use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, gamma, triangle_coordinates};
 
 /// A surface.
 #[derive(Clone, Debug)]
@@ -145,6 +146,31 @@ impl Shape {
             Self::Cube(cube) => Some(cube.bounds()),
             Self::Mesh(mesh) => Some(mesh.bounds()),
             Self::Instance(instance) => Some(instance.bounds()),
+        }
+    }
+
+    /// Calls `add` with boxes that contain all there is of the shape together, if it is finite: one, or several of a
+    /// long one that runs aslant. It is one of so many shapes.
+    pub fn boxes(&self, shapes: usize, mut add: impl FnMut(Bounds)) {
+        let Some(whole) = self.bounds() else { return };
+        // Points are rounded up to 12 times, as often as the boxes.
+        let pad = whole.min.abs().max(whole.max.abs()) * gamma(32);
+        let hull = match self {
+            Self::Ellipsoid(ellipsoid) => Hull::new(ellipsoid.center(), ellipsoid.half_axes(), true, pad),
+            Self::Disc(Disc { plane }) => Hull::new(plane.center, [plane.u, plane.v, DVec3::ZERO], true, pad),
+            Self::Quad(Quad { plane }) => Hull::new(plane.center, [plane.u, plane.v, DVec3::ZERO], false, pad),
+            Self::Cube(cube) => Hull::new(cube.center(), cube.half_edges(), false, pad),
+            Self::Instance(instance) => instance.hull(pad),
+            Self::Plane(_) | Self::Triangle(_) | Self::Sphere(_) | Self::Mesh(_) => return add(whole),
+        };
+        match hull.count(shapes) {
+            1 => add(whole),
+            count => {
+                hull.pieces(count)
+                    .map(|piece| piece.intersection(whole))
+                    .filter(|piece| !piece.is_empty())
+                    .for_each(add);
+            }
         }
     }
 

@@ -18,6 +18,7 @@ mod faces;
 mod fragments;
 mod gltf;
 mod gltf_buffer;
+mod hull;
 mod instance;
 mod kinds;
 mod mesh;

@@ -1,5 +1,5 @@
 use super::{Crossing, SurfacePoint};
-use crate::math::{DVec3, Ray, Transform, gamma};
+use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
 /// The infinite plane through `point`; its front is the side `normal` points to.
 ///
@@ -32,6 +32,13 @@ impl Plane {
         let far = self.point.length().max(other.point.length());
         let is_parallel = self.normal.cross(other.normal).length() < 1e-6;
         is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
+    }
+
+    /// Whether it cuts a box or passes it as near as so small a part of the box's size.
+    pub fn meets(&self, bounds: &Bounds, near: f64) -> bool {
+        let size = bounds.max - bounds.min;
+        let half = 0.5 * size.dot(self.normal.abs());
+        (bounds.center() - self.point).dot(self.normal).abs() <= half + near * size.length()
     }
 
     /// Whether a point lies on the side from which the normal points away.

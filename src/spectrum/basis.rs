@@ -15,7 +15,9 @@ use super::palette::palette;
 use super::projection::{Part, Projection};
 use super::table::{MAX_LANES, Pattern, PatternKind};
 use super::visible::{self, COUNT};
-use super::{Curve, CurveKind, Draw, Dye, Emission, Quantity, Response, Table, Upsampler, WavelengthBands, Waves};
+use super::{
+    Curve, CurveKind, Draw, Dye, Emission, Excitable, Quantity, Response, Table, Upsampler, WavelengthBands, Waves,
+};
 
 /// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -135,13 +137,14 @@ impl Basis {
             .map(|at_nm| Part { at_nm, shares: vec![0.0; self.fixed_lanes()], worth: Vec::new() })
             .collect();
         self.spread(functions, &lines, |part, lane, share| parts[part].shares[lane] = share);
+        let dyes: Vec<Excitable> = dyes.iter().map(Dye::excitable).collect();
         for light in lights {
             let shown = |(cmf, power): ([f64; 3], f64)| cmf.map(|x| x * power);
             let of_lines = lines.iter().map(|&[nm, _]| (visible::color_matching(nm), light.power_of_line(nm)));
             let smooth = visible::observer().zip(light.spectrum().iter().copied());
             measure(&mut parts, smooth.chain(of_lines).map(shown).collect());
-            for dye in dyes {
-                let excited = dye.excited_by(light);
+            for dye in &dyes {
+                let excited = dye.by(light);
                 let by_lines = lines.iter().map(|&[nm, _]| excited.by_line(nm));
                 measure(&mut parts, excited.smooth.iter().copied().chain(by_lines).map(|x| [x]).collect());
             }
@@ -188,8 +191,8 @@ impl Basis {
             let lights = lights.iter().map(|light| Emission::new(light, self.space));
             let shining: Vec<Emission> = dyes.iter().map(|dye| dye.shines(self.space)).collect();
             let lights: Vec<Emission> = lights.chain(shining.iter().cloned()).collect();
-            let of_dye = |dye: &Dye| lights.iter().map(|light| dye.excited_by(light)).collect::<Vec<_>>();
-            let excitations: Vec<_> = dyes.iter().flat_map(of_dye).collect();
+            let of_dye = |dye: Excitable| lights.iter().map(|light| dye.by(light)).collect::<Vec<_>>();
+            let excitations: Vec<_> = dyes.iter().map(Dye::excitable).flat_map(of_dye).collect();
             Heroes { mixture: Arc::new(heroes.mixture.exciting(&excitations, &shining)), ..heroes }
         });
         Self { heroes, excites: true, ..self }
@@ -397,12 +400,11 @@ impl Basis {
 
     /// What the lanes are worth to a dye when a path ends in a light of this emission: in all three channels, what the
     /// dye shines, as the number that stands for its brightness. Nothing where lanes are no wavelengths.
-    pub fn excitation(&self, dye: &Dye, light: &Curve) -> Response {
+    pub fn excitation(&self, dye: &Excitable, light: &Emission) -> Response {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return Response::new(&[], Vec::new()) };
-        let emission = Emission::new(&light.level(), self.space);
-        let level = self.level(&dye.shines(self.space));
-        let light = dye.excited_by(&emission).parts().map(|x| [level * x; 3]).collect();
-        self.response_to(&emission, functions, light)
+        let level = self.level(&dye.dye().shines(self.space));
+        let excited = dye.by(light).parts().map(|x| [level * x; 3]).collect();
+        self.response_to(light, functions, excited)
     }
 
     /// What the lanes bring to bands of wavelengths when a path ends in a light of this emission; none of three bands,

@@ -37,6 +37,35 @@ impl Excited {
     }
 }
 
+/// A dye with all that is the same under every light.
+#[derive(Clone, Debug)]
+pub struct Excitable<'a> {
+    dye: &'a Dye,
+    /// The share of light that it absorbs, on the visible grid.
+    absorbed: Vec<f64>,
+    power_per_nm: f64,
+    /// All that it shines, as power on the scale of even spectra.
+    shines: f64,
+}
+
+impl Excitable<'_> {
+    /// The dye.
+    pub fn dye(&self) -> &Dye {
+        self.dye
+    }
+
+    /// How brightly it shines under a light.
+    pub fn by(&self, light: &Emission) -> Excited {
+        let scale = if self.shines > 0.0 { self.power_per_nm * light.unit() / self.shines } else { 0.0 };
+        let of = |nm: f64, absorbed: f64, light: f64| scale * nm * absorbed * light;
+        let parts = visible::wavelengths().zip(&self.absorbed).zip(light.spectrum());
+        let smooth = parts.map(|((nm, &absorbed), &light)| of(nm, absorbed, light)).collect();
+        let absorbed = self.dye.absorbed();
+        let lines = light.lines().iter().map(|&[nm, light]| [nm, of(nm, absorbed(nm), light)]).collect();
+        Excited { smooth, lines }
+    }
+}
+
 /// Where a surface would give back more light than it gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Excess {
@@ -59,7 +88,10 @@ impl Dye {
 
     /// Power that it shines, over that which it absorbs times the wavelength in nm at which it does: 1 / nm.
     pub fn power_per_nm(&self) -> f64 {
-        let shines = self.shines(ColorSpace::default());
+        self.power_of(&self.shines(ColorSpace::default()))
+    }
+
+    fn power_of(&self, shines: &Emission) -> f64 {
         let photons: f64 = visible::wavelengths().zip(shines.spectrum()).map(|(nm, power)| nm * power).sum();
         if photons > 0.0 { self.quantum_yield * shines.spectrum().iter().sum::<f64>() / photons } else { 0.0 }
     }
@@ -82,14 +114,15 @@ impl Dye {
         Emission::new(&self.emission, space)
     }
 
-    /// How brightly it shines under a light.
-    pub fn excited_by(&self, light: &Emission) -> Excited {
-        let shines = self.shines(ColorSpace::default());
-        let (absorbed, total) = (self.absorbed(), shines.spectrum().iter().sum::<f64>());
-        let scale = if total > 0.0 { self.power_per_nm() * light.unit() / (total * shines.unit()) } else { 0.0 };
-        let of = |nm: f64, light: f64| scale * nm * absorbed(nm) * light;
-        let smooth = visible::wavelengths().zip(light.spectrum()).map(|(nm, &light)| of(nm, light));
-        let lines = light.lines().iter().map(|&[nm, light]| [nm, of(nm, light)]);
-        Excited { smooth: smooth.collect(), lines: lines.collect() }
+    /// It as lights excite it.
+    pub fn excitable(&self) -> Excitable<'_> {
+        let (shines, absorbed) = (self.shines(ColorSpace::default()), self.absorbed());
+        let total = shines.spectrum().iter().sum::<f64>();
+        Excitable {
+            dye: self,
+            absorbed: visible::wavelengths().map(absorbed).collect(),
+            power_per_nm: self.power_of(&shines),
+            shines: if total > 0.0 { total * shines.unit() } else { 0.0 },
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! The dyes of a scene, as sources of light and as what light excites.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::arrived::{Arrived, SourceId};
 use crate::light::LightId;
 use crate::material::{Diffuse, Material};
 use crate::scene::Scene;
-use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Lanes, Quantity, Response, Table};
+use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Emission, Lanes, Quantity, Response, Table};
 
 /// The least chance of a dye, but for many of them, and the most of all: only how paths are drawn depends on it.
 const LEAST: f64 = 0.05;
@@ -27,6 +28,12 @@ pub(super) struct Dyes {
     pub(super) white: Material<Table>,
 }
 
+/// What shines: a light or a dye.
+struct Source<'a> {
+    curve: &'a Curve,
+    emission: Arc<Emission>,
+}
+
 impl Dyes {
     /// The dyes of a scene and what the light of each is worth to the sensor; none where there are no dyes, or where
     /// lanes are no wavelengths. Makes the basis one for them.
@@ -42,10 +49,17 @@ impl Dyes {
         }
         let lights: Vec<&Curve> = scene.lights.iter().map(|light| light.emission()).collect();
         *basis = basis.clone().exciting(&dyes, &lights);
-        let sources = || lights.iter().copied().chain(dyes.iter().map(|dye| &dye.emission));
+        let mut emissions = Distinct::default();
+        let mut source = |curve| {
+            let emission = emissions.of(curve, |curve| Arc::new(Emission::new(curve, basis.color_space())));
+            Source { curve, emission }
+        };
+        let curves = lights.iter().copied().chain(dyes.iter().map(|dye| &dye.emission));
+        let sources: Vec<Source> = curves.map(&mut source).collect();
         let of_dye = |dye: &Dye| {
-            let mut distinct = Distinct::default();
-            sources().map(|source| distinct.of(source, |source| basis.excitation(dye, source))).collect()
+            let (dye, mut distinct) = (dye.excitable(), Distinct::default());
+            let of = |source: &Source| distinct.of(source.curve, |_| basis.excitation(&dye, &source.emission));
+            sources.iter().map(of).collect()
         };
         let share = |dye: &Dye| {
             let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);

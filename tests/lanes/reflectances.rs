@@ -149,7 +149,7 @@ fn a_filter_lets_as_much_light_excite_a_dye_as_it_does() {
     let seen = own.clone().seen_under(&emissions(std::slice::from_ref(&light)), std::slice::from_ref(&dye), None);
     let filter: Curve = CurveKind::Samples(vec![[350.0, 0.0], [390.0, 1.0]]).into();
     let exact = {
-        let excited = dye.excited_by(&Emission::new(&light, SPACE));
+        let excited = dye.excitable().by(&Emission::new(&light, SPACE));
         let left = filter.values(Quantity::Transmittance);
         let kept: f64 = visible::wavelengths().zip(&excited.smooth).map(|(nm, power)| left(nm) * power).sum();
         kept / excited.parts().sum::<f64>()
@@ -159,7 +159,8 @@ fn a_filter_lets_as_much_light_excite_a_dye_as_it_does() {
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let numbers = basis.tabulate(Quantity::Transmittance, &filter);
         let emission = draw.read(&basis.tabulate(Quantity::Emission, &light));
-        let brightness = |lanes| basis.excitation(&dye, &light).sensor(&draw, lanes, false)[0];
+        let brightness =
+            |lanes| basis.excitation(&dye.excitable(), &Emission::new(&light, SPACE)).sensor(&draw, lanes, false)[0];
         (brightness(emission * draw.read(&numbers)) / brightness(emission) - exact).abs() / exact
     });
     println!("read at the lanes' wavelengths {own:.1e}, by what excites {seen:.1e}");

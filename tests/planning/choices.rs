@@ -4,7 +4,7 @@ use abbe::plan::{Plan, plan};
 use abbe::spectrum::Basis;
 use abbe::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
 
-use crate::support::scenes::{scene, view};
+use crate::support::scenes::{body, environment, scene, view};
 
 /// A thing of glass before a painted wall, by default lit by a lamp of plain white.
 fn behind(glass: &str, shape: &str, wall: &str, light: &str, render: &str) -> Plan {
@@ -341,4 +341,25 @@ fn polarization_that_is_left_out_is_told_beside_what_is_tolerated() {
     )));
     let said = plan.left_out.iter().find(|line| line.starts_with("left out: polarization")).expect("it is left out");
     assert!(said.ends_with("% of the light seen, within the 1.0 % that are tolerated"), "{said}");
+}
+
+#[test]
+fn of_many_materials_the_first_are_told_of_and_the_others_counted() {
+    let told = |count: usize| {
+        let glass = |i: usize| {
+            let shape = format!("sphere = {{ center = [{i}, 0, 0], radius = 0.4 }}");
+            body(&format!("glass{i}"), "dielectric.index = 1.5", &[&shape])
+        };
+        let text = view([0.0, 0.0, 60.0], [0.0, 0.0, 0.0], 40.0, 4) + &environment(1.0);
+        let because = plan(&scene(&(text + &(0..count).map(glass).collect::<String>()))).because;
+        let about = |line: &String| line.contains("material");
+        because.into_iter().filter(about).collect::<Vec<_>>()
+    };
+    let line = |i: usize| format!("material glass{i}: index 1.5000 in every lane, so lanes stay together");
+    assert_eq!(told(20), (0..20).map(line).collect::<Vec<_>>());
+    for (count, more) in [(21, "1 more material is"), (30, "10 more materials are")] {
+        let told = told(count);
+        assert_eq!(told[..20], (0..20).map(line).collect::<Vec<_>>());
+        assert!(told.len() == 21 && told[20].starts_with(more), "{told:?}");
+    }
 }

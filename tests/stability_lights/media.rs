@@ -49,6 +49,18 @@ fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_n
     }
 }
 
+/// A floor was taken for a neighbor of every bead above it, and nothing else was looked for beside twenty thousand.
+#[test]
+fn m2_two_of_many_beads_above_a_floor_are_refused_that_share_a_surface() {
+    let place = |i: u32| format!("[{{ translate = [{}, {}, 0] }}]", i % 200, i / 200 + 1);
+    let places: Vec<String> = (0..20_200).chain([20_199]).map(place).collect();
+    let bead = body("glass", "dielectric.index = 1.5", &["sphere = { center = [0, 0, 0], radius = 0.4 }"]);
+    let floor = body("floor", "diffuse.reflectance = 0.5", &["plane = { point = [0, 0, 0], normal = [0, 1, 0] }"]);
+    let text =
+        view([0.0, 3.0, 5.0], [0.0; 3], 30.0, 4) + &bead + &format!("instances = [{}]\n", places.join(", ")) + &floor;
+    assert!(refusal_in(Path::new(""), &text).message.contains("lies in one place"));
+}
+
 /// One side of a glass block and a table below it lie in one plane, cut into triangles in two ways: rounding would
 /// decide, ray by ray, which is met first.
 #[test]

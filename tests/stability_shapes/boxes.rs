@@ -1,12 +1,16 @@
 //! Rows B1 to B3 and B6 of the stability catalog: boxes of the tree, and vertices that are no numbers. (Rows B4 and B5
 //! are tested where the tree is built.)
 
-use abbe::math::{Bounds, DVec3, Ray};
-use abbe::shape::{Bvh, Mesh, Shape, Triangle, Vectors, Vertices, Visitor, read_mesh};
+use std::cell::Cell;
+use std::sync::Arc;
+
+use abbe::math::{Bounds, DMat3, DVec3, Frame, Ray, Transform};
+use abbe::shape::{Bvh, Cube, Disc, Ellipsoid, Mesh, Quad, Shape, Triangle, Vectors, Vertices, Visitor, read_mesh};
 
 use super::OFFSET;
 use crate::meshes::files::file;
 use crate::support::random::Random;
+use crate::support::scenes::{body, object, scene, view};
 
 /// Whether a walk shows an item.
 struct Reached<'a> {
@@ -123,6 +127,96 @@ fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
     let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
     assert!((crossing.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && crossing.part == 0, "{crossing:?}");
     assert!(shape.area().is_finite() && shape.pdf(&ray, &crossing).is_finite());
+}
+
+/// Long shapes that run aslant, about and beside the center of the world.
+fn needles(random: &mut Random) -> Vec<Shape> {
+    let mesh = Mesh::new(
+        Vertices::Double(vec![DVec3::NEG_ONE, DVec3::X, DVec3::Y, DVec3::ONE]),
+        vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    );
+    let mesh = Arc::new(mesh.expect("triangles"));
+    let kinds = [
+        Shape::Cube(Cube::new(DVec3::ZERO, DVec3::splat(2.0))),
+        Shape::Ellipsoid(Ellipsoid::new(DVec3::ZERO, DMat3::IDENTITY)),
+        Shape::Quad(Quad::new(DVec3::ZERO, DVec3::X, DVec3::Y)),
+        Shape::Disc(Disc::new(DVec3::ZERO, DVec3::Z, 1.0, None).expect("a disc")),
+        Shape::Mesh(mesh),
+    ];
+    let mut needle = |number: usize| {
+        let frame = Frame::about(random.direction());
+        let [x, y] = [random.between(0.001, 0.05), random.between(0.001, 0.05)];
+        let axes = DMat3::from_cols(frame.to_world(DVec3::X), frame.to_world(DVec3::Y), frame.to_world(DVec3::Z));
+        let axes = axes * DMat3::from_diagonal([DVec3::new(3.0, x, y), DVec3::new(x, y, 3.0)][number % 2]);
+        let map = Transform::affine(axes, random.direction() * random.between(0.0, 2.0));
+        kinds[number % kinds.len()].copied(&map)
+    };
+    (0..500).map(&mut needle).collect()
+}
+
+#[test]
+fn b6_boxes_of_pieces_hold_all_that_rays_meet_of_a_shape() {
+    let mut random = Random::new(37);
+    let shapes = needles(&mut random);
+    let (mut hits, mut pieces) = (0, 0);
+    for shape in &shapes {
+        let mut boxes = Vec::new();
+        shape.boxes(shapes.len(), |bounds| boxes.push(bounds));
+        pieces += boxes.len();
+        let whole = shape.bounds().expect("it is finite");
+        let within = |bounds: &Bounds, point: DVec3| point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
+        for _ in 0..400 {
+            let at = whole.min + (whole.max - whole.min) * DVec3::from([(); 3].map(|()| random.number()));
+            let aim = if random.number() < 0.5 { at } else { whole.center() };
+            let ray = Ray::new(aim + random.direction() * 4.0, DVec3::X);
+            let ray = Ray::new(ray.origin, aim - ray.origin);
+            if let Some(crossing) = shape.intersect(&ray, f64::INFINITY) {
+                let point = shape.point(&ray, &crossing).position;
+                assert!(boxes.iter().any(|bounds| within(bounds, point)), "{shape:?}, {ray:?}");
+                hits += 1;
+            }
+        }
+    }
+    assert!(pieces > 3 * shapes.len() && hits > 20_000, "{pieces} pieces, {hits} hits");
+}
+
+/// Each ray entered the boxes of every third needle.
+#[test]
+fn b6_objects_whose_pieces_have_boxes_are_met_as_if_they_were_whole_and_few_are_tried() {
+    const NEEDLES: usize = 1000;
+    let mut random = Random::new(38);
+    let mut needle = |number: usize| {
+        let ([x, y], [z, degrees]) = (random.pair(), random.pair());
+        let shape =
+            ["cube = { center = [0, 0, 0], size = [8, 0.01, 0.02] }", "sphere = { center = [0, 0, 0], radius = 1 }"];
+        let thin = ["", "{ scale = [4, 0.01, 0.02] }, "][number % 2];
+        let axis = [x - 0.5, y - 0.5, z - 0.5];
+        let turn = format!("{{ rotate = {{ axis = {axis:?}, degrees = {} }} }}", 360.0 * degrees);
+        let at = random.direction() * 3.0;
+        object("gray", shape[number % 2])
+            + &format!("transform = [{thin}{turn}, {{ translate = [{}, {}, {}] }}]\n", at.x, at.y, at.z)
+    };
+    let needles: String = (0..NEEDLES).map(&mut needle).collect();
+    let text = view([0.0, 0.0, 9.0], [0.0; 3], 30.0, 4) + &body("gray", "diffuse.reflectance = 0.5", &[]) + &needles;
+    let scene = scene(&text);
+    let (mut hits, tried) = (0, Cell::new(0));
+    let counts = |_: u32| {
+        tried.set(tried.get() + 1);
+        true
+    };
+    for _ in 0..5000 {
+        let origin = random.direction() * 6.0;
+        let ray = Ray::new(origin, random.direction() * 3.0 - origin);
+        let found = scene.nearest(&ray, f64::INFINITY, &counts).map(|hit| (hit.crossing.t, hit.object));
+        let each = (0..).zip(scene.objects.iter());
+        let each = each.filter_map(|(i, one)| Some((one.shape.intersect(&ray, f64::INFINITY)?.t, i)));
+        let nearest = each.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        assert_eq!(found, nearest, "{ray:?}");
+        assert_eq!(scene.is_occluded(&ray, f64::INFINITY, None, &Cell::new(None)), nearest.is_some(), "{ray:?}");
+        hits += usize::from(found.is_some());
+    }
+    println!("B6: {hits} hits, {} tried", tried.get());
+    assert!(hits > 1000 && tried.get() < 5000 * NEEDLES / 10, "{hits} hits, {} tried", tried.get());
 }
 
 /// Long triangles between points of a lattice: they are cut in planes of the lattice, within which many rays run.

@@ -1,13 +1,13 @@
 //! Clear bodies and flat lamps that share a part of their surface with something else.
 
 use super::context::Context;
-use super::near_pairs::{NEAR, near_pairs};
+use super::near_pairs::{MOST_PAIRS, NEAR, near_pairs};
 use super::place::Placed;
 use crate::material::Material;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler};
 use crate::scene::Object;
 use crate::scene::checks::ray_into;
-use crate::shape::Shape;
+use crate::shape::{Plane, Shape};
 
 /// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.
 const RAYS: u32 = 256;
@@ -53,9 +53,28 @@ fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
         objects.iter().map(|object| placed.is_clear(object) || is_flat_lamp(placed, object)).collect();
     let boxes: Vec<Option<Bounds>> = objects.iter().map(|object| object.shape.bounds()).collect();
     let mut pairs = near_pairs(&boxes, &counting);
+    pairs.extend(with_planes(objects, &counting).take(MOST_PAIRS));
     pairs.sort_unstable();
     pairs.retain(|&(first, second)| share_a_surface(&objects[first], &objects[second]));
     pairs
+}
+
+/// Pairs of such as count and planes that cut their boxes or lie beside them; two planes may always be one.
+fn with_planes(objects: &[Object], counting: &[bool]) -> impl Iterator<Item = (usize, usize)> {
+    let plane = |number: usize| match &*objects[number].shape {
+        Shape::Plane(plane) => Some((number, plane)),
+        _ => None,
+    };
+    let planes: Vec<(usize, &Plane)> = (0..objects.len()).filter_map(plane).collect();
+    let pair = move |first: usize, &(second, plane): &(usize, &Plane)| {
+        let is_near = match objects[first].shape.bounds() {
+            Some(bounds) => plane.meets(&bounds, NEAR),
+            None => first < second || first > second && !counting[second],
+        };
+        is_near.then_some((first, second))
+    };
+    let those_that_count = (0..objects.len()).filter(|&number| counting[number]);
+    those_that_count.flat_map(move |first| planes.iter().filter_map(|plane| pair(first, plane)).collect::<Vec<_>>())
 }
 
 fn share_a_surface(body: &Object, other: &Object) -> bool {

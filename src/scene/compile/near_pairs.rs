@@ -5,51 +5,61 @@ use crate::math::Bounds;
 /// Surfaces nearer than this part of a body's size lie in one place: far above rounding, far below anything meant.
 pub(super) const NEAR: f64 = 1e-9;
 /// Most pairs that are found; of a scene with more, the others are not.
-const MOST_PAIRS: usize = 20_000;
+pub(super) const MOST_PAIRS: usize = 20_000;
 /// Cells of the grid that an object covers at most; a larger one is compared with each.
 const MOST_CELLS: usize = 16;
 
 /// Pairs whose boxes meet, the first one such as counts: of objects in the order in which they begin along the longest
 /// side of the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and
-/// prune), as far as they cover a cell of a grid across that side that it covers too.
+/// prune), as far as they cover a cell of a grid across that side that it covers too. What has no box is in no pair.
 pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)> {
     if !counting.contains(&true) {
         return Vec::new();
     }
     let grid = Grid::new(boxes);
-    let from = |object: usize| boxes[object].map_or(f64::NEG_INFINITY, |of| of.min[grid.along] - reach(&of));
-    let to = |object: usize| boxes[object].map_or(f64::INFINITY, |of| of.max[grid.along] + reach(&of));
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    order.sort_by(|&a, &b| from(a).total_cmp(&from(b)));
+    let from = |boxed: &Boxed| boxed.bounds.min[grid.along] - reach(&boxed.bounds);
+    let to = |boxed: &Boxed| boxed.bounds.max[grid.along] + reach(&boxed.bounds);
+    let mut order: Vec<Boxed> = (0..boxes.len()).filter_map(|object| Boxed::of(boxes, object)).collect();
+    order.sort_by(|a, b| from(a).total_cmp(&from(b)));
     // Most objects of most scenes do not count, and are compared only with the few that do.
     let (mut open, mut open_that_count) = (Open::new(&grid), Open::new(&grid));
     let (mut pairs, mut near) = (Vec::new(), Vec::new());
-    for (place, &object) in order.iter().enumerate() {
-        let others = if counting[object] { &mut open } else { &mut open_that_count };
-        others.find(&grid, boxes[object], |other| to(order[other]) >= from(object), &mut near);
+    for (place, boxed) in order.iter().enumerate() {
+        let others = if counting[boxed.object] { &mut open } else { &mut open_that_count };
+        others.find(&grid, &boxed.bounds, |other| to(&order[other]) >= from(boxed), &mut near);
         for &other in &near {
-            if let Some(pair) = pair(boxes, counting, object, order[other]) {
+            if let Some(pair) = pair(counting, boxed, &order[other]) {
                 pairs.push(pair);
                 if pairs.len() == MOST_PAIRS {
                     return pairs;
                 }
             }
         }
-        open.add(&grid, boxes[object], place);
-        if counting[object] {
-            open_that_count.add(&grid, boxes[object], place);
+        open.add(&grid, &boxed.bounds, place);
+        if counting[boxed.object] {
+            open_that_count.add(&grid, &boxed.bounds, place);
         }
     }
     pairs
 }
 
+/// An object that has a box.
+struct Boxed {
+    object: usize,
+    bounds: Bounds,
+}
+
+impl Boxed {
+    fn of(boxes: &[Option<Bounds>], object: usize) -> Option<Self> {
+        Some(Self { object, bounds: boxes[object]? })
+    }
+}
+
 /// Two objects, the first one such as counts, if there is one and their boxes meet.
-fn pair(boxes: &[Option<Bounds>], counting: &[bool], one: usize, other: usize) -> Option<(usize, usize)> {
-    let (low, high) = (one.min(other), one.max(other));
-    // Of a plane there is no box to look around: where both count, the other one is the body.
-    let is_first = counting[low] && (boxes[low].is_some() || !counting[high]);
-    let (first, second) = if is_first { (low, high) } else { (high, low) };
-    (counting[first] && may_touch(boxes[first], boxes[second])).then_some((first, second))
+fn pair(counting: &[bool], one: &Boxed, other: &Boxed) -> Option<(usize, usize)> {
+    let (low, high) = if one.object < other.object { (one, other) } else { (other, one) };
+    let (first, second) = if counting[low.object] { (low, high) } else { (high, low) };
+    (counting[first.object] && may_touch(&first.bounds, &second.bounds)).then_some((first.object, second.object))
 }
 
 /// How far apart surfaces of a body and another may lie in one place.
@@ -57,14 +67,9 @@ fn reach(of: &Bounds) -> f64 {
     (of.max - of.min).max_element() * NEAR
 }
 
-/// Whether a body's box and another's meet; infinite ones have none, and are compared with one another and as what a
-/// body meets.
-fn may_touch(a: Option<Bounds>, b: Option<Bounds>) -> bool {
-    let (a, b) = match (a, b) {
-        (Some(a), Some(b)) => (a, b),
-        (a, b) => return a.is_some() || b.is_none(),
-    };
-    let reach = reach(&a);
+/// Whether a body's box and another's meet.
+fn may_touch(a: &Bounds, b: &Bounds) -> bool {
+    let reach = reach(a);
     (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
 }
 
@@ -115,7 +120,7 @@ impl Grid {
 /// Objects that have begun, by their places in the order, and as far as it is known have not ended.
 struct Open {
     by_cell: Vec<Vec<usize>>,
-    /// Those that cover many cells, or have no box.
+    /// Those that cover many cells.
     large: Vec<usize>,
 }
 
@@ -124,25 +129,22 @@ impl Open {
         Self { by_cell: vec![Vec::new(); grid.cells * grid.cells], large: Vec::new() }
     }
 
-    fn add(&mut self, grid: &Grid, of: Option<Bounds>, place: usize) {
-        match of.filter(|of| grid.is_small(of)) {
-            Some(of) => grid.cells(&of).for_each(|cell| self.by_cell[cell].push(place)),
-            None => self.large.push(place),
+    fn add(&mut self, grid: &Grid, of: &Bounds, place: usize) {
+        match grid.is_small(of) {
+            true => grid.cells(of).for_each(|cell| self.by_cell[cell].push(place)),
+            false => self.large.push(place),
         }
     }
 
     /// Those that may meet an object, in their order, without those that have ended.
-    fn find(&mut self, grid: &Grid, of: Option<Bounds>, is_open: impl Fn(usize) -> bool, found: &mut Vec<usize>) {
+    fn find(&mut self, grid: &Grid, of: &Bounds, is_open: impl Fn(usize) -> bool, found: &mut Vec<usize>) {
         found.clear();
         let mut take = |places: &mut Vec<usize>| {
             places.retain(|&place| is_open(place));
             found.extend_from_slice(places);
         };
         take(&mut self.large);
-        match of {
-            Some(of) => grid.cells(&of).for_each(|cell| take(&mut self.by_cell[cell])),
-            None => self.by_cell.iter_mut().for_each(take),
-        }
+        grid.cells(of).for_each(|cell| take(&mut self.by_cell[cell]));
         found.sort_unstable();
         found.dedup();
     }
@@ -169,7 +171,9 @@ mod tests {
             let boxes: Vec<Option<Bounds>> = (0..300).map(|number| boxed(number).flatten()).collect();
             let counting: Vec<bool> = (0..300).map(|number| number % 4 == 0).collect();
             let all = (0..300).flat_map(|low| (low + 1..300).map(move |high| [low, high]));
-            let mut wanted: Vec<_> = all.filter_map(|[low, high]| pair(&boxes, &counting, low, high)).collect();
+            let boxed = |number: usize| Boxed::of(&boxes, number);
+            let wanted = all.filter_map(|[low, high]| pair(&counting, &boxed(low)?, &boxed(high)?));
+            let mut wanted: Vec<_> = wanted.collect();
             wanted.sort_unstable();
             let mut found = near_pairs(&boxes, &counting);
             found.sort_unstable();
@@ -185,11 +189,11 @@ mod tests {
         let boxes: Vec<Option<Bounds>> = places.map(|place| around(place, DVec3::splat(0.4))).collect();
         let grid = Grid::new(&boxes);
         let (mut open, mut near, mut compared) = (Open::new(&grid), Vec::new(), 0);
-        for (place, of) in boxes.iter().enumerate() {
-            let from = of.map_or(0.0, |of| of.min[grid.along]);
-            open.find(&grid, *of, |other| boxes[other].is_some_and(|other| other.max[grid.along] >= from), &mut near);
+        for (place, of) in boxes.iter().flatten().enumerate() {
+            let from = of.min[grid.along];
+            open.find(&grid, of, |other| boxes[other].is_some_and(|other| other.max[grid.along] >= from), &mut near);
             compared += near.len();
-            open.add(&grid, *of, place);
+            open.add(&grid, of, place);
         }
         assert!(compared < 10 * boxes.len(), "{compared} comparisons");
     }

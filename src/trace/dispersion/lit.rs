@@ -11,7 +11,6 @@ use crate::light::{Light, LightId};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
-use crate::trace::media::Media;
 use crate::trace::photon_targets::ball_around_all;
 
 /// Rays in all, and the fewest and most of a light toward a target.
@@ -106,11 +105,7 @@ impl Pair<'_> {
         let target = self.target(light, normal, u)?;
         let sample = light.sample_li(&SurfacePoint::in_space(target), normal, [u[2], u[3]])?;
         let start = self.start(&sample.ray, sample.distance)?;
-        let media = if scene.lights[self.light].is_infinite() {
-            Media::default()
-        } else {
-            Media::around(&self.colors.world.scene, start.origin, start.direction)
-        };
+        let media = self.colors.world.media_at_light(self.light, &start);
         let walk = |lane: usize, ray: Ray| self.colors.walk(lane, ray, false, media, sampler, self.choice);
         let (first, second) = (walk(0, start), walk(1, start));
         if self.choice == Choice::FainterInside && first.fork_inside == 0.0 {

@@ -1,0 +1,97 @@
+//! Boxes around pieces of long shapes.
+//!
+//! A long shape that runs aslant leaves most of its box empty: among blades and wires, rays enter many boxes for
+//! nothing. Cut across its longest axis, it has a box for each piece, as triangles have for their
+//! [`fragments`](super::fragments).
+
+use crate::math::{Bounds, DVec3};
+
+/// Each more piece saves at least so many times half the surface of a box that the shape would fill: fewer than of
+/// triangles, several of which are met at once.
+const LEAST_GAIN: f64 = 2.0;
+/// Pieces of a shape at most.
+const MOST: usize = 16;
+/// So many pieces there are in any scene, for their boxes take memory. In one of more shapes each has two at most.
+const FREE: usize = 1 << 20;
+
+/// What contains a shape that may run aslant: `center` and each of three axes up to its length either way. What is
+/// `round` is the ellipsoid of these axes, else it may be all that lies between.
+pub(super) struct Hull {
+    center: DVec3,
+    /// The longest one first.
+    axes: [DVec3; 3],
+    is_round: bool,
+    /// How far points of the shape may lie outside by rounding.
+    pad: DVec3,
+}
+
+impl Hull {
+    pub(super) fn new(center: DVec3, mut axes: [DVec3; 3], is_round: bool, pad: DVec3) -> Self {
+        axes.sort_by(|a, b| b.length_squared().total_cmp(&a.length_squared()));
+        Self { center, axes, is_round, pad }
+    }
+
+    /// How many pieces are worth their boxes, of one of so many shapes.
+    pub(super) fn count(&self, shapes: usize) -> usize {
+        let [a, b, c] = self.axes.map(|axis| 2.0 * axis.length());
+        let (most, least) = (MOST.min((FREE / shapes.max(1)).max(2)), LEAST_GAIN * (a * b + b * c + c * a));
+        let surface = |count| self.pieces(count).map(|piece| piece.half_area()).sum::<f64>();
+        let (mut count, mut now) = (1, surface(1));
+        while 2 * count <= most {
+            let next = surface(2 * count);
+            if now - next <= count as f64 * least {
+                break;
+            }
+            (count, now) = (2 * count, next);
+        }
+        count
+    }
+
+    /// The boxes of so many pieces of equal length.
+    pub(super) fn pieces(&self, count: usize) -> impl Iterator<Item = Bounds> {
+        let [a, b, c] = self.axes;
+        let half = 1.0 / count as f64;
+        (0..count).map(move |piece| {
+            let middle = (2 * piece + 1) as f64 * half - 1.0;
+            let across = if self.is_round {
+                let nearest = (middle.abs() - half).max(0.0);
+                (b * b + c * c).map(f64::sqrt) * (1.0 - nearest * nearest).sqrt()
+            } else {
+                b.abs() + c.abs()
+            };
+            let (center, reach) = (self.center + a * middle, a.abs() * half + across + self.pad);
+            Bounds { min: center - reach, max: center + reach }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Frame;
+
+    /// Half the surfaces of the boxes of a shape of three half axes in some frame, over that of one box.
+    fn left(axes: [f64; 3], frame: &Frame, is_round: bool) -> f64 {
+        let [x, y, z] = axes;
+        let axes = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z].map(|axis| frame.to_world(axis));
+        let hull = Hull::new(DVec3::ONE, axes, is_round, DVec3::ZERO);
+        let surface = |count| hull.pieces(count).map(|piece| piece.half_area()).sum::<f64>();
+        surface(hull.count(1)) / surface(1)
+    }
+
+    /// Row B6 of the stability catalog.
+    #[test]
+    fn b6_long_shapes_that_run_aslant_have_boxes_of_their_pieces_and_others_have_one() {
+        let aslant = Frame::about(DVec3::new(0.5, 0.6, 0.7).normalize());
+        let straight = Frame::about(DVec3::Z);
+        for is_round in [false, true] {
+            let left = |axes, frame: &Frame| left(axes, frame, is_round);
+            assert!(left([0.001, 0.001, 1.0], &aslant) < 0.1);
+            assert!(left([0.01, 0.0, 1.0], &aslant) < 0.4);
+            assert!(left([0.1, 0.1, 1.0], &aslant) < 0.8);
+            for (axes, frame) in [([0.001, 0.001, 1.0], &straight), ([0.5, 0.5, 1.0], &aslant)] {
+                assert_eq!(left(axes, frame), 1.0, "{axes:?}");
+            }
+        }
+    }
+}
