@@ -24,12 +24,17 @@ pub fn reached_places(world: &World) -> Vec<DVec3> {
     in_lanes!(&world.method.basis, N => found_all_over::<N, _>(world, SIDE, LOOKING, None, place))
 }
 
-/// Whether any photon lies near such places: within a pixel, where all of `SIDE` times `SIDE` fill the image, or as far
-/// away as the next place is, where paths lead to more than the camera sees.
+/// Whether any photon lies within a pixel of such places, where all of `SIDE` times `SIDE` fill the image.
 pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
+    places.iter().any(|&place| photons.count_near(place, coarse * pixel_at(world, place)) > 0)
+}
+
+/// Whether any photon lies as near to such a place as the next place does: some may be reached where paths lead to more
+/// than the camera sees.
+pub fn lie_among<const N: usize>(places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let apart = apart(places);
-    places.iter().any(|&place| photons.count_near(place, apart.max(coarse * pixel_at(world, place))) > 0)
+    places.iter().any(|&place| photons.count_near(place, apart) > 0)
 }
 
 /// How far some places are from the next one: the median of a few.
