@@ -22,6 +22,9 @@ const MOST_OF_A_SAMPLE: f64 = 4.0;
 /// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is
 /// seen through glass.
 const NOTHING: f64 = 0.01;
+/// Why no photons are sent where nothing shines but a sky, and why not where bounces are aimed at openings to it.
+const OFTEN: &str = "rays find the sky by chance often enough";
+const LEFT: &str = "caustics of the sky, whose light comes through openings, are left to chance";
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
@@ -146,6 +149,12 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
 }
 
+/// Why photons are not sent, for a world of which more is known by now.
+pub(super) fn why_in(world: &World, why: Vec<String>) -> Vec<String> {
+    let has_openings = world.method().bright.as_ref().is_some_and(|bright| bright.are_openings);
+    why.into_iter().map(|line| if has_openings { line.replace(OFTEN, LEFT) } else { line }).collect()
+}
+
 /// What photons are sent to, as a person is told.
 fn aim(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
     match targets(scene, smooth).as_slice() {
@@ -221,7 +230,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
                 "caustics of a polarized image of the sky are left to chance".into()
             }
-            [] => "rays find the sky by chance often enough".into(),
+            [] => OFTEN.into(),
             lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
         };
         return Err(Some(format!("no photon tracing: {why}")));

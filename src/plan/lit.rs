@@ -33,6 +33,7 @@ impl Lit {
         }
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
         let left = caustics::without_end(scene, &world);
+        let why = caustics::why_in(&world, why);
         let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
         Self { world, because, taught }
     }

@@ -184,8 +184,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             }
         };
         let mut onward = self.walker.straight(path, draw, &meeting);
-        let is_held_out =
-            world.hides_objects && path.kind.is_from_camera() && world.sight(meeting.hit.object) == Sight::Holdout;
+        // Beyond a pane it is seen as through glass.
+        let is_held_out = world.has_mattes
+            && path.kind.is_from_camera()
+            && first.is_none()
+            && world.sight(meeting.hit.object) == Sight::Holdout;
         if is_held_out {
             // What lies behind a pane is cut out with it, and what lies behind a hole is not.
             onward.iter_mut().for_each(|onward| onward.straight = onward.straight.through_holes());

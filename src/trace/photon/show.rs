@@ -14,7 +14,7 @@ use crate::trace::dyes::Dyes;
 use crate::trace::first_lobe::FirstLobe;
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::spectrum_sample::Spectrum;
-use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhoton, Walker, parts, shading};
+use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhoton, Walker, Ways, parts, shading};
 use crate::trace::{World, media};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -113,7 +113,7 @@ struct View<'v, 'a, const N: usize, P: Polarization<N>> {
     /// Whether the camera is on the side where the photon has arrived; the surface as it sees it.
     same: bool,
     viewed: Interaction<'v, N>,
-    sight: Sight,
+    ways: Ways,
 }
 
 /// Adds what the camera sees of a photon.
@@ -122,26 +122,31 @@ pub fn show<const N: usize, P: Polarization<N>>(
     landing: &Landing<N, P>,
     splats: &mut Vec<PlacedSplat>,
 ) {
-    let Some(view) = View::new(walker, landing) else { return };
-    view.keep(view.scattered(), splats);
-    if let Some(dyes) = &walker.world.dyes {
-        for (number, dye) in dyes.of(&walker.world.scene, landing.at.object).enumerate() {
-            view.keep(view.shone_by(dyes, dye, number), splats);
+    let world = walker.world;
+    let ways: &[Ways] = match world.sight(landing.at.object) {
+        Sight::Shown => &[Ways::All],
+        Sight::Hidden => &[],
+        Sight::Holdout => &[Ways::Panes],
+        Sight::ShadowCatcher => &[Ways::Holes, Ways::Panes],
+    };
+    for &ways in ways {
+        let Some(view) = View::new(walker, landing, ways) else { return };
+        view.keep(view.scattered(), splats);
+        if let Some(dyes) = &world.dyes {
+            for (number, dye) in dyes.of(&world.scene, landing.at.object).enumerate() {
+                view.keep(view.shone_by(dyes, dye, number), splats);
+            }
         }
     }
 }
 
 impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
     /// None where the camera does not see the place.
-    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>) -> Option<Self> {
+    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>, ways: Ways) -> Option<Self> {
         let Landing { path, at, photon } = landing;
         let Interaction { flat, point, .. } = at;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
-        let sight = world.sight(at.object);
-        if matches!(sight, Sight::Hidden | Sight::Holdout) {
-            return None;
-        }
         let u = if camera.has_lens() { photon.sampler.four_plain(path.key, LENS) } else { [0.5; 4] };
         let seen = camera.see(point.position, [u[0], u[1]])?;
         let (window, reach) = (film.window(), film.filter.reach());
@@ -154,7 +159,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         }
         let same = seen.direction.dot(*flat) > 0.0;
         let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, landing, seen, places, same, viewed, sight })
+        Some(Self { walker, landing, seen, places, same, viewed, ways })
     }
 
     /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
@@ -175,7 +180,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         };
         let ends = Ends { left: path.left, ..Ends::default() };
         let last_occluder = &self.walker.last_occluder;
-        let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen, last_occluder };
+        let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen(self.ways), last_occluder };
         let (arriving, polarization) = passage.arriving(world, draw, start, light)?;
         if inside == there {
             return Some((arriving, polarization));
@@ -266,7 +271,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         let Photon { light, early, .. } = *self.landing.photon;
         let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
-        let (bounces, caught) = (self.landing.path.surfaces(), self.sight == Sight::ShadowCatcher);
+        let (bounces, caught) = (self.landing.path.surfaces(), self.ways == Ways::Holes);
         Splat { change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
     }
 

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::pilot::SampleWorth;
-use super::reach::{looked_through, reaches_photons};
+use super::reach::{lie_among, looked_through, reaches_photons};
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
 use crate::trace::camera::{Finding, PathTracer};
@@ -44,7 +44,7 @@ const SEED: u64 = 0x6761_7468;
 /// pixel of many samples gathers at more places than these few, so that too many photons are sent rather than too few.
 ///
 /// All of the image counts, also where only a part of it is made, so that all parts are made alike. None if no photon
-/// lies near places that paths from the camera [reach](super::reached_places).
+/// lies near places that paths from the camera [reach](super::reached_places), or only among them and none is gathered.
 pub fn gathered_worth(world: &World, places: &[DVec3]) -> Option<GatheredWorth> {
     in_lanes!(&world.method.basis, N => gather::<N>(world, places))
 }
@@ -69,6 +69,8 @@ impl Sums {
 /// A first map of photons, and a world whose maps have no more photons than are enough.
 struct First<const N: usize> {
     enough: f64,
+    /// Whether any photon lies within a pixel of where paths lead.
+    is_near: bool,
     world: World,
     /// None if it had more.
     photons: Option<PhotonMap<N>>,
@@ -77,19 +79,20 @@ struct First<const N: usize> {
 impl<const N: usize> First<N> {
     fn new(world: &World, reached: &[DVec3]) -> Option<Self> {
         let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0))?;
-        if !reaches_photons(world, reached, &photons) {
+        let is_near = reaches_photons(world, reached, &photons);
+        if !is_near && !lie_among(reached, &photons) {
             return None;
         }
         let enough = photons.sent as f64 * (ENOUGH / looked_through(world, reached, &photons));
         let fewer = |map: MapPasses| MapPasses { photons: map.photons.min(enough.ceil() as u64), ..map };
         let pass = world.method.light_pass.as_ref().map(|pass| pass.with_map(fewer));
         let is_enough = photons.sent as f64 <= enough;
-        Some(Self { enough, world: world.with_light_pass(pass), photons: is_enough.then_some(photons) })
+        Some(Self { enough, is_near, world: world.with_light_pass(pass), photons: is_enough.then_some(photons) })
     }
 }
 
 fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
-    let First { enough, ref world, photons: mut first } = First::<N>::new(world, reached)?;
+    let First { enough, is_near, ref world, photons: mut first } = First::<N>::new(world, reached)?;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
     let mut places: Vec<_> = film.whole().middles_of_cells(SIDE).collect();
@@ -140,7 +143,7 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
     let of_maps: Vec<f64> = by_photons[..places.len()].iter().map(|sums| sums.variance(MAPS as f64)).collect();
     let variances = by_samples[..places.len()].iter().map(|sums| sums.variance(f64::from(SAMPLES))).collect();
     let taken = MAPS as f64 * count * f64::from(SAMPLES);
-    Some(GatheredWorth {
+    (is_near || second_moment > 0.0).then(|| GatheredWorth {
         variance: mean(&of_maps) * pixels * all_sent as f64 / MAPS as f64,
         rays: rays as f64 / all_sent as f64,
         enough,

@@ -9,6 +9,8 @@ use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image that look where the camera's paths lead.
 const SIDE: u32 = 24;
+/// Places that tell how far apart all of them are.
+const FEW: usize = 256;
 /// Sets their random numbers apart.
 const LOOKING: u64 = 0x6c6f_6f6b;
 
@@ -26,6 +28,24 @@ pub fn reached_places(world: &World) -> Vec<DVec3> {
 pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let coarse = f64::from(world.scene.film.width) / f64::from(SIDE);
     places.iter().any(|&place| photons.count_near(place, coarse * pixel_at(world, place)) > 0)
+}
+
+/// Whether any photon lies as near to such a place as the next place does: some may be reached where paths lead to more
+/// than the camera sees.
+pub fn lie_among<const N: usize>(places: &[DVec3], photons: &PhotonMap<N>) -> bool {
+    let apart = apart(places);
+    places.iter().any(|&place| photons.count_near(place, apart) > 0)
+}
+
+/// How far some places are from the next one: the median of a few.
+fn apart(places: &[DVec3]) -> f64 {
+    let next = |(number, &place): (usize, &DVec3)| {
+        let others = places.iter().enumerate().filter(|(other, _)| *other != number);
+        others.map(|(_, other)| other.distance_squared(place)).fold(f64::INFINITY, f64::min)
+    };
+    let mut squares: Vec<f64> = places.iter().enumerate().step_by(places.len() / FEW + 1).map(next).collect();
+    squares.sort_by(f64::total_cmp);
+    squares.get(squares.len() / 2).filter(|square| square.is_finite()).map_or(0.0, |square| square.sqrt())
 }
 
 /// How many photons are looked through around such a place, on average.

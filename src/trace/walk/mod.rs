@@ -25,5 +25,5 @@ pub use path::{Among, Path, PathKind, ScatterSample};
 pub use polarization::{MetLight, Onward, Polarization, SeenPhoton};
 pub use polarized::Polarized;
 pub use rows::Rows;
-pub use straight::{Passage, Past};
+pub use straight::{Passage, Past, Ways};
 pub use walker::{Departure, Walker};

@@ -101,8 +101,18 @@ pub struct Passage<'a> {
 pub enum Past {
     /// Those that are there for a path.
     Objects(Among),
-    /// Those that are not hidden from the camera, to which it leads.
-    Seen,
+    /// Those that are not hidden from the camera, to which it leads by some ways.
+    Seen(Ways),
+}
+
+/// By which ways the camera sees a place. Beyond a pane it sees holdouts and shadow catchers as it sees all else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ways {
+    All,
+    /// Through nothing but holes.
+    Holes,
+    /// Through a pane, among others.
+    Panes,
 }
 
 impl Past {
@@ -115,7 +125,7 @@ impl Past {
             _ if !world.hides_objects => true,
             Self::Objects(Among::All) => true,
             Self::Objects(Among::Plate) => world.scene.is_of_plate(object),
-            Self::Seen => world.scene.is_seen(object),
+            Self::Seen(_) => world.scene.is_seen(object),
         }
     }
 }
@@ -162,22 +172,37 @@ impl Passage<'_> {
         draw: &Draw<N>,
         mut polarization: P,
     ) -> Option<(Lanes<N>, P)> {
-        let (mut ray, mut left, mut all) = (*self.ray, self.distance, Lanes::ONE);
+        let (mut ray, mut left) = (*self.ray, self.distance);
+        let (mut all, mut by_holes, mut by_panes) = (Lanes::ONE, Lanes::ONE, Lanes::ZERO);
         let counts = |object: u32| world.is_see_through(object) && self.past.has(world, object);
         while let Some(hit) = world.scene.nearest(&ray, left, &counts) {
             let meeting = Meeting::new(world, &ray, hit);
             let through = Through { ray: &ray, meeting: &meeting, present: Lanes::ONE, inside: self.inside };
             let onward = straight_at(world, draw, &through, polarization)?;
-            let is_held_out = self.past == Past::Seen && world.sight(hit.object) == Sight::Holdout;
-            let straight = if is_held_out { onward.straight.through_holes() } else { onward.straight };
-            (all, polarization) = (all * straight.share(), onward.polarization);
+            let share = onward.straight.share();
+            // The last surface is the camera's first: behind one that is held out it sees no more than holes show, and
+            // one that lets all light through is not there for it.
+            let [holes, panes] = match world.sight(hit.object) {
+                Sight::Holdout => [onward.straight.holes, Lanes::ZERO],
+                _ if share == Lanes::ONE => [share, Lanes::ZERO],
+                _ => [onward.straight.holes, onward.straight.panes],
+            };
+            by_panes = by_panes * holes + panes * all;
+            by_holes = by_holes * holes;
+            (all, polarization) = (all * share, onward.polarization);
             if all.is_zero() {
                 return None;
             }
             left -= hit.crossing.t;
             ray = meeting.point.leave(ray.direction);
         }
-        Some((all, polarization))
+        let share = match self.past {
+            Past::Seen(Ways::Holes) => by_holes,
+            Past::Seen(Ways::Panes) => by_panes,
+            Past::Seen(Ways::All) if world.has_mattes => by_holes + by_panes,
+            _ => all,
+        };
+        (!share.is_zero()).then_some((share, polarization))
     }
 }
 
