@@ -81,6 +81,11 @@ fn share_a_surface(body: &Object, other: &Object) -> bool {
     if let (Shape::Plane(one), Shape::Plane(another)) = (&*body.shape, &*other.shape) {
         return one.coincides(another, NEAR);
     }
+    if let (Shape::Sphere(one), Shape::Sphere(another)) = (&*body.shape, &*other.shape)
+        && !one.may_coincide(another)
+    {
+        return false;
+    }
     let Some(bounds) = body.shape.bounds() else { return false };
     let size = (bounds.max - bounds.min).length();
     let step = 1e-3 * size;
