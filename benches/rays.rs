@@ -53,9 +53,9 @@ fn main() {
                 for (ray, t_max) in rays {
                     if any {
                         hits += usize::from(mesh.is_crossed(ray, *t_max, None));
-                    } else if let Some(crossing) = mesh.intersect(ray, *t_max) {
+                    } else if let Some(intersection) = mesh.intersect(ray, *t_max) {
                         hits += 1;
-                        sum += crossing.t;
+                        sum += intersection.t;
                     }
                 }
             });
@@ -166,10 +166,10 @@ fn primary_rays() -> Vec<(Ray, f64)> {
 
 /// The ray that leaves what another meets, along the normal on the side it comes from.
 fn seen(mesh: &Shape, ray: &Ray) -> Option<(Ray, f64)> {
-    let crossing = mesh.intersect(ray, f64::INFINITY)?;
-    let point = mesh.point(ray, &crossing);
+    let intersection = mesh.intersect(ray, f64::INFINITY)?;
+    let point = mesh.point(ray, &intersection);
     let normal = if point.normal.dot(ray.direction) > 0.0 { -point.normal } else { point.normal };
-    Some((Ray { origin: point.position + normal * 1e-4, direction: normal }, crossing.t))
+    Some((Ray { origin: point.position + normal * 1e-4, direction: normal }, intersection.t))
 }
 
 fn bounce(leaving: &Ray, random: &mut Random) -> (Ray, f64) {

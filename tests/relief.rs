@@ -260,8 +260,8 @@ fn normals_under_heights_are_those_of_a_displaced_sphere() {
     for _ in 0..2000 {
         let (u, v) = (random.number(), 0.05 + 0.9 * random.number());
         let ray = Ray::new(center, displaced(u, v));
-        let crossing = object.shape.intersect(&ray, f64::INFINITY).unwrap();
-        let found = object.point(&ray, &crossing);
+        let intersection = object.shape.intersect(&ray, f64::INFINITY).unwrap();
+        let found = object.point(&ray, &intersection);
         const STEP: f64 = 1e-5;
         let along = displaced(u + STEP, v) - displaced(u - STEP, v);
         let up = displaced(u, v + STEP) - displaced(u, v - STEP);
@@ -292,8 +292,8 @@ fn no_normal_is_lost_at_the_poles_of_a_sphere() {
             for x in aside {
                 for z in aside {
                     let ray = Ray::new(DVec3::new(3.0 * x, 3.0 * pole, 3.0 * z), DVec3::new(-x, -pole, -z));
-                    let crossing = object.shape.intersect(&ray, f64::INFINITY).unwrap();
-                    let point = object.point(&ray, &crossing);
+                    let intersection = object.shape.intersect(&ray, f64::INFINITY).unwrap();
+                    let point = object.point(&ray, &intersection);
                     let upright =
                         (point.shading.length() - 1.0).abs() < 1e-12 && point.shading.dot(point.normal) > -1e-15;
                     assert!(upright, "{map} at {x} {z}: {}", point.shading);
@@ -327,8 +327,8 @@ fn maps_of_any_numbers_give_unit_normals() {
                 let from = DVec3::new(0.0, 1.0, 6.0);
                 let toward = DVec3::new(4.0 * random.number() - 2.0, 3.0 * random.number() - 1.0, 0.0);
                 let ray = Ray::new(from, toward - from);
-                let Some(crossing) = object.shape.intersect(&ray, f64::INFINITY) else { continue };
-                let point = object.point(&ray, &crossing);
+                let Some(intersection) = object.shape.intersect(&ray, f64::INFINITY) else { continue };
+                let point = object.point(&ray, &intersection);
                 let upright = (point.shading.length() - 1.0).abs() < 1e-12 && point.shading.dot(point.normal) > -1e-15;
                 assert!(upright, "{map}: {}", point.shading);
             }

@@ -9,10 +9,15 @@ mod lamps;
 mod sides;
 mod weights;
 
-use abbe::material::{RoughInterface, Sides};
+use abbe::material::{FacetSides, RoughInterface};
 
 /// Each index from outside and from inside, at each roughness and cosine.
-fn each(roughnesses: &[f64], indices: &[f64], cosines: &[f64], mut check: impl FnMut(&Sides, [f64; 2], f64, &str)) {
+fn each(
+    roughnesses: &[f64],
+    indices: &[f64],
+    cosines: &[f64],
+    mut check: impl FnMut(&FacetSides, [f64; 2], f64, &str),
+) {
     for roughness in roughnesses {
         let interface = RoughInterface::new(roughness * roughness);
         for &index in indices {

@@ -132,8 +132,8 @@ fn shading_normals_turn_with_the_mesh_whether_it_is_baked_or_an_instance() {
         let from = map.point(random.direction() * 3.0);
         let ray = Ray::new(from, map.point(random.direction() * 0.5) - from);
         let [a, b] = [&baked, &instance].map(|shape| {
-            let crossing = shape.intersect(&ray, f64::INFINITY).expect("it is aimed at");
-            shape.point(&ray, &crossing)
+            let intersection = shape.intersect(&ray, f64::INFINITY).expect("it is aimed at");
+            shape.point(&ray, &intersection)
         });
         assert!((a.shading - b.shading).length() < 1e-6, "{} and {}", a.shading, b.shading);
         assert!((a.shading.length() - 1.0).abs() < 1e-12);
@@ -155,8 +155,8 @@ fn faces_that_run_the_other_way_around_than_their_normals_are_smooth_all_the_sam
         Shape::Mesh(mesh.with(Attributes { normals, ..Attributes::default() }).into())
     };
     let at = |shape: &Shape, ray: &Ray| {
-        let crossing = shape.intersect(ray, f64::INFINITY).expect("it is aimed at");
-        shape.point(ray, &crossing)
+        let intersection = shape.intersect(ray, f64::INFINITY).expect("it is aimed at");
+        shape.point(ray, &intersection)
     };
     let (right, turned) = (built(faces.clone(), normals.clone()), built(back, normals.clone()));
     // Where one corner alone looks away, and far, the normal of the face is as good as any.
@@ -210,9 +210,9 @@ fn texture_coordinates_are_interpolated() {
     let mut random = Random::new(4);
     for _ in 0..500 {
         let ray = Ray::new(DVec3::ZERO, random.direction());
-        let crossing = shape.intersect(&ray, f64::INFINITY).expect("from inside");
-        let place = shape.point(&ray, &crossing).position;
-        let [u, v] = mesh.coordinates(crossing.part, crossing.uv).expect("it has coordinates");
+        let intersection = shape.intersect(&ray, f64::INFINITY).expect("from inside");
+        let place = shape.point(&ray, &intersection).position;
+        let [u, v] = mesh.coordinates(intersection.part, intersection.uv).expect("it has coordinates");
         assert!((u - place.x).abs() < 1e-6 && (v - place.y).abs() < 1e-6);
     }
     let (points, faces) = ball(8, 4);

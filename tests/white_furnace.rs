@@ -5,10 +5,10 @@
 //! cargo test --release --test all white_furnace:: -- --nocapture
 //! ```
 
-use abbe::material::{Arrival, Index, Lobes, Material};
+use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, LOSSLESS, arrival, material, toward};
+use crate::support::arrivals::{self, LOSSLESS, context, material, toward};
 
 const ROUGHNESSES: [f64; 7] = [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0];
 const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
@@ -22,8 +22,8 @@ const DRAWS: u32 = 1 << 14;
 /// spread.
 fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
-    let arrival = Arrival { beyond: Index::Same(indices[1]), ..arrival(&draw, toward(cos, 0.4), indices[0]) };
-    let [[shown, error], ..] = arrivals::furnace(material, &arrival, DRAWS);
+    let context = ScatterContext { beyond: Index::Same(indices[1]), ..context(&draw, toward(cos, 0.4), indices[0]) };
+    let [[shown, error], ..] = arrivals::furnace(material, &context, DRAWS);
     [shown, if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 3.0 * error } else { 0.0 }]
 }
 

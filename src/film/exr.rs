@@ -10,7 +10,7 @@ use exr::meta::attribute::{Chromaticities, EnvironmentMap};
 use exr::prelude::{AttributeValue, ImageAttributes, IntegerBounds, LayerAttributes, Text, Vec2};
 use serde::{Deserialize, Serialize};
 
-use super::exr_blocks::{self, CLAMPED, Part};
+use super::exr_blocks::{self, CLAMPED, ScanLinePart};
 use super::exr_column::{Column, Of};
 use super::file::replace_by;
 use super::format::{Compression, Format, Precision};
@@ -21,7 +21,7 @@ use crate::error::Result;
 
 /// How the camera saw, as the file records it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct View {
+pub struct CameraView {
     /// World to camera for row vectors, left-handed: +x right, +y up, +z forward (OpenEXR standard attributes).
     pub world_to_camera: [[f64; 4]; 4],
     /// World to normalized device coordinates for row vectors: x and y are 0 at the top left corner of the full image,
@@ -108,7 +108,7 @@ pub struct Heading<'a> {
     /// How it is written.
     pub format: &'a Format,
     /// How the camera saw.
-    pub view: &'a View,
+    pub view: &'a CameraView,
     /// Where it comes from.
     pub provenance: &'a Provenance,
 }
@@ -137,7 +137,7 @@ pub fn encode_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<
 }
 
 /// The parts of the file: one, or one for the image and each layer if the format sets them apart.
-fn parts(heading: Heading) -> Vec<Part> {
+fn parts(heading: Heading) -> Vec<ScanLinePart> {
     let Heading { film, format, .. } = heading;
     let half = format.precision == Precision::Half;
     let mut attributes = attributes(heading);
@@ -163,7 +163,7 @@ fn parts(heading: Heading) -> Vec<Part> {
         let own = if number == 0 { attributes.clone() } else { of_other_part(film, &attributes, group.has_colors) };
         let name = format.multipart.then(|| Text::new_or_panic(group.name));
         let packed = if group.is_data && format.compression.is_lossy() { Compression::Zip } else { format.compression };
-        Part::new(film, group.columns, packed, shared.clone(), LayerAttributes { layer_name: name, ..own })
+        ScanLinePart::new(film, group.columns, packed, shared.clone(), LayerAttributes { layer_name: name, ..own })
     };
     groups(film, format, half).into_iter().enumerate().map(part).collect()
 }

@@ -34,12 +34,12 @@ const OFFSET: usize = 8;
 pub(super) const CLAMPED: &str = "render/clamped";
 
 /// A part of a file of scan lines: its channels by their names, and all it says beside their numbers.
-pub(super) struct Part {
+pub(super) struct ScanLinePart {
     columns: Vec<Column>,
     header: Header,
 }
 
-impl Part {
+impl ScanLinePart {
     /// With the pixels of a film.
     pub(super) fn new(
         film: &Film,
@@ -104,7 +104,7 @@ struct Block {
 ///
 /// # Errors
 /// If rows cannot be read, or the file cannot be encoded or written; `path` is what it is called then.
-pub(super) fn write(parts: &[Part], rows: &mut dyn Rows, place: &mut dyn Place, path: &Path) -> Result<u64> {
+pub(super) fn write(parts: &[ScanLinePart], rows: &mut dyn Rows, place: &mut dyn Place, path: &Path) -> Result<u64> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let failed = |source| cannot_write(path, source);
     let headers: Vec<Header> = parts.iter().map(|part| part.header.clone()).collect();
@@ -142,12 +142,12 @@ pub(super) fn write(parts: &[Part], rows: &mut dyn Rows, place: &mut dyn Place, 
 }
 
 /// Rows of the tallest block; those of all packings are powers of two.
-fn tallest_block(parts: &[Part]) -> u32 {
-    parts.iter().map(Part::block_rows).max().unwrap_or(1)
+fn tallest_block(parts: &[ScanLinePart]) -> u32 {
+    parts.iter().map(ScanLinePart::block_rows).max().unwrap_or(1)
 }
 
 /// Rows that are worked on at once: at most so many, but as many as the tallest block has.
-fn strips(parts: &[Part], at_once: Option<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
+fn strips(parts: &[ScanLinePart], at_once: Option<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
     let height = parts.iter().map(|part| part.header.layer_size.height() as u32).max().unwrap_or_default();
     let tallest = tallest_block(parts);
     let each = at_once.map_or(height, |rows| rows / tallest * tallest).max(tallest);
@@ -155,9 +155,9 @@ fn strips(parts: &[Part], at_once: Option<u32>) -> impl Iterator<Item = Range<u3
 }
 
 /// The blocks of some rows, from the top; those that begin together in the order of their parts.
-fn blocks(parts: &[Part], strip: &Range<u32>) -> Vec<Block> {
+fn blocks(parts: &[ScanLinePart], strip: &Range<u32>) -> Vec<Block> {
     let end = strip.end;
-    let of_part = |(number, part): (usize, &Part)| {
+    let of_part = |(number, part): (usize, &ScanLinePart)| {
         let each = part.block_rows();
         let rows = strip.clone().step_by(each as usize);
         rows.map(move |first| Block { part: number, rows: first..end.min(first.saturating_add(each)) })
@@ -174,8 +174,14 @@ struct Packed {
 }
 
 /// Packs a block of pixels of a film, the first of which has a number.
-fn pack(parts: &[Part], headers: &[Header], block: &Block, film: &Film, first: usize) -> exr::error::Result<Packed> {
-    let Part { columns, header } = &parts[block.part];
+fn pack(
+    parts: &[ScanLinePart],
+    headers: &[Header],
+    block: &Block,
+    film: &Film,
+    first: usize,
+) -> exr::error::Result<Packed> {
+    let ScanLinePart { columns, header } = &parts[block.part];
     let (width, rows) = (film.width as usize, block.rows.len());
     let mut data = Vec::with_capacity(header.channels.bytes_per_pixel * width * rows);
     let mut clamped = 0;

@@ -6,7 +6,7 @@ use std::path::Path;
 use exr::prelude::{AttributeValue, ImageAttributes, Text};
 
 use super::exr::{Heading, attributes, chromaticities, colors, display_window};
-use super::exr_blocks::{self, Part};
+use super::exr_blocks::{self, ScanLinePart};
 use super::exr_column::{Column, Of};
 use super::file::replace_by;
 use super::format::Compression;
@@ -49,7 +49,7 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
     }
     let mut shared = ImageAttributes::new(display_window(film));
     shared.chromaticities = Some(chromaticities(film));
-    let parts = [Part::new(film, columns, Compression::Zip, shared, attributes)];
+    let parts = [ScanLinePart::new(film, columns, Compression::Zip, shared, attributes)];
     replace_by(path, |place| exr_blocks::write(&parts, rows, place, path).map(drop))
 }
 

@@ -28,7 +28,7 @@ mod tile_values;
 mod time;
 mod window;
 
-pub use self::exr::{Fact, Heading, Optics, Provenance, View, encode_exr, write_exr};
+pub use self::exr::{CameraView, Fact, Heading, Optics, Provenance, encode_exr, write_exr};
 pub use cryptomatte::{Manifest, RANKS, id};
 pub use exr_attributes::CameraMatrix;
 pub use exr_file::ExrFile;

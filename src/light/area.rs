@@ -4,7 +4,7 @@ use std::sync::Arc;
 use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
 use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray, cosine_about};
 use crate::shape::{
-    Ball, Coordinates, Crossing, Density, Shape, ShapeSample, Sides, Sphere, SurfacePoint, TexturedShape,
+    Ball, Coordinates, Density, Intersection, Shape, ShapeSample, Sides, Sphere, SurfacePoint, TexturedShape,
 };
 use crate::spectrum::Quantity;
 
@@ -168,16 +168,16 @@ impl<S> Area<S> {
 
     /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
     /// crossing.
-    fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+    fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let evenly = match &self.parts {
-            Some(_) => self.shape.pdf_part(ray, crossing),
-            None => self.shape.pdf(ray, crossing),
+            Some(_) => self.shape.pdf_part(ray, intersection),
+            None => self.shape.pdf(ray, intersection),
         };
-        let Some((surface, cells)) = self.cells(crossing.part) else { return evenly };
-        let point = self.shape.point(ray, crossing);
-        let of_image = surface.place(crossing, point.position).map_or(0.0, |place| {
+        let Some((surface, cells)) = self.cells(intersection.part) else { return evenly };
+        let point = self.shape.point(ray, intersection);
+        let of_image = surface.place(intersection, point.position).map_or(0.0, |place| {
             Density::Area(cells.density(place.at) / place.area)
-                .toward(crossing.t, point.normal.dot(ray.direction).abs())
+                .toward(intersection.t, point.normal.dot(ray.direction).abs())
         });
         BY_IMAGE * of_image + (1.0 - BY_IMAGE) * evenly
     }
@@ -199,38 +199,38 @@ impl<S> Area<S> {
         let ray = from.leave(sample.direction);
         // The tree of a mesh is left to those who ask what occludes the light.
         let part = sample.part.filter(|_| self.shape.has_triangles());
-        let crossing = match part {
+        let intersection = match part {
             Some(part) => self.shape.intersect_triangle(&ray, part)?,
             None => self.shape.intersect(&ray, f64::INFINITY)?,
         };
-        if sample.part.is_some_and(|part| part != crossing.part) {
+        if sample.part.is_some_and(|part| part != intersection.part) {
             return None;
         }
-        let cos = self.shape.normal(&ray, &crossing).dot(ray.direction);
+        let cos = self.shape.normal(&ray, &intersection).dot(ray.direction);
         if !self.sides.shine(cos < 0.0) {
             return None;
         }
         let pdf = match sample.density {
-            Some(density) => usable(density.toward(crossing.t, cos.abs()))?,
-            None => self.pdf_at(&ray, normal, &crossing)?,
+            Some(density) => usable(density.toward(intersection.t, cos.abs()))?,
+            None => self.pdf_at(&ray, normal, &intersection)?,
         };
         let uv = self.image.as_ref().map_or([0.0; 2], |image| {
-            image.coordinates.at(&self.shape, &crossing, self.shape.point(&ray, &crossing).position)
+            image.coordinates.at(&self.shape, &intersection, self.shape.point(&ray, &intersection).position)
         });
-        let (distance, object) = (crossing.t, Some(self.object));
+        let (distance, object) = (intersection.t, Some(self.object));
         Some(LightSample { ray, distance, object, part, pdf: Some(pdf), factor: 1.0, uv })
     }
 
     /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
     /// meets it first at a crossing; none where it is seen exactly edge-on.
-    pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, crossing: &Crossing) -> Option<f64> {
+    pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, intersection: &Intersection) -> Option<f64> {
         usable(match (self.seen_cap(), &self.parts) {
-            (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, crossing.t),
-            (None, None) => self.pdf_part(ray, crossing),
+            (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, intersection.t),
+            (None, None) => self.pdf_part(ray, intersection),
             (None, Some(parts)) => {
                 let two_sided = self.shows_backs(ray.origin);
-                let probability = parts.probability(crossing.part, ray.origin, normal, two_sided);
-                if probability == 0.0 { 0.0 } else { probability * self.pdf_part(ray, crossing) }
+                let probability = parts.probability(intersection.part, ray.origin, normal, two_sided);
+                if probability == 0.0 { 0.0 } else { probability * self.pdf_part(ray, intersection) }
             }
         })
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, SkyPolarization, Spot, Sun};
 use crate::math::{DVec3, Ray};
-use crate::shape::{Ball, Crossing, Sides, SurfacePoint};
+use crate::shape::{Ball, Intersection, Sides, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
 /// Number of a light in its scene.
@@ -90,11 +90,12 @@ impl<S> Light<S> {
     }
 
     /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
-    /// unit normal; none if it cannot. `crossing` is where the ray first meets a surface that shines, if that is known.
-    pub fn pdf_li(&self, ray: &Ray, normal: DVec3, crossing: Option<&Crossing>) -> Option<f64> {
+    /// unit normal; none if it cannot. `intersection` is where the ray first meets a surface that shines, if that is
+    /// known.
+    pub fn pdf_li(&self, ray: &Ray, normal: DVec3, intersection: Option<&Intersection>) -> Option<f64> {
         match self {
-            Self::Area(area) if area.is_sampled => match crossing {
-                Some(crossing) => area.pdf_at(ray, normal, crossing),
+            Self::Area(area) if area.is_sampled => match intersection {
+                Some(intersection) => area.pdf_at(ray, normal, intersection),
                 None => area.pdf_at(ray, normal, &area.shape.intersect(ray, f64::INFINITY)?),
             },
             Self::Environment(environment) => Some(environment.pdf(ray.direction, normal)),

@@ -1,6 +1,6 @@
 //! Light that leaves a surface: by ways of its own, or straight on.
 
-use super::{Arrival, reflect};
+use super::{ScatterContext, reflect};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{LaneSet, Lanes};
 
@@ -38,8 +38,8 @@ pub struct Incoming {
 
 impl<const N: usize> Branch<N> {
     /// The mirror image of the viewer's direction; `polarization` is the degree that it gives to unpolarized light.
-    pub(super) fn mirrored(arrival: &Arrival<N>, share: Lanes<N>, polarization: f32) -> Self {
-        let wi = reflect(arrival.wo, arrival.normal);
+    pub(super) fn mirrored(context: &ScatterContext<N>, share: Lanes<N>, polarization: f32) -> Self {
+        let wi = reflect(context.wo, context.normal);
         Self { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
     }
 
@@ -56,7 +56,7 @@ impl<const N: usize> Branch<N> {
     }
 
     /// The way of a ray that goes straight on, with the light that comes by it.
-    pub fn onward(ray: &Ray, straight: &Straight<N>) -> Self {
+    pub fn through(ray: &Ray, straight: &Straight<N>) -> Self {
         let (share, polarization) = (straight.share(), straight.polarization);
         Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
     }

@@ -36,25 +36,25 @@ const WIDEST: f64 = 1.52;
 /// Steps of a row over the cosine.
 const STEPS: usize = 64;
 
-/// What crosses a coat.
+/// The transmittance of a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Crossing {
+pub(super) struct CoatTransmittance {
     /// Share of the light from the direction of one cosine that gets in.
     pub(super) from: f64,
     /// From the direction of the other.
     pub(super) to: f64,
     /// Share of the light from all around that gets in.
     pub(super) around: f64,
-    /// Of the light that a rough coat's facets would reflect more than once if they were perfect mirrors, the share
-    /// that is reflected.
-    pub(super) again: f64,
+    /// Of the energy that single scattering by a rough coat's facets would lose if they were perfect mirrors, the share
+    /// that is reflected by multiple scattering.
+    pub(super) multiple: f64,
     /// Square of the relative index.
     squared: f64,
     /// Of diffuse light from inside, what a film absorbs, times that.
     lost: f64,
 }
 
-impl Crossing {
+impl CoatTransmittance {
     /// BRDF times pi of a diffuse base of reflectance `r` under the coat: T T' r / (m^2 (1 - r R)), where R is the
     /// coat's reflectance of diffuse light from inside.
     ///
@@ -80,8 +80,9 @@ impl Crossing {
     }
 }
 
-/// What facets of a rough coat block of the light from two directions, the same for all lanes.
-pub(super) struct BlockedByCoat<'a> {
+/// The energy that single scattering by the facets of a rough coat loses, of light from two directions: the same for
+/// all lanes.
+pub(super) struct CoatMissingEnergy<'a> {
     surface: &'a RoughSurface,
     /// If they were perfect mirrors.
     by_mirrors: [f64; 2],
@@ -90,20 +91,20 @@ pub(super) struct BlockedByCoat<'a> {
     by_hats_around: &'a HatWeights,
 }
 
-impl BlockedByCoat<'_> {
-    /// What crosses the coat and a film, where `bare` crosses it without that.
+impl CoatMissingEnergy<'_> {
+    /// The transmittance of the coat and a film, where `bare` is that of the coat alone.
     ///
     /// Of light that the coat would reflect more than once, what is not reflected gets in.
-    pub(super) fn crossing_under(&self, averages: &FilmAverages, bare: &Crossing) -> Crossing {
-        let again = self.surface.reflected_again(averages.mean[0]);
-        let less = bare.again - again;
+    pub(super) fn transmittance_under(&self, averages: &FilmAverages, bare: &CoatTransmittance) -> CoatTransmittance {
+        let multiple = self.surface.multiply_reflected(averages.mean[0]);
+        let less = bare.multiple - multiple;
         let [from, to] = [(bare.from, 0), (bare.to, 1)].map(|(bare, end)| {
             let more = averages.added(&self.by_hats[end]) + less * self.by_mirrors[end];
             (bare + more).clamp(0.0, 1.0)
         });
-        let around = bare.around + averages.added(self.by_hats_around) + less * self.surface.mean_blocked();
+        let around = bare.around + averages.added(self.by_hats_around) + less * self.surface.mean_missing_energy();
         let lost = bare.squared * averages.lost_inside;
-        Crossing { from, to, around: around.max(f64::MIN_POSITIVE), again, lost, ..*bare }
+        CoatTransmittance { from, to, around: around.max(f64::MIN_POSITIVE), multiple, lost, ..*bare }
     }
 }
 
@@ -120,33 +121,40 @@ impl Coat {
     }
 
     /// What crosses into index `n2` under `n1`, from two directions of the given cosines.
-    pub(super) fn crossing(&self, [n1, n2]: [f64; 2], [from, to]: [f64; 2]) -> Crossing {
+    pub(super) fn transmittance(&self, [n1, n2]: [f64; 2], [from, to]: [f64; 2]) -> CoatTransmittance {
         let m = n2 / n1;
         let squared = m * m;
         let around = diffuse_transmittance(m);
         let [from_smooth, to_smooth] = [from, to].map(|cos| Interface::new(n1, n2, cos).transmittance);
         let Some(surface) = self.roughness.surface() else {
-            return Crossing { from: from_smooth, to: to_smooth, around, again: 0.0, squared, lost: 0.0 };
+            return CoatTransmittance { from: from_smooth, to: to_smooth, around, multiple: 0.0, squared, lost: 0.0 };
         };
-        let again = surface.reflected_again(1.0 - around);
+        let multiple = surface.multiply_reflected(1.0 - around);
         let rows = around_index(&self.rows, m, |m| row(surface, m));
         let rough = |smooth: f64, cos: f64| {
             let place = rows[0].1.place(cos);
             let more: f64 = rows.iter().map(|(part, row)| part * row.at(place)).sum();
-            (smooth - more - again * surface.blocked(cos)).clamp(0.0, 1.0)
+            (smooth - more - multiple * surface.missing_energy(cos)).clamp(0.0, 1.0)
         };
         let more: f64 = rows.iter().map(|(part, row)| part * row.mean()).sum();
-        let around = around - more - again * surface.mean_blocked();
-        Crossing { from: rough(from_smooth, from), to: rough(to_smooth, to), around, again, squared, lost: 0.0 }
+        let around = around - more - multiple * surface.mean_missing_energy();
+        CoatTransmittance {
+            from: rough(from_smooth, from),
+            to: rough(to_smooth, to),
+            around,
+            multiple,
+            squared,
+            lost: 0.0,
+        }
     }
 
-    /// What a rough one blocks of the light from two directions; none of a smooth one.
-    pub(super) fn blocked(&self, cosines: [f64; 2]) -> Option<BlockedByCoat<'_>> {
+    /// The energy that single scattering by a rough one loses, of light from two directions; none of a smooth one.
+    pub(super) fn missing_energy(&self, cosines: [f64; 2]) -> Option<CoatMissingEnergy<'_>> {
         let surface = self.roughness.surface()?;
         let kernel = self.kernel.get_or_init(|| kernel(surface));
-        Some(BlockedByCoat {
+        Some(CoatMissingEnergy {
             surface,
-            by_mirrors: cosines.map(|cos| surface.blocked(cos)),
+            by_mirrors: cosines.map(|cos| surface.missing_energy(cos)),
             by_hats: cosines.map(|cos| kernel.at(cos)),
             by_hats_around: kernel.mean(),
         })
@@ -208,7 +216,7 @@ impl OfFacet for ReflectedOnce {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
         let reflectance = 1.0 - Interface::new(1.0, self.m, wo.dot(h)).transmittance;
-        reflectance * self.facets.left_and_blocked(wo, reflect(wo, h))[0]
+        reflectance * self.facets.unshadowed_and_shadowed(wo, reflect(wo, h))[0]
     }
 }
 
@@ -235,7 +243,7 @@ impl OfFacet for Polarized {
         let across = wo.cross(h);
         let cos_squared = if across == DVec3::ZERO { 0.5 } else { across.y * across.y / across.length_squared() };
         let of_facet = Block::at_boundary([1.0, self.m, wo.dot(h)], false).d;
-        of_facet * (2.0 * cos_squared - 1.0) * self.facets.left_and_blocked(wo, reflect(wo, h))[0]
+        of_facet * (2.0 * cos_squared - 1.0) * self.facets.unshadowed_and_shadowed(wo, reflect(wo, h))[0]
     }
 }
 
@@ -245,8 +253,8 @@ fn kernel(surface: &RoughSurface) -> FilmKernel {
     // As if the body were denser than what is around it, which it nearly always is.
     FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
         for ([wo, h], weight) in visible.from(z.max(HORIZON)) {
-            let [_, blocked] = facets.left_and_blocked(wo, reflect(wo, h));
-            add(wo.dot(h), weight, [blocked, 1.0]);
+            let [_, missing] = facets.unshadowed_and_shadowed(wo, reflect(wo, h));
+            add(wo.dot(h), weight, [missing, 1.0]);
         }
     })
 }

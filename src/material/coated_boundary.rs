@@ -1,11 +1,11 @@
 //! The smooth coated surface of a clear body, lane by lane.
 
-use super::coating::MetCoating;
+use super::coating::LocalCoating;
 use super::degree::of_all_lanes;
 use super::fresnel::SharedRay;
 use super::refractions::Refractions;
 use super::stack::StackShares;
-use super::{Arrival, Block, Branch, Coating, Interface};
+use super::{Block, Branch, Coating, Interface, ScatterContext};
 use crate::spectrum::{Lanes, Table};
 
 /// One reflected branch, and one refracted branch for each distinct pair of indices that refract: those of the bare
@@ -13,25 +13,25 @@ use crate::spectrum::{Lanes, Table};
 pub(super) fn scatter<const N: usize>(
     coating: &Coating<Table>,
     factors: [&Table; 2],
-    arrival: &Arrival<N>,
+    context: &ScatterContext<N>,
     branches: &mut Vec<Branch<N>>,
 ) {
-    let ([reflectance, tint], parts) = (factors.map(|table| arrival.read(table)), arrival.parts());
-    let crossing = if parts { tint * arrival.draw.parting() } else { tint };
-    let (met, cos) = (coating.met(arrival, arrival.from_inside), arrival.wo.dot(arrival.normal));
+    let ([reflectance, tint], parts) = (factors.map(|table| context.read(table)), context.parts());
+    let crossing = if parts { tint * context.draw.parting() } else { tint };
+    let (local, cos) = (coating.local(context, context.from_inside), context.wo.dot(context.normal));
     let (mut reflected, mut of_lanes) = (Lanes::ZERO, [[[0.0; 2]; 2]; N]);
     let first = branches.len();
-    let mut refracted = Refractions::new(arrival, parts, branches);
-    for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-        let pair @ [here, beyond] = arrival.refracting(lane);
-        let StackShares { reflected: r, refracted: t } = shares_at(&met, arrival, lane, cos);
-        reflected.0[lane] = arrival.present[lane] * reflectance[lane] * r.mean() as f32;
+    let mut refracted = Refractions::new(context, parts, branches);
+    for lane in (0..N).filter(|&lane| context.present[lane] != 0.0) {
+        let pair @ [here, beyond] = context.refracting(lane);
+        let StackShares { reflected: r, refracted: t } = shares_at(&local, context, lane, cos);
+        reflected.0[lane] = context.present[lane] * reflectance[lane] * r.mean() as f32;
         of_lanes[lane] = [[r.s, r.p], [t.s, t.p]];
-        let crosses = arrival.present[lane] * crossing[lane];
+        let crosses = context.present[lane] * crossing[lane];
         if t.mean() == 0.0 || crosses == 0.0 {
             continue;
         }
-        let ratio = arrival.incident_of(lane) / arrival.beyond_of(lane);
+        let ratio = context.incident_of(lane) / context.beyond_of(lane);
         let branch = refracted.branch(pair, || Interface::new(here, beyond, cos));
         branch.share.0[lane] = crosses * (t.mean() * (ratio * ratio)) as f32;
     }
@@ -41,46 +41,46 @@ pub(super) fn scatter<const N: usize>(
     };
     branches[first..].iter_mut().for_each(|branch| branch.polarization = degree(&branch.share, 1));
     if !reflected.is_zero() {
-        branches.push(Branch::mirrored(arrival, reflected, degree(&reflected, 0)));
+        branches.push(Branch::mirrored(context, reflected, degree(&reflected, 0)));
     }
 }
 
 /// What a coated boundary, or a facet of it, does with a lane whose ray meets it at an angle with cosine `cos`.
 pub(super) fn shares_at<const N: usize>(
-    met: &MetCoating<N>,
-    arrival: &Arrival<N>,
+    local: &LocalCoating<N>,
+    context: &ScatterContext<N>,
     lane: usize,
     cos: f64,
 ) -> StackShares {
-    let [here, beyond] = arrival.refracting(lane);
+    let [here, beyond] = context.refracting(lane);
     let goes_on = Interface::new(here, beyond, cos).transmittance > 0.0;
-    shares_of_lane(arrival, lane, cos, goes_on, |n1, n2, q1| met.shares(lane, n1, n2.into(), q1))
+    shares_of_lane(context, lane, cos, goes_on, |n1, n2, q1| local.shares(lane, n1, n2.into(), q1))
 }
 
 /// What becomes of polarized radiance there.
 pub(super) fn block_at<const N: usize>(
-    met: &MetCoating<N>,
-    arrival: &Arrival<N>,
+    local: &LocalCoating<N>,
+    context: &ScatterContext<N>,
     lane: usize,
     cos: f64,
     crosses: bool,
 ) -> Block<f64> {
-    let StackShares { reflected, refracted } = shares_at(met, arrival, lane, cos);
-    let ratio = arrival.incident_of(lane) / arrival.beyond_of(lane);
+    let StackShares { reflected, refracted } = shares_at(local, context, lane, cos);
+    let ratio = context.incident_of(lane) / context.beyond_of(lane);
     if crosses { refracted.block().times(ratio * ratio) } else { reflected.block() }
 }
 
 /// What a coated boundary does with a lane whose ray meets it at an angle with cosine `cos`, by the lane's own indices
 /// n1 and n2 and the cosine times n1 that it has on the ray: see [`SharedRay`]. What has no way on is reflected.
 pub(super) fn shares_of_lane<const N: usize>(
-    arrival: &Arrival<N>,
+    context: &ScatterContext<N>,
     lane: usize,
     cos: f64,
     goes_on: bool,
     of_stack: impl Fn(f64, f64, f64) -> StackShares,
 ) -> StackShares {
-    let own @ [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
-    let ray = SharedRay::new(arrival.refracting(lane), cos);
+    let own @ [n1, n2] = [context.incident_of(lane), context.beyond_of(lane)];
+    let ray = SharedRay::new(context.refracting(lane), cos);
     let mut shares = of_stack(n1, n2, ray.normal_component(own));
     if !goes_on {
         shares.reflect_all();

@@ -1,10 +1,10 @@
 use std::cell::RefCell;
 use std::ops::Deref;
 
-use super::Arrival;
+use super::ScatterContext;
 use super::film_averages::FilmAverages;
 use super::film_table::FilmTable;
-use super::known::KnownLanes;
+use super::lane_cache::LaneCache;
 use super::stack::{Layer, Stack, StackShares};
 use crate::math::Complex;
 use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
@@ -28,9 +28,9 @@ pub struct Coating<S> {
     /// From the outside inward.
     pub layers: Vec<CoatingLayer<S>>,
     /// From outside and from inside, what the film makes of light from many directions, by the indices around it.
-    known: [KnownLanes<[f64; 4], FilmAverages>; 2],
+    known: [LaneCache<[f64; 4], FilmAverages>; 2],
     /// The same by the thickness of the layer that alone varies over the surface.
-    by_thickness: [KnownLanes<[f64; 4], FilmTable>; 2],
+    by_thickness: [LaneCache<[f64; 4], FilmTable>; 2],
 }
 
 /// One layer.
@@ -49,8 +49,8 @@ pub struct CoatingLayer<S> {
 impl<S> Coating<S> {
     /// Layers from the outside inward.
     pub fn new(layers: Vec<CoatingLayer<S>>) -> Self {
-        let known = [KnownLanes::new(), KnownLanes::new()];
-        Self { layers, known, by_thickness: [KnownLanes::new(), KnownLanes::new()] }
+        let known = [LaneCache::new(), LaneCache::new()];
+        Self { layers, known, by_thickness: [LaneCache::new(), LaneCache::new()] }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Coating<T> {
@@ -71,11 +71,15 @@ impl Coating<Table> {
     }
 
     /// The coating where light arrives; `inside`: at its inner side.
-    pub(super) fn met<'a, const N: usize>(&'a self, arrival: &'a Arrival<'a, N>, inside: bool) -> MetCoating<'a, N> {
-        let read = |layer: &CoatingLayer<Table>| arrival.read(&layer.thickness);
+    pub(super) fn local<'a, const N: usize>(
+        &'a self,
+        context: &'a ScatterContext<'a, N>,
+        inside: bool,
+    ) -> LocalCoating<'a, N> {
+        let read = |layer: &CoatingLayer<Table>| context.read(&layer.thickness);
         let is_even = self.varying().next().is_none();
         let thicknesses = if is_even { Vec::new() } else { self.layers.iter().map(read).collect() };
-        MetCoating { coating: self, arrival, inside, thicknesses }
+        LocalCoating { coating: self, context, inside, thicknesses }
     }
 
     /// The layers whose thickness varies over the surface.
@@ -129,16 +133,16 @@ impl Deref for Averages<'_> {
 }
 
 /// A coating where light arrives.
-pub(super) struct MetCoating<'a, const N: usize> {
+pub(super) struct LocalCoating<'a, const N: usize> {
     coating: &'a Coating<Table>,
-    arrival: &'a Arrival<'a, N>,
+    context: &'a ScatterContext<'a, N>,
     /// Whether it is met at its inner side.
     inside: bool,
     /// Of each layer, where any varies over the surface.
     thicknesses: Vec<Lanes<N>>,
 }
 
-impl<'a, const N: usize> MetCoating<'a, N> {
+impl<'a, const N: usize> LocalCoating<'a, N> {
     /// Whether it is met at its inner side.
     pub(super) fn is_inside(&self) -> bool {
         self.inside
@@ -154,7 +158,7 @@ impl<'a, const N: usize> MetCoating<'a, N> {
         indices: [f64; 4],
         make: impl Fn(&Stack) -> FilmAverages,
     ) -> Averages<'a> {
-        let Self { coating, arrival: Arrival { draw, .. }, .. } = self;
+        let Self { coating, context: ScatterContext { draw, .. }, .. } = self;
         let make_here = || make(&self.stack(lane));
         let side = usize::from(inside);
         if self.thicknesses.is_empty() {
@@ -164,12 +168,12 @@ impl<'a, const N: usize> MetCoating<'a, N> {
         let read = || {
             let number = coating.varying_alone()?;
             let layer = self.layer(number, lane);
-            let new = || FilmTable::new(&layer, self.arrival.wave(lane)[0], coating.layers[number].thickness.range().1);
+            let new = || FilmTable::new(&layer, self.context.wave(lane)[0], coating.layers[number].thickness.range().1);
             let table = coating.by_thickness[side].get(draw, lane, indices, new)?;
             table.read(layer.thickness_nm, |thickness_nm| {
                 let with = |at: usize| Layer { thickness_nm, ..self.layer(at, lane) };
                 let layers = self.in_order().map(|at| if at == number { with(at) } else { self.layer(at, lane) });
-                make(&Stack::new(self.arrival.wave(lane), layers))
+                make(&Stack::new(self.context.wave(lane), layers))
             })
         };
         Averages::Made(Box::new(read().unwrap_or_else(make_here)))
@@ -183,7 +187,7 @@ impl<'a, const N: usize> MetCoating<'a, N> {
         LAST.with_borrow_mut(|last| {
             let Answers { kept, newest } = &mut last[lane];
             let is_it = |answer: &&Answer| {
-                answer.boundary == boundary && answer.stack.is(self.arrival.wave(lane), self.layers(lane))
+                answer.boundary == boundary && answer.stack.is(self.context.wave(lane), self.layers(lane))
             };
             let known = |place: usize| Some((place, kept[place].as_ref().filter(is_it)?.shares));
             if let Some((place, shares)) = known(0).or_else(|| known(1)) {
@@ -205,7 +209,7 @@ impl<'a, const N: usize> MetCoating<'a, N> {
 
     /// The layers for a lane, the viewer's side first.
     pub(super) fn stack(&self, lane: usize) -> Stack {
-        Stack::new(self.arrival.wave(lane), self.layers(lane))
+        Stack::new(self.context.wave(lane), self.layers(lane))
     }
 
     fn layers(&self, lane: usize) -> impl Iterator<Item = Layer> {
@@ -220,7 +224,7 @@ impl<'a, const N: usize> MetCoating<'a, N> {
 
     fn layer(&self, number: usize, lane: usize) -> Layer {
         let layer = &self.coating.layers[number];
-        let read = |table| self.arrival.draw.read_lane(table, lane);
+        let read = |table| self.context.draw.read_lane(table, lane);
         let thickness_nm = match self.thicknesses.get(number) {
             Some(thickness) => f64::from(thickness[lane]),
             None => read(&layer.thickness),

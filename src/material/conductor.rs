@@ -1,15 +1,15 @@
 use std::array;
 
-use super::coating::MetCoating;
+use super::coating::LocalCoating;
 use super::degree::{LANES, degree, largest, of_all_lanes};
 use super::film_averages::{FilmAverages, mean};
 use super::fresnel::conductor_reflectances;
-use super::known::KnownLanes;
+use super::lane_cache::LaneCache;
 use super::last::Last;
 use super::roughness::above;
 use super::{
-    Arrival, Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
-    conductor_reflectance,
+    Block, Branch, Coating, Incoming, Mueller, PolarizedShare, RoughReflection, RoughSurface, Roughness,
+    ScatterContext, conductor_reflectance,
 };
 use crate::math::{Complex, DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
@@ -31,14 +31,14 @@ pub struct Conductor<S> {
     pub roughness: Roughness,
     /// Layers on it in which light interferes.
     pub coating: Option<Coating<S>>,
-    /// Of an uncoated one, [`RoughSurface::reflected_again`], by its indices.
-    again: KnownLanes<[f64; 3], f64>,
+    /// Of an uncoated one, [`RoughSurface::multiply_reflected`], by its indices.
+    multiple: LaneCache<[f64; 3], f64>,
 }
 
 impl<S> Conductor<S> {
     /// The metal of index n - i k, as rough and coated as given.
     pub fn new([n, k]: [S; 2], roughness: Roughness, coating: Option<Coating<S>>) -> Self {
-        Self { n, k, roughness, coating, again: KnownLanes::new() }
+        Self { n, k, roughness, coating, multiple: LaneCache::new() }
     }
 
     pub(super) fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Conductor<T> {
@@ -50,112 +50,117 @@ impl<S> Conductor<S> {
 
 impl Conductor<Table> {
     /// The way on, backward; none where it leads into the metal.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2]) -> Option<Branch<N>> {
-        let Some(surface) = self.roughness.surface() else { return Some(self.mirror(arrival)) };
-        let frame = Frame::about(arrival.normal);
-        let reflection = surface.scatter(above(&frame, arrival.wo), u)?;
-        let share = self.reflected(arrival, surface, &reflection, 1.0 / reflection.pdf);
+    pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2]) -> Option<Branch<N>> {
+        let Some(surface) = self.roughness.surface() else { return Some(self.mirror(context)) };
+        let frame = Frame::about(context.normal);
+        let reflection = surface.scatter(above(&frame, context.wo), u)?;
+        let share = self.reflected(context, surface, &reflection, 1.0 / reflection.pdf);
         Some(Branch::drawn(unit(frame.to_world(reflection.wi)), share, reflection.pdf))
     }
 
-    fn met<'a, const N: usize>(&'a self, arrival: &'a Arrival<'a, N>) -> MetConductor<'a, N> {
-        let [n, k] = [&self.n, &self.k].map(|table| arrival.draw.read_exact(table));
-        let coating = self.coating.as_ref().map(|coating| coating.met(arrival, false));
-        MetConductor { arrival, n, k, coating }
+    fn local<'a, const N: usize>(&'a self, context: &'a ScatterContext<'a, N>) -> LocalConductor<'a, N> {
+        let [n, k] = [&self.n, &self.k].map(|table| context.draw.read_exact(table));
+        let coating = self.coating.as_ref().map(|coating| coating.local(context, false));
+        LocalConductor { context, n, k, coating }
     }
 
     /// Of a smooth metal.
-    fn mirror<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
-        let (met, cos) = (self.met(arrival), arrival.wo.dot(arrival.normal));
-        let reflected = met.reflected(cos);
+    fn mirror<const N: usize>(&self, context: &ScatterContext<N>) -> Branch<N> {
+        let (local, cos) = (self.local(context), context.wo.dot(context.normal));
+        let reflected = local.reflected(cos);
         let share = Lanes::from_fn(|i| mean_of(reflected[i]) as f32);
-        let polarization = match met.coating {
+        let polarization = match local.coating {
             None => largest(reflected.into_iter().map(degree)),
             Some(_) => of_all_lanes(reflected.into_iter()) as f32,
         };
-        Branch::mirrored(arrival, share, polarization)
+        Branch::mirrored(context, share, polarization)
     }
 
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         let surface = self.roughness.surface()?;
-        let reflection = surface.evaluate_at(arrival, wi)?;
-        Some((self.reflected(arrival, surface, &reflection, 1.0), reflection.pdf))
+        let reflection = surface.evaluate_at(context, wi)?;
+        Some((self.reflected(context, surface, &reflection, 1.0), reflection.pdf))
     }
 
     /// The BRDF times cosine of each lane, times a factor.
     fn reflected<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         surface: &RoughSurface,
         reflection: &RoughReflection,
         factor: f64,
     ) -> Lanes<N> {
-        let (met, mut last) = (self.met(arrival), Last::NONE);
-        let once = met.reflected(reflection.cos);
+        let (local, mut last) = (self.local(context), Last::NONE);
+        let single = local.reflected(reflection.cos);
         Lanes::from_fn(|i| {
-            if arrival.present[i] == 0.0 {
+            if context.present[i] == 0.0 {
                 return 0.0;
             }
-            let again = match &met.coating {
-                Some(coating) => surface.reflected_again(coated_mean(coating, i, met.indices(i))),
-                None => last.of(met.indices(i), |indices| {
-                    let again = || surface.reflected_again(mean_reflectance(indices));
-                    self.again.get(arrival.draw, i, indices, again).copied().unwrap_or_else(again)
+            let multiple = match &local.coating {
+                Some(coating) => surface.multiply_reflected(coated_mean(coating, i, local.indices(i))),
+                None => last.of(local.indices(i), |indices| {
+                    let multiple = || surface.multiply_reflected(mean_reflectance(indices));
+                    self.multiple.get(context.draw, i, indices, multiple).copied().unwrap_or_else(multiple)
                 }),
             };
-            (factor * (mean_of(once[i]) * reflection.once + again * reflection.again)) as f32
+            (factor * (mean_of(single[i]) * reflection.single + multiple * reflection.multiple)) as f32
         })
     }
 
     /// The degree by the facet that mirrors light from `wi`:
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
-    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
-        let Some(h) = (arrival.wo + wi).try_normalize() else { return 0.0 };
-        let (met, cos) = (self.met(arrival), arrival.wo.dot(h));
-        largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(met.reflected_of(lane, cos))))
+    pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
+        let Some(h) = (context.wo + wi).try_normalize() else { return 0.0 };
+        let (local, cos) = (self.local(context), context.wo.dot(h));
+        largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(local.reflected_of(lane, cos))))
     }
 
     /// By the facet that mirrors the light; what is reflected more than once leaves unpolarized.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
-        let (axis, cos, once) = match self.roughness.surface() {
-            None if incoming.single => (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal), 1.0),
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
+        let (axis, cos, single) = match self.roughness.surface() {
+            None if incoming.single => (context.wo.cross(context.normal), context.wo.dot(context.normal), 1.0),
             Some(surface) if !incoming.single => {
-                let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
+                let Some(reflection) = surface.evaluate_at(context, incoming.wi) else {
                     return *mueller = Mueller::NONE;
                 };
-                (arrival.wo.cross(incoming.wi), reflection.cos, reflection.once)
+                (context.wo.cross(incoming.wi), reflection.cos, reflection.single)
             }
             _ => return *mueller = Mueller::NONE,
         };
-        let (met, mut last) = (self.met(arrival), Last::NONE);
-        mueller.set_lanes(axis, incoming.lanes, |lane| match met.coated(lane, cos) {
-            Some(share) => share.block().times(once),
-            None => last.of(met.indices(lane), |[n1, n, k]| Block::of_metal(n1, n, k, cos).times(once)),
+        let (local, mut last) = (self.local(context), Last::NONE);
+        mueller.set_lanes(axis, incoming.lanes, |lane| match local.coated(lane, cos) {
+            Some(share) => share.block().times(single),
+            None => last.of(local.indices(lane), |[n1, n, k]| Block::of_metal(n1, n, k, cos).times(single)),
         });
     }
 }
 
 /// A metal where light arrives.
-struct MetConductor<'a, const N: usize> {
-    arrival: &'a Arrival<'a, N>,
+struct LocalConductor<'a, const N: usize> {
+    context: &'a ScatterContext<'a, N>,
     n: [f64; N],
     k: [f64; N],
-    coating: Option<MetCoating<'a, N>>,
+    coating: Option<LocalCoating<'a, N>>,
 }
 
-impl<const N: usize> MetConductor<'_, N> {
+impl<const N: usize> LocalConductor<'_, N> {
     /// The index of the medium before it, and its own, n - i k, for a lane.
     fn indices(&self, lane: usize) -> [f64; 3] {
-        [self.arrival.incident_of(lane), self.n[lane], self.k[lane]]
+        [self.context.incident_of(lane), self.n[lane], self.k[lane]]
     }
 
     /// What it reflects of each lane on the ray, (s, p), of light that meets it at an angle of a cosine.
     fn reflected(&self, cos: f64) -> [[f64; 2]; N] {
-        let is_here = |lane: usize| self.arrival.present[lane] != 0.0;
+        let is_here = |lane: usize| self.context.present[lane] != 0.0;
         if self.coating.is_some() {
             return array::from_fn(|lane| if is_here(lane) { self.reflected_of(lane, cos) } else { [0.0; 2] });
         }
-        let n1 = array::from_fn(|lane| self.arrival.incident_of(lane));
+        let n1 = array::from_fn(|lane| self.context.incident_of(lane));
         let [s, p] = conductor_reflectances(&n1, [&self.n, &self.k], cos);
         array::from_fn(|lane| if is_here(lane) { [s[lane], p[lane]] } else { [0.0; 2] })
     }
@@ -184,8 +189,8 @@ fn mean_of([s, p]: [f64; 2]) -> f64 {
 }
 
 /// A coated metal's reflectance of diffuse light.
-fn coated_mean<const N: usize>(met: &MetCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
-    let averages = met.averages(lane, false, [n1, n, k, 0.0], |stack| {
+fn coated_mean<const N: usize>(local: &LocalCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
+    let averages = local.averages(lane, false, [n1, n, k, 0.0], |stack| {
         let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
         FilmAverages::of_mean(mean(stack.is_slow(), 1.0, |cos| [at(cos), 0.0]))
     });

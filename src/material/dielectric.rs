@@ -3,7 +3,7 @@ use super::last::Last;
 use super::refractions::Refractions;
 use super::rough_dielectric::{RoughBoundary, parts};
 use super::{
-    Arrival, Block, Branch, Coating, Incoming, Interface, Mueller, RoughInterface, Roughness, reflect,
+    Block, Branch, Coating, Incoming, Interface, Mueller, RoughInterface, Roughness, ScatterContext, reflect,
     shared_transmittance,
 };
 use crate::math::DVec3;
@@ -61,21 +61,26 @@ impl<S> Dielectric<S> {
 
 impl Dielectric<Table> {
     /// The ways on, backward.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+    pub(super) fn scatter<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        u: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
         match (self.roughness.interface(), &self.coating) {
-            (Some(interface), _) => self.rough(interface).scatter(arrival, u, branches),
+            (Some(interface), _) => self.rough(interface).scatter(context, u, branches),
             (None, Some(coating)) => {
-                coated_boundary::scatter(coating, [&self.reflectance, &self.transmittance], arrival, branches);
+                coated_boundary::scatter(coating, [&self.reflectance, &self.transmittance], context, branches);
             }
-            (None, None) => match arrival.one_direction() {
-                Some(directions) => self.scatter_as_one(arrival, directions, branches),
-                None => self.scatter_smooth(arrival, branches),
+            (None, None) => match context.one_direction() {
+                Some(directions) => self.scatter_as_one(context, directions, branches),
+                None => self.scatter_smooth(context, branches),
             },
         }
     }
 
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        self.rough(self.roughness.interface()?).evaluate(arrival, wi)
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        self.rough(self.roughness.interface()?).evaluate(context, wi)
     }
 
     fn rough<'a>(&'a self, interface: &'a RoughInterface) -> RoughBoundary<'a> {
@@ -84,33 +89,33 @@ impl Dielectric<Table> {
     }
 
     /// Whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
-    pub(super) fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+    pub(super) fn parts<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
         match self.roughness.interface() {
-            Some(interface) => parts(interface, arrival),
-            None => arrival.parts(),
+            Some(interface) => parts(interface, context),
+            None => context.parts(),
         }
     }
 
     /// The degree by the facet of rough glass that light from `wi` meets: Walter et al. 2007, *Microfacet Models for
     /// Refraction through Rough Surfaces*, equations 13 and 16.
-    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+    pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let (mut last, mut most) = (None, 0.0_f64);
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, arrival.from_inside));
+        let local = self.coating.as_ref().map(|coating| coating.local(context, context.from_inside));
         for lane in 0..N {
-            let pair @ [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
-            if n1 == n2 || (last.replace(pair) == Some(pair) && met.is_none()) {
+            let pair @ [n1, n2] = [context.incident_of(lane), context.beyond_of(lane)];
+            if n1 == n2 || (last.replace(pair) == Some(pair) && local.is_none()) {
                 continue;
             }
-            let crosses = wi.dot(arrival.normal) < 0.0;
-            let h = if crosses { (arrival.wo * n1 + wi * n2) * (n1 - n2).signum() } else { arrival.wo + wi };
+            let crosses = wi.dot(context.normal) < 0.0;
+            let h = if crosses { (context.wo * n1 + wi * n2) * (n1 - n2).signum() } else { context.wo + wi };
             let Some(h) = h.try_normalize() else { continue };
-            if let Some(met) = &met {
-                let shares = met.at_cosine(lane, n1, n2, arrival.wo.dot(h));
+            if let Some(local) = &local {
+                let shares = local.at_cosine(lane, n1, n2, context.wo.dot(h));
                 let share = if crosses { shares.refracted } else { shares.reflected };
                 most = most.max(share.degree());
                 continue;
             }
-            let facet = Interface::new(n1, n2, arrival.wo.dot(h));
+            let facet = Interface::new(n1, n2, context.wo.dot(h));
             let degree = if crosses { facet.polarization_refracted } else { facet.polarization_reflected };
             most = most.max(degree.abs());
         }
@@ -120,23 +125,23 @@ impl Dielectric<Table> {
     /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices that refract: here
     /// lanes part, and only those go on that are there for it. Lanes that share a direction have their own Fresnel
     /// shares.
-    fn scatter_smooth<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| arrival.read_tint(table));
-        let parts = arrival.parts();
-        let crossing = if parts { tint * arrival.draw.parting() } else { tint };
-        let cos = arrival.wo.dot(arrival.normal);
+    fn scatter_smooth<const N: usize>(&self, context: &ScatterContext<N>, branches: &mut Vec<Branch<N>>) {
+        let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| context.read_tint(table));
+        let parts = context.parts();
+        let crossing = if parts { tint * context.draw.parting() } else { tint };
+        let cos = context.wo.dot(context.normal);
         let (mut reflected, mut polarization) = (Lanes::ZERO, 0.0);
-        let (mut refracted, mut last) = (Refractions::new(arrival, parts, branches), Last::NONE);
-        let own = arrival.own_transmittance(cos);
-        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let pair @ [here, beyond] = arrival.refracting(lane);
-            let [n1, n2] = [arrival.incident_of(lane), arrival.beyond_of(lane)];
+        let (mut refracted, mut last) = (Refractions::new(context, parts, branches), Last::NONE);
+        let own = context.own_transmittance(cos);
+        for lane in (0..N).filter(|&lane| context.present[lane] != 0.0) {
+            let pair @ [here, beyond] = context.refracting(lane);
+            let [n1, n2] = [context.incident_of(lane), context.beyond_of(lane)];
             let interface = last.of(pair, |[here, beyond]| Interface::new(here, beyond, cos));
             let [reflects, lets_through] = match &own {
                 Some(own) if here != beyond || n1 != n2 => [1.0 - own[lane], own[lane]],
                 _ => [interface.reflectance, interface.transmittance],
             };
-            let weight = arrival.present[lane];
+            let weight = context.present[lane];
             reflected.0[lane] = weight * reflectance[lane] * reflects as f32;
             polarization = interface.polarization_reflected.abs().max(polarization);
             let crosses = weight * crossing[lane];
@@ -148,22 +153,22 @@ impl Dielectric<Table> {
             branch.share.0[lane] = crosses * (lets_through * ((n1 / n2) * (n1 / n2))) as f32;
         }
         if !reflected.is_zero() {
-            branches.push(Branch::mirrored(arrival, reflected, polarization as f32));
+            branches.push(Branch::mirrored(context, reflected, polarization as f32));
         }
     }
 
     /// One reflected and one refracted branch, in which each lane has its own shares.
     fn scatter_as_one<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         [here, beyond]: [f64; 2],
         branches: &mut Vec<Branch<N>>,
     ) {
-        let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| arrival.read_tint(table));
-        let cos = arrival.wo.dot(arrival.normal);
-        let [n1, n2] = &arrival.indices();
+        let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| context.read_tint(table));
+        let cos = context.wo.dot(context.normal);
+        let [n1, n2] = &context.indices();
         let mut push = |wi, share: Lanes<N>, crosses, eta_scale, polarization: f64| {
-            let (share, polarization) = (share * arrival.present, polarization.abs() as f32);
+            let (share, polarization) = (share * context.present, polarization.abs() as f32);
             if !share.is_zero() {
                 branches.push(Branch { wi, share, pdf: None, crosses, eta_scale, polarization });
             }
@@ -171,46 +176,56 @@ impl Dielectric<Table> {
         // Between equal indices nothing happens at all, even along the surface.
         let straight = here == beyond;
         if straight && n1 == n2 {
-            push(-arrival.wo, tint, true, 1.0, 0.0);
+            push(-context.wo, tint, true, 1.0, 0.0);
             return;
         }
         let interface = Interface::new(here, beyond, cos);
         let crossing = shared_transmittance([n1, n2], [here, beyond], cos);
         if interface.transmittance > 0.0 {
-            let wi = if straight { -arrival.wo } else { interface.refract(arrival.wo, arrival.normal) };
+            let wi = if straight { -context.wo } else { interface.refract(context.wo, context.normal) };
             let eta_scale = (here / beyond) * (here / beyond);
             let square = |i: usize| (n1[i] / n2[i]) * (n1[i] / n2[i]);
             let share = tint * Lanes::from_fn(|i| (crossing[i] * square(i)) as f32);
             push(wi, share, true, eta_scale, interface.polarization_refracted);
         }
         let share = reflectance * Lanes::from_fn(|i| (1.0 - crossing[i]) as f32);
-        let wi = reflect(arrival.wo, arrival.normal);
+        let wi = reflect(context.wo, context.normal);
         push(wi, share, false, 1.0, interface.polarization_reflected);
     }
 
     /// By the surface, or the facet that light meets.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
         match self.roughness.interface() {
-            Some(interface) if !incoming.single => self.rough(interface).mueller(arrival, incoming, mueller),
-            Some(_) => mueller.set_unchanged(arrival.present * arrival.read(&self.transmittance)),
-            None => self.mueller_of_smooth(arrival, incoming, mueller),
+            Some(interface) if !incoming.single => self.rough(interface).mueller(context, incoming, mueller),
+            Some(_) => mueller.set_unchanged(context.present * context.read(&self.transmittance)),
+            None => self.mueller_of_smooth(context, incoming, mueller),
         }
     }
 
-    fn mueller_of_smooth<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+    fn mueller_of_smooth<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
         let crosses = incoming.crosses;
         let table = if crosses { &self.transmittance } else { &self.reflectance };
-        let tint = arrival.read_tint(table);
-        let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
+        let tint = context.read_tint(table);
+        let (axis, cos) = (context.wo.cross(context.normal), context.wo.dot(context.normal));
         if let Some(coating) = &self.coating {
-            let met = coating.met(arrival, arrival.from_inside);
+            let local = coating.local(context, context.from_inside);
             return mueller.set_lanes(axis, incoming.lanes, |lane| {
-                block_at(&met, arrival, lane, cos, crosses).times(f64::from(tint[lane]))
+                block_at(&local, context, lane, cos, crosses).times(f64::from(tint[lane]))
             });
         }
         let mut last = Last::NONE;
         mueller.set_lanes(axis, incoming.lanes, |lane| {
-            let block = last.of(arrival.own_boundary(lane, cos), |boundary| Block::at_boundary(boundary, crosses));
+            let block = last.of(context.own_boundary(lane, cos), |boundary| Block::at_boundary(boundary, crosses));
             block.times(f64::from(tint[lane]))
         });
     }

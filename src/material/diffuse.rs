@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 
-use super::{Arrival, Branch, Fluorescence};
+use super::{Branch, Fluorescence, ScatterContext};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
@@ -25,14 +25,14 @@ impl<S> Diffuse<S> {
 }
 
 impl Diffuse<Table> {
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2]) -> Branch<N> {
+    pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2]) -> Branch<N> {
         let local = cosine_hemisphere(u);
-        let wi = unit(Frame::about(arrival.normal).to_world(local));
-        Branch::drawn(wi, arrival.read(&self.reflectance), local.z * FRAC_1_PI)
+        let wi = unit(Frame::about(context.normal).to_world(local));
+        Branch::drawn(wi, context.read(&self.reflectance), local.z * FRAC_1_PI)
     }
 
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        let pdf = wi.dot(arrival.normal) / PI;
-        (pdf > 0.0).then(|| (arrival.read(&self.reflectance) * pdf as f32, pdf))
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let pdf = wi.dot(context.normal) / PI;
+        (pdf > 0.0).then(|| (context.read(&self.reflectance) * pdf as f32, pdf))
     }
 }

@@ -3,10 +3,10 @@
 use super::{Facets, Interface, reflect};
 use crate::math::DVec3;
 
-/// The BSDF times cosine between two directions, and the density with which [`Sides::draw`](super::Sides::draw) draws
-/// one for the other.
+/// The BSDF times cosine between two directions, and the density with which
+/// [`FacetSides::draw`](super::FacetSides::draw) draws one for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flow {
+pub struct BsdfValue {
     /// BSDF times cosine.
     pub value: f64,
     /// Density per steradian.
@@ -17,7 +17,7 @@ pub struct Flow {
     pub cos: f64,
 }
 
-impl std::ops::Add for Flow {
+impl std::ops::Add for BsdfValue {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -32,11 +32,11 @@ pub struct Facet {
     /// Where it reflects and where it refracts light.
     pub(super) ways: [DVec3; 2],
     /// The shares of the light that leave by these.
-    pub(super) once: [f64; 2],
+    pub(super) single: [f64; 2],
     /// The same if it reflected, or let through, all light.
     pub(super) all: [f64; 2],
     /// The share that meets a second facet.
-    pub(super) again: f64,
+    pub(super) multiple: f64,
     /// Cosines of the angles at which light meets it and goes on beyond it.
     pub(super) cos: [f64; 2],
 }
@@ -56,22 +56,22 @@ impl Facet {
         let (reflected, crossing) = (interface.reflectance, interface.transmittance);
         let above = known.filter(|wi| wi.z > 0.0).unwrap_or_else(|| reflect(wo, h));
         let beyond = known.filter(|wi| wi.z < 0.0).unwrap_or_else(|| interface.refract(wo, h));
-        let [left, blocked] = facets.left_and_blocked(wo, above);
+        let [left, missing] = facets.unshadowed_and_shadowed(wo, above);
         let [passed, lost] =
             if crossing > 0.0 && beyond.z < 0.0 { facets.passed(wo, beyond, straight) } else { [0.0, 1.0] };
         Self {
             h,
             ways: [above, beyond],
-            once: [reflected * left, crossing * passed],
+            single: [reflected * left, crossing * passed],
             all: [left, passed],
-            again: reflected * blocked + crossing * lost,
+            multiple: reflected * missing + crossing * lost,
             cos: [wo.dot(h), interface.cos_beyond],
         }
     }
 
     /// What it sends one of its two ways, where facets that do so are drawn with a density.
-    pub(super) fn flow(&self, side: usize, pdf: f64) -> Flow {
-        let (value, all) = (pdf * self.once[side], pdf * self.all[side]);
-        Flow { value, pdf: pdf * (self.once[0] + self.once[1]), facet: all, cos: self.cos[0] }
+    pub(super) fn flow(&self, side: usize, pdf: f64) -> BsdfValue {
+        let (value, all) = (pdf * self.single[side], pdf * self.all[side]);
+        BsdfValue { value, pdf: pdf * (self.single[0] + self.single[1]), facet: all, cos: self.cos[0] }
     }
 }

@@ -84,7 +84,7 @@ impl Facets {
     /// The share of the light from a visible facet toward `wi` that leaves that way, G2 / G1, and the share that meets
     /// another facet; both with all their digits, by S^2 - z^2 = alpha^2 (x^2 + y^2).
     #[inline(always)]
-    pub fn left_and_blocked(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
+    pub fn unshadowed_and_shadowed(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
         if wi.z <= 0.0 {
             return [0.0, 1.0];
         }

@@ -67,9 +67,9 @@ impl FilmAverages {
         numbers(self).zip(numbers(other)).fold(0.0, |most, (a, b)| most.max((a - b).abs()))
     }
 
-    /// What the film adds to the two shares that are blocked of the light that meets each hat.
-    pub(super) fn added(&self, blocked: &HatWeights) -> f64 {
-        let of_hat = |hat: usize| (0..2).map(|way| self.differences[hat][way] * blocked[hat][way]).sum::<f64>();
+    /// What the film adds to the two shares that single scattering loses of the light that meets each hat.
+    pub(super) fn added(&self, missing: &HatWeights) -> f64 {
+        let of_hat = |hat: usize| (0..2).map(|way| self.differences[hat][way] * missing[hat][way]).sum::<f64>();
         (0..HATS).map(of_hat).sum()
     }
 }

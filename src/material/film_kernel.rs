@@ -1,4 +1,4 @@
-//! What facets block of the light that each hat of a film's differences stands for.
+//! The energy that single scattering by facets loses, of the light that each hat of a film's differences stands for.
 
 use std::array;
 

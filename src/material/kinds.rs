@@ -2,8 +2,8 @@
 //! has to know it.
 
 use super::{
-    Arrival, Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror,
-    Mix, Mueller, Part, Plastic, Polarizer, Retarder, Roughness, Scatter, Straight, Thin,
+    Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror, Mix,
+    Mueller, Part, Plastic, Polarizer, Retarder, Roughness, Scatter, ScatterContext, Straight, Thin,
 };
 use crate::math::{DVec3, Transform};
 use crate::spectrum::{Curve, Lanes, Quantity, Table};
@@ -235,16 +235,21 @@ impl Material<Table> {
     }
 
     /// What share of the light that arrives meets each of its dyes, which stand in the order of `dyes`.
-    pub fn shares_of_dyes<const N: usize>(&self, arrival: &Arrival<N>, share: Lanes<N>, met: &mut Vec<Lanes<N>>) {
+    pub fn shares_of_dyes<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        share: Lanes<N>,
+        met: &mut Vec<Lanes<N>>,
+    ) {
         match self {
             Self::Diffuse(diffuse) => met.extend(diffuse.fluorescence.as_ref().map(|_| share)),
             Self::Mix(mix) => {
-                let parts = mix.parts(arrival);
-                parts.into_iter().for_each(|(part, of_part)| part.shares_of_dyes(arrival, share * of_part, met));
+                let parts = mix.parts(context);
+                parts.into_iter().for_each(|(part, of_part)| part.shares_of_dyes(context, share * of_part, met));
             }
             Self::Mask(mask) => {
-                let opacity = arrival.read(&mask.opacity);
-                mask.material.material().shares_of_dyes(arrival, share * opacity, met);
+                let opacity = context.read(&mask.opacity);
+                mask.material.material().shares_of_dyes(context, share * opacity, met);
             }
             Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) | Self::Thin(_) => {}
             Self::Emissive(_) | Self::Plastic(_) | Self::Polarizer(_) | Self::Retarder(_) => {}
@@ -253,16 +258,16 @@ impl Material<Table> {
 
     /// Whether an arrival asks for none of its lobes.
     #[inline(always)]
-    fn is_left_out<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
-        arrival.lobes != Lobes::ALL && !self.lobes().intersects(arrival.lobes)
+    fn is_left_out<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
+        context.lobes != Lobes::ALL && !self.lobes().intersects(context.lobes)
     }
 
     /// Whether lanes part that cross the surface.
-    pub fn parts_lanes<const N: usize>(&self, arrival: &Arrival<N>) -> bool {
+    pub fn parts_lanes<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
         match self {
-            Self::Dielectric(dielectric) => dielectric.parts(arrival),
-            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Thin(_) => arrival.parts(),
-            Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => arrival.parts(),
+            Self::Dielectric(dielectric) => dielectric.parts(context),
+            Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Thin(_) => context.parts(),
+            Self::Emissive(_) | Self::Plastic(_) | Self::Mix(_) | Self::Mask(_) => context.parts(),
             Self::Polarizer(_) | Self::Retarder(_) => false,
         }
     }
@@ -273,94 +278,94 @@ impl Scatter for Material<Table> {
         self.lobes()
     }
 
-    fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+    fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
         match self {
-            _ if self.is_left_out(arrival) => {}
-            Self::Diffuse(diffuse) => branches.push(diffuse.scatter(arrival, u)),
-            Self::Mirror(mirror) => branches.push(mirror.scatter(arrival)),
-            Self::Thin(thin) => thin.scatter(arrival, branches),
-            Self::Conductor(conductor) => branches.extend(conductor.scatter(arrival, u)),
-            Self::Dielectric(dielectric) => dielectric.scatter(arrival, u, branches),
+            _ if self.is_left_out(context) => {}
+            Self::Diffuse(diffuse) => branches.push(diffuse.scatter(context, u)),
+            Self::Mirror(mirror) => branches.push(mirror.scatter(context)),
+            Self::Thin(thin) => thin.scatter(context, branches),
+            Self::Conductor(conductor) => branches.extend(conductor.scatter(context, u)),
+            Self::Dielectric(dielectric) => dielectric.scatter(context, u, branches),
             Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => {}
-            Self::Plastic(plastic) => plastic.scatter(arrival, u, branches),
-            Self::Mix(mix) => mix.scatter(arrival, u, branches),
-            Self::Mask(mask) => mask.scatter(arrival, u, branches),
+            Self::Plastic(plastic) => plastic.scatter(context, u, branches),
+            Self::Mix(mix) => mix.scatter(context, u, branches),
+            Self::Mask(mask) => mask.scatter(context, u, branches),
         }
     }
 
-    fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+    fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         match self {
-            _ if self.is_left_out(arrival) => None,
-            Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi),
-            Self::Conductor(conductor) => conductor.evaluate(arrival, wi),
-            Self::Dielectric(dielectric) => dielectric.evaluate(arrival, wi),
-            Self::Plastic(plastic) => plastic.evaluate(arrival, wi),
-            Self::Mix(mix) => mix.evaluate(arrival, wi),
-            Self::Mask(mask) => mask.evaluate(arrival, wi),
+            _ if self.is_left_out(context) => None,
+            Self::Diffuse(diffuse) => diffuse.evaluate(context, wi),
+            Self::Conductor(conductor) => conductor.evaluate(context, wi),
+            Self::Dielectric(dielectric) => dielectric.evaluate(context, wi),
+            Self::Plastic(plastic) => plastic.evaluate(context, wi),
+            Self::Mix(mix) => mix.evaluate(context, wi),
+            Self::Mask(mask) => mask.evaluate(context, wi),
             Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => None,
         }
     }
 
-    fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
+    fn diffuse_part<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Lanes<N> {
         match self {
-            Self::Diffuse(diffuse) => diffuse.evaluate(arrival, wi).map_or(Lanes::ZERO, |(light, _)| light),
-            Self::Plastic(plastic) => plastic.diffuse_part(arrival, wi),
-            Self::Mix(mix) => mix.diffuse_part(arrival, wi),
-            Self::Mask(mask) => mask.diffuse_part(arrival, wi),
+            Self::Diffuse(diffuse) => diffuse.evaluate(context, wi).map_or(Lanes::ZERO, |(light, _)| light),
+            Self::Plastic(plastic) => plastic.diffuse_part(context, wi),
+            Self::Mix(mix) => mix.diffuse_part(context, wi),
+            Self::Mask(mask) => mask.diffuse_part(context, wi),
             Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => Lanes::ZERO,
             Self::Thin(_) | Self::Emissive(_) | Self::Polarizer(_) | Self::Retarder(_) => Lanes::ZERO,
         }
     }
 
-    fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
+    fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Straight<N>> {
         match self {
-            Self::Thin(thin) => Some(thin.straight(arrival)),
+            Self::Thin(thin) => Some(thin.straight(context)),
             Self::Polarizer(polarizer) => Some(polarizer.straight()),
             Self::Retarder(retarder) => Some(retarder.straight()),
-            Self::Mix(mix) => mix.straight(arrival),
-            Self::Mask(mask) => Some(mask.straight(arrival)),
+            Self::Mix(mix) => mix.straight(context),
+            Self::Mask(mask) => Some(mask.straight(context)),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => None,
             Self::Emissive(_) | Self::Plastic(_) => None,
         }
     }
 
-    fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+    fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         match self {
-            Self::Conductor(conductor) => conductor.degree_of_scattered(arrival, wi),
-            Self::Dielectric(dielectric) => dielectric.degree_of_scattered(arrival, wi),
-            Self::Plastic(plastic) => plastic.degree_of_scattered(arrival, wi),
-            Self::Mix(mix) => mix.degree_of_scattered(arrival, wi),
+            Self::Conductor(conductor) => conductor.degree_of_scattered(context, wi),
+            Self::Dielectric(dielectric) => dielectric.degree_of_scattered(context, wi),
+            Self::Plastic(plastic) => plastic.degree_of_scattered(context, wi),
+            Self::Mix(mix) => mix.degree_of_scattered(context, wi),
             Self::Mask(mask) => {
                 let material = mask.material.material();
-                if material.lobes().is_wide() { material.degree_of_scattered(arrival, wi) } else { 0.0 }
+                if material.lobes().is_wide() { material.degree_of_scattered(context, wi) } else { 0.0 }
             }
             Self::Diffuse(_) | Self::Mirror(_) | Self::Thin(_) | Self::Emissive(_) => 0.0,
             Self::Polarizer(_) | Self::Retarder(_) => 0.0,
         }
     }
 
-    fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
+    fn mueller<const N: usize>(&self, context: &ScatterContext<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
         match self {
-            _ if self.is_left_out(arrival) => *mueller = Mueller::NONE,
-            Self::Mirror(mirror) if incoming.single => mirror.mueller(arrival, mueller),
-            Self::Thin(thin) if incoming.single => thin.mueller(arrival, false, incoming.lanes, mueller),
-            Self::Conductor(conductor) => conductor.mueller(arrival, incoming, mueller),
-            Self::Dielectric(dielectric) => dielectric.mueller(arrival, incoming, mueller),
-            Self::Plastic(plastic) => plastic.mueller(arrival, incoming, mueller),
-            Self::Mix(mix) => mix.mueller(arrival, incoming, mueller),
-            Self::Mask(mask) => mask.mueller(arrival, incoming, mueller),
+            _ if self.is_left_out(context) => *mueller = Mueller::NONE,
+            Self::Mirror(mirror) if incoming.single => mirror.mueller(context, mueller),
+            Self::Thin(thin) if incoming.single => thin.mueller(context, false, incoming.lanes, mueller),
+            Self::Conductor(conductor) => conductor.mueller(context, incoming, mueller),
+            Self::Dielectric(dielectric) => dielectric.mueller(context, incoming, mueller),
+            Self::Plastic(plastic) => plastic.mueller(context, incoming, mueller),
+            Self::Mix(mix) => mix.mueller(context, incoming, mueller),
+            Self::Mask(mask) => mask.mueller(context, incoming, mueller),
             Self::Diffuse(_) | Self::Emissive(_) | Self::Mirror(_) | Self::Thin(_) => *mueller = Mueller::NONE,
             Self::Polarizer(_) | Self::Retarder(_) => *mueller = Mueller::NONE,
         }
     }
 
-    fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
+    fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
         match self {
-            Self::Thin(thin) => thin.mueller(arrival, true, arrival.present.not_zero(), mueller),
-            Self::Polarizer(polarizer) => polarizer.mueller(arrival, mueller),
-            Self::Retarder(retarder) => retarder.mueller(arrival, mueller),
-            Self::Mix(mix) => mix.mueller_of_straight(arrival, mueller),
-            Self::Mask(mask) => mask.mueller_of_straight(arrival, mueller),
+            Self::Thin(thin) => thin.mueller(context, true, context.present.not_zero(), mueller),
+            Self::Polarizer(polarizer) => polarizer.mueller(context, mueller),
+            Self::Retarder(retarder) => retarder.mueller(context, mueller),
+            Self::Mix(mix) => mix.mueller_of_straight(context, mueller),
+            Self::Mask(mask) => mask.mueller_of_straight(context, mueller),
             Self::Diffuse(_) | Self::Mirror(_) | Self::Conductor(_) | Self::Dielectric(_) => *mueller = Mueller::NONE,
             Self::Emissive(_) | Self::Plastic(_) => *mueller = Mueller::NONE,
         }

@@ -1,4 +1,4 @@
-use super::{Arrival, Branch, Incoming, Mueller, Part, Scatter, Straight};
+use super::{Branch, Incoming, Mueller, Part, Scatter, ScatterContext, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
@@ -17,39 +17,49 @@ pub struct Mask<S, M> {
 }
 
 impl<M: Scatter> Mask<Table, M> {
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
-        let (opacity, first) = (arrival.read(&self.opacity), branches.len());
-        self.material.material().scatter(arrival, u, branches);
+    pub(super) fn scatter<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        u: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
+        let (opacity, first) = (context.read(&self.opacity), branches.len());
+        self.material.material().scatter(context, u, branches);
         branches[first..].iter_mut().for_each(|branch| *branch = branch.scaled(opacity));
     }
 
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        let (light, pdf) = self.material.material().evaluate(arrival, wi)?;
-        Some((light * arrival.read(&self.opacity), pdf))
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let (light, pdf) = self.material.material().evaluate(context, wi)?;
+        Some((light * context.read(&self.opacity), pdf))
     }
 
-    pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
-        self.material.material().diffuse_part(arrival, wi) * arrival.read(&self.opacity)
+    pub(super) fn diffuse_part<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Lanes<N> {
+        self.material.material().diffuse_part(context, wi) * context.read(&self.opacity)
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
-        self.material.material().mueller(arrival, incoming, mueller);
-        mueller.scale(arrival.read(&self.opacity));
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
+        self.material.material().mueller(context, incoming, mueller);
+        mueller.scale(context.read(&self.opacity));
     }
 
     /// Holes change nothing.
-    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
-        let (opacity, mut hole) = (arrival.read(&self.opacity), Mueller::NONE);
+    pub(super) fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
+        let (opacity, mut hole) = (context.read(&self.opacity), Mueller::NONE);
         hole.set_unchanged(Lanes::from_fn(|i| 1.0 - opacity[i]));
-        self.material.material().mueller_of_straight(arrival, mueller);
+        self.material.material().mueller_of_straight(context, mueller);
         mueller.scale(opacity);
         mueller.add(&hole);
     }
 
     /// The share that goes straight on.
-    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
-        let opacity = arrival.read(&self.opacity);
-        let within = self.material.material().straight(arrival).unwrap_or(Straight::NONE);
+    pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Straight<N> {
+        let opacity = context.read(&self.opacity);
+        let within = self.material.material().straight(context).unwrap_or(Straight::NONE);
         // 1 less what is met keeps its digits where all goes on.
         let holes = Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within.holes[i]));
         Straight { holes, panes: within.panes * opacity, ..within }

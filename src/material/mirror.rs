@@ -1,4 +1,4 @@
-use super::{Arrival, Block, Branch, Mueller};
+use super::{Block, Branch, Mueller, ScatterContext};
 use crate::spectrum::{Lanes, Quantity, Table};
 
 /// An ideal mirror on both sides.
@@ -19,14 +19,14 @@ impl<S> Mirror<S> {
 }
 
 impl Mirror<Table> {
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>) -> Branch<N> {
-        Branch::mirrored(arrival, arrival.read(&self.reflectance), 0.0)
+    pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>) -> Branch<N> {
+        Branch::mirrored(context, context.read(&self.reflectance), 0.0)
     }
 
     /// That of a perfect metal: handedness turns around.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
-        let share = arrival.read(&self.reflectance);
+    pub(super) fn mueller<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
+        let share = context.read(&self.reflectance);
         let block = Block { a: share, d: Lanes::ZERO, c: share * -1.0, q: Lanes::ZERO };
-        *mueller = Mueller { axis: arrival.wo.cross(arrival.normal), block, base: None };
+        *mueller = Mueller { axis: context.wo.cross(context.normal), block, base: None };
     }
 }

@@ -1,4 +1,4 @@
-use super::{Arrival, Branch, Incoming, Mueller, Part, Scatter, Straight};
+use super::{Branch, Incoming, Mueller, Part, Scatter, ScatterContext, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
@@ -17,34 +17,39 @@ pub struct Mix<S, M> {
 
 impl<M: Scatter> Mix<Table, M> {
     /// The share of each material, per lane.
-    fn shares<const N: usize>(&self, arrival: &Arrival<N>) -> [Lanes<N>; 2] {
-        let second = arrival.read(&self.amount);
+    fn shares<const N: usize>(&self, context: &ScatterContext<N>) -> [Lanes<N>; 2] {
+        let second = context.read(&self.amount);
         [Lanes::from_fn(|i| 1.0 - second[i]), second]
     }
 
     /// Each material with its share, per lane.
-    pub(super) fn parts<const N: usize>(&self, arrival: &Arrival<N>) -> [(&M, Lanes<N>); 2] {
-        let [first, second] = self.shares(arrival);
+    pub(super) fn parts<const N: usize>(&self, context: &ScatterContext<N>) -> [(&M, Lanes<N>); 2] {
+        let [first, second] = self.shares(context);
         let [a, b] = self.materials.each_ref().map(Part::material);
         [(a, first), (b, second)]
     }
 
     /// How often a direction is drawn from the second one, of those drawn from the two: its mean share.
-    fn chance_of_second<const N: usize>(&self, arrival: &Arrival<N>) -> f64 {
+    fn chance_of_second<const N: usize>(&self, context: &ScatterContext<N>) -> f64 {
         match self.materials.each_ref().map(|part| part.material().lobes().is_wide()) {
             [_, false] => 0.0,
             [false, true] => 1.0,
             [true, true] => {
-                let share = arrival.present * arrival.read(&self.amount);
-                f64::from(share.sum() / arrival.present.sum()).clamp(0.0, 1.0)
+                let share = context.present * context.read(&self.amount);
+                f64::from(share.sum() / context.present.sum()).clamp(0.0, 1.0)
             }
         }
     }
 
     /// One branch for all that scatters widely, drawn from the materials' densities together, and one for each single
     /// direction in which either of them sends light.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
-        let (shares, second, first) = (self.shares(arrival), self.chance_of_second(arrival), branches.len());
+    pub(super) fn scatter<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        u: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
+        let (shares, second, first) = (self.shares(context), self.chance_of_second(context), branches.len());
         let chosen = usize::from(u[0] < second);
         let u = [[(u[0] - second) / (1.0 - second), u[0] / second][chosen], u[1]];
         for (number, part) in self.materials.iter().enumerate() {
@@ -52,7 +57,7 @@ impl<M: Scatter> Mix<Table, M> {
             if share.is_zero() || (number != chosen && !material.lobes().has_delta()) {
                 continue;
             }
-            material.scatter(arrival, u, branches);
+            material.scatter(context, u, branches);
             let mut at = start;
             while at < branches.len() {
                 let branch = branches[at].scaled(share);
@@ -61,7 +66,7 @@ impl<M: Scatter> Mix<Table, M> {
                 let kept = match (branch.pdf, same_way) {
                     (Some(pdf), _) if number == chosen => {
                         let chances = [1.0 - second, second];
-                        Some(self.beside_other(arrival, branch, pdf, number, shares, chances))
+                        Some(self.beside_other(context, branch, pdf, number, shares, chances))
                     }
                     (Some(_), _) => None,
                     (None, Some(other)) => {
@@ -81,7 +86,7 @@ impl<M: Scatter> Mix<Table, M> {
     /// A branch that was drawn from one material, as if drawn from both, with what the other one sends the same way.
     fn beside_other<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         drawn: Branch<N>,
         pdf: f64,
         number: usize,
@@ -89,7 +94,7 @@ impl<M: Scatter> Mix<Table, M> {
         chances: [f64; 2],
     ) -> Branch<N> {
         let other = 1 - number;
-        let Some((light, other_pdf)) = self.materials[other].material().evaluate(arrival, drawn.wi) else {
+        let Some((light, other_pdf)) = self.materials[other].material().evaluate(context, drawn.wi) else {
             // Where only one scatters widely, it is drawn for certain.
             return Branch {
                 share: drawn.share * (1.0 / chances[number]) as f32,
@@ -102,9 +107,9 @@ impl<M: Scatter> Mix<Table, M> {
         Branch { share, pdf: Some(both), ..drawn }
     }
 
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        let (shares, second) = (self.shares(arrival), self.chance_of_second(arrival));
-        let [a, b] = self.materials.each_ref().map(|part| part.material().evaluate(arrival, wi));
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let (shares, second) = (self.shares(context), self.chance_of_second(context));
+        let [a, b] = self.materials.each_ref().map(|part| part.material().evaluate(context, wi));
         if a.is_none() && b.is_none() {
             return None;
         }
@@ -112,26 +117,31 @@ impl<M: Scatter> Mix<Table, M> {
         Some((a.0 * shares[0] + b.0 * shares[1], (1.0 - second) * a.1 + second * b.1))
     }
 
-    pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
-        let (shares, [a, b]) = (self.shares(arrival), self.materials.each_ref().map(Part::material));
-        a.diffuse_part(arrival, wi) * shares[0] + b.diffuse_part(arrival, wi) * shares[1]
+    pub(super) fn diffuse_part<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Lanes<N> {
+        let (shares, [a, b]) = (self.shares(context), self.materials.each_ref().map(Part::material));
+        a.diffuse_part(context, wi) * shares[0] + b.diffuse_part(context, wi) * shares[1]
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
-        self.both_muellers(arrival, mueller, |part, mueller| part.mueller(arrival, incoming, mueller));
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
+        self.both_muellers(context, mueller, |part, mueller| part.mueller(context, incoming, mueller));
     }
 
-    pub(super) fn mueller_of_straight<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
-        self.both_muellers(arrival, mueller, |part, mueller| part.mueller_of_straight(arrival, mueller));
+    pub(super) fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
+        self.both_muellers(context, mueller, |part, mueller| part.mueller_of_straight(context, mueller));
     }
 
     fn both_muellers<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         mueller: &mut Mueller<N>,
         of: impl Fn(&M, &mut Mueller<N>),
     ) {
-        let ([(a, first), (b, second)], mut other) = (self.parts(arrival), Mueller::NONE);
+        let ([(a, first), (b, second)], mut other) = (self.parts(context), Mueller::NONE);
         of(a, mueller);
         of(b, &mut other);
         mueller.scale(first);
@@ -140,13 +150,13 @@ impl<M: Scatter> Mix<Table, M> {
     }
 
     /// The share that goes straight on.
-    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Straight<N>> {
-        let parts = self.materials.each_ref().map(|part| part.material().straight(arrival));
-        Straight::of_both(parts, self.shares(arrival))
+    pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Straight<N>> {
+        let parts = self.materials.each_ref().map(|part| part.material().straight(context));
+        Straight::of_both(parts, self.shares(context))
     }
 
-    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
+    pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let wide = self.materials.iter().map(Part::material).filter(|material| material.lobes().is_wide());
-        wide.map(|material| material.degree_of_scattered(arrival, wi)).fold(0.0, f32::max)
+        wide.map(|material| material.degree_of_scattered(context, wi)).fold(0.0, f32::max)
     }
 }

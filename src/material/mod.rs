@@ -1,10 +1,9 @@
 //! Floor 2: how light leaves a surface.
 //!
 //! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table`
-//! what the tracer reads; [`Material::map`] is the bridge. A material answers an [`Arrival`] with [`Branch`]es.
+//! what the tracer reads; [`Material::map`] is the bridge. A material answers an [`ScatterContext`] with [`Branch`]es.
 
 mod albedo_table;
-mod arrival;
 mod branch;
 mod coat;
 mod coated_boundary;
@@ -22,7 +21,7 @@ mod film_table;
 mod fluorescence;
 mod fresnel;
 mod kinds;
-mod known;
+mod lane_cache;
 mod last;
 mod lobes;
 mod mask;
@@ -40,10 +39,10 @@ mod rough_dielectric;
 mod rough_interface;
 mod roughness;
 mod scatter;
+mod scatter_context;
 mod stack;
 mod thin;
 
-pub use arrival::{Arrival, Index};
 pub use branch::{Branch, Incoming, Straight};
 pub use coat::Coat;
 pub use coating::{Coating, CoatingLayer};
@@ -51,7 +50,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use emissive::Emissive;
-pub use facet::{Facet, Flow};
+pub use facet::{BsdfValue, Facet};
 pub use facets::Facets;
 pub use fluorescence::Fluorescence;
 pub use fresnel::{Interface, conductor_reflectance, diffuse_transmittance, reflect, shared_transmittance};
@@ -65,8 +64,9 @@ pub use part::Part;
 pub use plastic::Plastic;
 pub use polarizer::Polarizer;
 pub use retarder::{PathDifference, Retardance, Retarder};
-pub use rough_interface::{RoughInterface, Side, Sides, Way};
+pub use rough_interface::{FacetSample, FacetSides, RoughInterface, Side};
 pub use roughness::{RoughReflection, RoughSurface, Roughness};
 pub use scatter::Scatter;
+pub use scatter_context::{Index, ScatterContext};
 pub use stack::{COHERENT_NM, Layer, MAX_LAYERS, PHASE_STEP, PolarizedShare, Stack, StackShares};
 pub use thin::Thin;

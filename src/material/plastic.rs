@@ -1,12 +1,12 @@
 use std::f64::consts::FRAC_1_PI;
 
-use super::coat::{Coat, Crossing};
+use super::coat::{Coat, CoatTransmittance};
 use super::degree::{LANES, largest, of_all_lanes};
 use super::last::Last;
 use super::plastic_film::PlasticFilm;
 use super::roughness::above;
 use super::{
-    Arrival, Base, Block, Branch, Coating, Incoming, Interface, Lobes, Mueller, RoughReflection, RoughSurface,
+    Base, Block, Branch, Coating, Incoming, Interface, Lobes, Mueller, RoughReflection, RoughSurface, ScatterContext,
     StackShares,
 };
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
@@ -46,70 +46,75 @@ impl<S> Plastic<S> {
 
 impl Plastic<Table> {
     /// The mirror image in a smooth coat, and one branch for all other light.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
+    pub(super) fn scatter<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        u: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
         let Some(surface) = self.coat.roughness().surface() else {
-            let is_mirrored = arrival.lobes.intersects(Lobes::DELTA_REFLECTION);
-            branches.extend(is_mirrored.then(|| self.mirrored(arrival)).flatten());
-            if !arrival.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
+            let is_mirrored = context.lobes.intersects(Lobes::DELTA_REFLECTION);
+            branches.extend(is_mirrored.then(|| self.mirrored(context)).flatten());
+            if !context.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
                 return;
             }
             let wi = cosine_hemisphere(u);
-            let base = self.lanes(arrival, [arrival.wo.dot(arrival.normal), wi.z], |lane| lane.base());
-            branches.push(branch(arrival, wi, base, wi.z * FRAC_1_PI));
+            let base = self.lanes(context, [context.wo.dot(context.normal), wi.z], |lane| lane.base());
+            branches.push(branch(context, wi, base, wi.z * FRAC_1_PI));
             return;
         };
-        let wo = above(&Frame::about(arrival.normal), arrival.wo);
-        let chance = self.chance_of_coat(arrival, &self.lanes(arrival, [wo.z; 2], |lane| lane.reflected()));
+        let wo = above(&Frame::about(context.normal), context.wo);
+        let chance = self.chance_of_coat(context, &self.lanes(context, [wo.z; 2], |lane| lane.reflected()));
         let wi = if u[0] < chance {
             surface.scatter(wo, [u[0] / chance, u[1]]).map(|reflection| reflection.wi)
         } else {
             Some(cosine_hemisphere([(u[0] - chance) / (1.0 - chance), u[1]]))
         };
         if let Some(wi) = wi
-            && let Some((light, pdf)) = self.rough(arrival, surface, [wo, wi])
+            && let Some((light, pdf)) = self.rough(context, surface, [wo, wi])
         {
-            branches.push(branch(arrival, wi, light.map(|x| x / pdf), pdf));
+            branches.push(branch(context, wi, light.map(|x| x / pdf), pdf));
         }
     }
 
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         let (light, pdf) = match self.coat.roughness().surface() {
             None => {
-                let cos = wi.dot(arrival.normal);
-                if cos <= 0.0 || !arrival.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
+                let cos = wi.dot(context.normal);
+                if cos <= 0.0 || !context.lobes.intersects(Lobes::DIFFUSE_REFLECTION) {
                     return None;
                 }
-                let (cosines, pdf) = ([arrival.wo.dot(arrival.normal), cos], cos * FRAC_1_PI);
-                (self.lanes(arrival, cosines, |lane| lane.base() * pdf), pdf)
+                let (cosines, pdf) = ([context.wo.dot(context.normal), cos], cos * FRAC_1_PI);
+                (self.lanes(context, cosines, |lane| lane.base() * pdf), pdf)
             }
             Some(surface) => {
-                let frame = Frame::about(arrival.normal);
-                self.rough(arrival, surface, [above(&frame, arrival.wo), frame.to_local(wi)])?
+                let frame = Frame::about(context.normal);
+                self.rough(context, surface, [above(&frame, context.wo), frame.to_local(wi)])?
             }
         };
         Some((Lanes::from_fn(|i| light[i] as f32), pdf))
     }
 
     /// What the base scatters through the coat.
-    pub(super) fn diffuse_part<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Lanes<N> {
-        let cos = wi.dot(arrival.normal);
+    pub(super) fn diffuse_part<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Lanes<N> {
+        let cos = wi.dot(context.normal);
         if cos <= 0.0 {
             return Lanes::ZERO;
         }
-        let wo = above(&Frame::about(arrival.normal), arrival.wo);
-        let light = self.lanes(arrival, [wo.z, cos], |lane| lane.base() * cos * FRAC_1_PI);
+        let wo = above(&Frame::about(context.normal), context.wo);
+        let light = self.lanes(context, [wo.z, cos], |lane| lane.base() * cos * FRAC_1_PI);
         Lanes::from_fn(|i| light[i] as f32)
     }
 
     /// What a smooth coat reflects.
-    fn mirrored<const N: usize>(&self, arrival: &Arrival<N>) -> Option<Branch<N>> {
-        let (index, cos) = (arrival.draw.read_exact(&self.index), arrival.wo.dot(arrival.normal));
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+    fn mirrored<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Branch<N>> {
+        let (index, cos) = (context.draw.read_exact(&self.index), context.wo.dot(context.normal));
+        let local = self.coating.as_ref().map(|coating| coating.local(context, false));
         let (mut share, mut degree, mut of_lanes) = (Lanes::ZERO, 0.0_f64, [[0.0; 2]; N]);
-        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let [n1, n2] = [arrival.incident_of(lane), index[lane]];
-            if let Some(met) = &met {
-                let reflected = met.at_cosine(lane, n1, n2, cos).reflected;
+        for lane in (0..N).filter(|&lane| context.present[lane] != 0.0) {
+            let [n1, n2] = [context.incident_of(lane), index[lane]];
+            if let Some(local) = &local {
+                let reflected = local.at_cosine(lane, n1, n2, cos).reflected;
                 share.0[lane] = reflected.mean() as f32;
                 of_lanes[lane] = [reflected.s, reflected.p];
             } else {
@@ -118,45 +123,45 @@ impl Plastic<Table> {
                 degree = degree.max(interface.polarization_reflected.abs());
             }
         }
-        if met.is_some() {
+        if local.is_some() {
             degree = of_all_lanes(of_lanes.into_iter());
         }
-        (!share.is_zero()).then(|| Branch::mirrored(arrival, share, degree as f32))
+        (!share.is_zero()).then(|| Branch::mirrored(context, share, degree as f32))
     }
 
     /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
     /// direction.
     fn rough<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         surface: &RoughSurface,
         [wo, wi]: [DVec3; 2],
     ) -> Option<([f64; N], f64)> {
         let reflection = surface.evaluate(wo, wi)?;
         let base_pdf = wi.z * FRAC_1_PI;
-        let [of_coat, of_base] = self.asked(arrival).map(f64::from);
+        let [of_coat, of_base] = self.asked(context).map(f64::from);
         let mut last = Last::NONE;
-        let lanes = self.lanes(arrival, [wo.z, wi.z], |lane| {
+        let lanes = self.lanes(context, [wo.z, wi.z], |lane| {
             let coat = match lane.film {
                 Some(_) => lane.coat(&reflection),
                 None => last.of(lane.indices, |_| lane.coat(&reflection)),
             };
             (of_coat * coat + of_base * lane.base() * base_pdf, lane.reflected())
         });
-        let chance = self.chance_of_coat(arrival, &lanes.map(|lane| lane.1));
+        let chance = self.chance_of_coat(context, &lanes.map(|lane| lane.1));
         let pdf = chance * reflection.pdf + (1.0 - chance) * base_pdf;
         (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
     }
 
     /// Whether a rough coat is asked for, and the base.
-    fn asked<const N: usize>(&self, arrival: &Arrival<N>) -> [bool; 2] {
-        [self.coat.roughness().reflection(), Lobes::DIFFUSE_REFLECTION].map(|lobe| arrival.lobes.intersects(lobe))
+    fn asked<const N: usize>(&self, context: &ScatterContext<N>) -> [bool; 2] {
+        [self.coat.roughness().reflection(), Lobes::DIFFUSE_REFLECTION].map(|lobe| context.lobes.intersects(lobe))
     }
 
     /// How often a direction is drawn from a rough coat, and else from the base: by what each reflects of all lanes, if
     /// both are asked for.
-    fn chance_of_coat<const N: usize>(&self, arrival: &Arrival<N>, reflected: &[[f64; 2]; N]) -> f64 {
-        let asked = self.asked(arrival).map(f64::from);
+    fn chance_of_coat<const N: usize>(&self, context: &ScatterContext<N>, reflected: &[[f64; 2]; N]) -> f64 {
+        let asked = self.asked(context).map(f64::from);
         let [coat, base] = [0, 1].map(|part| asked[part] * reflected.iter().map(|lane| lane[part]).sum::<f64>());
         if coat > 0.0 { coat / (coat + base) } else { 0.0 }
     }
@@ -164,96 +169,102 @@ impl Plastic<Table> {
     /// Something of each lane on the ray, which crosses the coat from directions of two cosines.
     fn lanes<T: Default, const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         cosines: [f64; 2],
         mut of_lane: impl FnMut(&CoatLane<N>) -> T,
     ) -> [T; N] {
-        let (index, base) = (arrival.draw.read_exact(&self.index), arrival.read(&self.reflectance));
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
-        let blocked = met.as_ref().and_then(|_| self.coat.blocked(cosines));
+        let (index, base) = (context.draw.read_exact(&self.index), context.read(&self.reflectance));
+        let local = self.coating.as_ref().map(|coating| coating.local(context, false));
+        let missing = local.as_ref().and_then(|_| self.coat.missing_energy(cosines));
         let mut last = Last::NONE;
         std::array::from_fn(|i| {
-            if arrival.present[i] == 0.0 {
+            if context.present[i] == 0.0 {
                 return T::default();
             }
-            let indices = [arrival.incident_of(i), index[i]];
-            let film = met.as_ref().map(|met| PlasticFilm::new(met, i, indices, blocked.is_some()));
-            let bare = last.of(indices, |indices| self.coat.crossing(indices, cosines));
-            let crossing = film.as_ref().map_or(bare, |film| film.crossing(&bare, blocked.as_ref(), cosines));
-            of_lane(&CoatLane { crossing, r: f64::from(base[i]), indices, film })
+            let indices = [context.incident_of(i), index[i]];
+            let film = local.as_ref().map(|local| PlasticFilm::new(local, i, indices, missing.is_some()));
+            let bare = last.of(indices, |indices| self.coat.transmittance(indices, cosines));
+            let transmittance = film.as_ref().map_or(bare, |film| film.transmittance(&bare, missing.as_ref(), cosines));
+            of_lane(&CoatLane { transmittance, r: f64::from(base[i]), indices, film })
         })
     }
 
     /// By the coat, which light crosses and is mirrored by. A rough one with a film is crossed as a smooth one is.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
-        let index = arrival.draw.read_exact(&self.index);
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
+        let index = context.draw.read_exact(&self.index);
+        let local = self.coating.as_ref().map(|coating| coating.local(context, false));
         let film = |lane: usize, cos: f64| {
-            met.as_ref().map(|met| met.at_cosine(lane, arrival.incident_of(lane), index[lane], cos))
+            local.as_ref().map(|local| local.at_cosine(lane, context.incident_of(lane), index[lane], cos))
         };
-        let reflected = |lane: usize, cos: f64| match (film(lane, cos), [arrival.incident_of(lane), index[lane]]) {
+        let reflected = |lane: usize, cos: f64| match (film(lane, cos), [context.incident_of(lane), index[lane]]) {
             (Some(shares), _) => shares.reflected.block(),
             (None, [n1, n2]) => Block::at_boundary([n1, n2, cos], false),
         };
-        let cos = arrival.wo.dot(arrival.normal);
+        let cos = context.wo.dot(context.normal);
         if incoming.single {
             // A rough coat sends nothing in the single direction of what it is mixed with.
             if !self.coat.roughness().is_smooth() {
                 return *mueller = Mueller::NONE;
             }
-            let axis = arrival.wo.cross(arrival.normal);
+            let axis = context.wo.cross(context.normal);
             return mueller.set_lanes(axis, incoming.lanes, |lane| reflected(lane, cos));
         }
-        let to = incoming.wi.dot(arrival.normal);
+        let to = incoming.wi.dot(context.normal);
         if to <= 0.0 {
             return *mueller = Mueller::NONE;
         }
         match self.coat.roughness().surface() {
             None => *mueller = Mueller::NONE,
-            Some(_) if !self.asked(arrival)[0] => *mueller = Mueller::NONE,
+            Some(_) if !self.asked(context)[0] => *mueller = Mueller::NONE,
             Some(surface) => {
-                let Some(reflection) = surface.evaluate_at(arrival, incoming.wi) else {
+                let Some(reflection) = surface.evaluate_at(context, incoming.wi) else {
                     return *mueller = Mueller::NONE;
                 };
-                let axis = arrival.wo.cross(incoming.wi);
-                let facet = |lane| reflected(lane, reflection.cos).times(reflection.once);
+                let axis = context.wo.cross(incoming.wi);
+                let facet = |lane| reflected(lane, reflection.cos).times(reflection.single);
                 mueller.set_lanes(axis, incoming.lanes, facet);
             }
         }
-        if !self.asked(arrival)[1] {
+        if !self.asked(context)[1] {
             return;
         }
-        let from = above(&Frame::about(arrival.normal), arrival.wo).z;
-        mueller.base = Some(Box::new(self.polarized_base(arrival, [from, to], film)));
+        let from = above(&Frame::about(context.normal), context.wo).z;
+        mueller.base = Some(Box::new(self.polarized_base(context, [from, to], film)));
     }
 
     /// What light between directions of two cosines, that which leaves first, is polarized by on its way through the
     /// coat; `film` says what a film does to a lane at a cosine, if there is one.
     fn polarized_base<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         [from, to]: [f64; 2],
         film: impl Fn(usize, f64) -> Option<StackShares>,
     ) -> Base<N> {
-        let index = arrival.draw.read_exact(&self.index);
-        let crossings = self
-            .lanes(arrival, [from, to], |lane| (lane.base() * to * FRAC_1_PI, [lane.crossing.from, lane.crossing.to]));
+        let index = context.draw.read_exact(&self.index);
+        let crossings = self.lanes(context, [from, to], |lane| {
+            (lane.base() * to * FRAC_1_PI, [lane.transmittance.from, lane.transmittance.to])
+        });
         let mut last = Last::NONE;
         let mut crossed = |lane: usize, cos: f64, share: f64| {
-            if arrival.present[lane] == 0.0 {
+            if context.present[lane] == 0.0 {
                 return 0.0;
             }
             if let Some(shares) = film(lane, cos) {
                 return shares.refracted.block().degree();
             }
-            let met = ([arrival.incident_of(lane), index[lane]], cos);
-            last.of(met, |(indices, cos)| self.coat.degree_crossing(indices, cos, share))
+            let local = ([context.incident_of(lane), index[lane]], cos);
+            last.of(local, |(indices, cos)| self.coat.degree_crossing(indices, cos, share))
         };
         let [leaving, arriving] = [(from, 0), (to, 1)]
             .map(|(cos, way)| -> [f64; N] { std::array::from_fn(|lane| crossed(lane, cos, crossings[lane].1[way])) });
         let base = |lane: usize| crossings[lane].0;
         Base {
-            normal: arrival.normal,
+            normal: context.normal,
             leaving: Lanes::from_fn(|i| (base(i) * leaving[i]) as f32),
             arriving: Lanes::from_fn(|i| (base(i) * arriving[i]) as f32),
             both: Lanes::from_fn(|i| (base(i) * leaving[i] * arriving[i]) as f32),
@@ -262,32 +273,32 @@ impl Plastic<Table> {
 
     /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
-    pub(super) fn degree_of_scattered<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> f32 {
-        let index = arrival.draw.read_exact(&self.index);
-        let lanes = || (0..N).filter(|&lane| index[lane] != arrival.incident_of(lane)).step_by(N.div_ceil(LANES));
-        let met = self.coating.as_ref().map(|coating| coating.met(arrival, false));
+    pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
+        let index = context.draw.read_exact(&self.index);
+        let lanes = || (0..N).filter(|&lane| index[lane] != context.incident_of(lane)).step_by(N.div_ceil(LANES));
+        let local = self.coating.as_ref().map(|coating| coating.local(context, false));
         let coat = |lane: usize, cos: f64| {
-            let [n1, n2] = [arrival.incident_of(lane), index[lane]];
-            match &met {
+            let [n1, n2] = [context.incident_of(lane), index[lane]];
+            match &local {
                 None => {
                     let interface = Interface::new(n1, n2, cos);
                     [interface.polarization_reflected, interface.polarization_refracted]
                 }
-                Some(met) => {
-                    let shares = met.at_cosine(lane, n1, n2, cos);
+                Some(local) => {
+                    let shares = local.at_cosine(lane, n1, n2, cos);
                     [shares.reflected, shares.refracted].map(|share| share.degree())
                 }
             }
             .map(f64::abs)
         };
         let crossed = |lane: usize| {
-            let cosines = [arrival.wo, wi].map(|direction| direction.dot(arrival.normal).abs());
+            let cosines = [context.wo, wi].map(|direction| direction.dot(context.normal).abs());
             cosines.map(|cos| coat(lane, cos)[1]).into_iter().fold(0.0, f64::max)
         };
         let base = largest(lanes().map(crossed));
-        match (self.coat.roughness().is_smooth(), (arrival.wo + wi).try_normalize()) {
+        match (self.coat.roughness().is_smooth(), (context.wo + wi).try_normalize()) {
             (false, Some(h)) => {
-                let mirrored = |lane: usize| coat(lane, arrival.wo.dot(h))[0];
+                let mirrored = |lane: usize| coat(lane, context.wo.dot(h))[0];
                 base.max(largest(lanes().map(mirrored)))
             }
             _ => base,
@@ -298,7 +309,7 @@ impl Plastic<Table> {
 /// What the light of a lane meets.
 struct CoatLane<'a, const N: usize> {
     /// What crosses the coat from two directions.
-    crossing: Crossing,
+    transmittance: CoatTransmittance,
     /// The base's reflectance.
     r: f64,
     /// On both sides of the coat.
@@ -309,27 +320,27 @@ struct CoatLane<'a, const N: usize> {
 impl<const N: usize> CoatLane<'_, N> {
     /// BRDF times pi of the base.
     fn base(&self) -> f64 {
-        self.crossing.base(self.r)
+        self.transmittance.base(self.r)
     }
 
     /// Shares of the light from the first direction that the coat and the base reflect.
     fn reflected(&self) -> [f64; 2] {
-        self.crossing.reflected(self.r)
+        self.transmittance.reflected(self.r)
     }
 
     /// BRDF times cosine of a rough coat.
     fn coat(&self, reflection: &RoughReflection) -> f64 {
         let (cos, [n1, n2]) = (reflection.cos, self.indices);
-        let once = match &self.film {
+        let single = match &self.film {
             Some(film) => film.shares(cos).reflected.mean(),
             None => Interface::new(n1, n2, cos).reflectance,
         };
-        once * reflection.once + self.crossing.again * reflection.again
+        single * reflection.single + self.transmittance.multiple * reflection.multiple
     }
 }
 
 /// The branch of a direction in the surface's frame.
-fn branch<const N: usize>(arrival: &Arrival<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
-    let wi = unit(Frame::about(arrival.normal).to_world(wi));
+fn branch<const N: usize>(context: &ScatterContext<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
+    let wi = unit(Frame::about(context.normal).to_world(wi));
     Branch::drawn(wi, Lanes::from_fn(|i| share[i] as f32), pdf)
 }

@@ -1,11 +1,11 @@
-use super::coat::{BlockedByCoat, Crossing};
-use super::coating::{Averages, MetCoating};
+use super::coat::{CoatMissingEnergy, CoatTransmittance};
+use super::coating::{Averages, LocalCoating};
 use super::film_averages::{FilmAverages, mean};
 use super::{Interface, Stack, StackShares};
 
 /// The film on the coat of an opaque body, for one lane.
 pub(super) struct PlasticFilm<'a, const N: usize> {
-    met: &'a MetCoating<'a, N>,
+    local: &'a LocalCoating<'a, N>,
     lane: usize,
     /// On the viewer's side, and of the coat.
     indices: [f64; 2],
@@ -13,23 +13,28 @@ pub(super) struct PlasticFilm<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> PlasticFilm<'a, N> {
-    pub(super) fn new(met: &'a MetCoating<'a, N>, lane: usize, indices: [f64; 2], is_rough: bool) -> Self {
+    pub(super) fn new(local: &'a LocalCoating<'a, N>, lane: usize, indices: [f64; 2], is_rough: bool) -> Self {
         let [n1, n2] = indices;
-        let averages = met.averages(lane, false, [n1, n2, 0.0, 0.0], |stack| averages(stack, indices, is_rough));
-        Self { met, lane, indices, averages }
+        let averages = local.averages(lane, false, [n1, n2, 0.0, 0.0], |stack| averages(stack, indices, is_rough));
+        Self { local, lane, indices, averages }
     }
 
     /// What it reflects and lets through of the light from a cosine.
     pub(super) fn shares(&self, cos: f64) -> StackShares {
         let [n1, n2] = self.indices;
-        self.met.at_cosine(self.lane, n1, n2, cos)
+        self.local.at_cosine(self.lane, n1, n2, cos)
     }
 
     /// What crosses it and a coat from two directions, where `bare` crosses the coat alone, and a rough one blocks so
     /// much.
-    pub(super) fn crossing(&self, bare: &Crossing, blocked: Option<&BlockedByCoat>, cosines: [f64; 2]) -> Crossing {
-        match blocked {
-            Some(blocked) => blocked.crossing_under(&self.averages, bare),
+    pub(super) fn transmittance(
+        &self,
+        bare: &CoatTransmittance,
+        missing: Option<&CoatMissingEnergy>,
+        cosines: [f64; 2],
+    ) -> CoatTransmittance {
+        match missing {
+            Some(missing) => missing.transmittance_under(&self.averages, bare),
             None => bare.under(&self.averages, cosines.map(|cos| self.shares(cos).refracted.mean())),
         }
     }
@@ -53,8 +58,8 @@ fn averages(stack: &Stack, [n1, n2]: [f64; 2], is_rough: bool) -> FilmAverages {
     }
     let inside = stack.turned_around();
     let lost = |cos: f64| {
-        let [reflected, crossing] = inside.shares(n2, n1.into(), n2 * cos).means();
-        [1.0 - reflected - crossing, 0.0]
+        let [reflected, transmittance] = inside.shares(n2, n1.into(), n2 * cos).means();
+        [1.0 - reflected - transmittance, 0.0]
     };
     FilmAverages { lost_inside: mean(stack.is_slow(), n1 / n2, lost)[0].max(0.0), ..averages }
 }

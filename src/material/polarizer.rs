@@ -1,4 +1,4 @@
-use super::{Arrival, Block, Mueller, Straight};
+use super::{Block, Mueller, ScatterContext, Straight};
 use crate::math::{DVec3, Transform};
 use crate::spectrum::Lanes;
 
@@ -34,16 +34,16 @@ impl Polarizer {
         Straight { holes: Lanes::ZERO, panes, polarization }
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
-        match let_through(arrival, self.axis) {
-            Some(axis) => mueller.set_lanes(axis, arrival.present.not_zero(), |_| Block::of_polarizer(self.extinction)),
+    pub(super) fn mueller<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
+        match let_through(context, self.axis) {
+            Some(axis) => mueller.set_lanes(axis, context.present.not_zero(), |_| Block::of_polarizer(self.extinction)),
             None => *mueller = Mueller::NONE,
         }
     }
 }
 
 /// Across a ray and the axis of a sheet that lies across another one; none where that one is along the normal.
-pub(super) fn let_through<const N: usize>(arrival: &Arrival<N>, axis: DVec3) -> Option<DVec3> {
-    let other = arrival.normal.cross(axis.try_normalize()?).try_normalize()?;
-    other.cross(arrival.wo).try_normalize()
+pub(super) fn let_through<const N: usize>(context: &ScatterContext<N>, axis: DVec3) -> Option<DVec3> {
+    let other = context.normal.cross(axis.try_normalize()?).try_normalize()?;
+    other.cross(context.wo).try_normalize()
 }

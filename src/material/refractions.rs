@@ -1,10 +1,10 @@
-use super::{Arrival, Branch, Interface};
+use super::{Branch, Interface, ScatterContext};
 use crate::spectrum::Lanes;
 
 /// The refracted branches of a smooth surface: one for each pair of indices by which rays are refracted, or one for all
 /// lanes where these do not part.
 pub(super) struct Refractions<'a, const N: usize> {
-    arrival: &'a Arrival<'a, N>,
+    context: &'a ScatterContext<'a, N>,
     parts: bool,
     branches: &'a mut Vec<Branch<N>>,
     /// The place of the first, behind branches of other surfaces.
@@ -15,9 +15,9 @@ pub(super) struct Refractions<'a, const N: usize> {
 
 impl<'a, const N: usize> Refractions<'a, N> {
     /// None so far.
-    pub(super) fn new(arrival: &'a Arrival<'a, N>, parts: bool, branches: &'a mut Vec<Branch<N>>) -> Self {
+    pub(super) fn new(context: &'a ScatterContext<'a, N>, parts: bool, branches: &'a mut Vec<Branch<N>>) -> Self {
         let first = branches.len();
-        Self { arrival, parts, branches, first, pairs: [[0.0; 2]; N] }
+        Self { context, parts, branches, first, pairs: [[0.0; 2]; N] }
     }
 
     /// That of a pair of indices, at first without light; `interface` is the boundary between them.
@@ -25,7 +25,7 @@ impl<'a, const N: usize> Refractions<'a, N> {
         let count = self.branches.len() - self.first;
         let known = self.pairs[..count].iter().position(|of| !self.parts || *of == pair);
         let number = known.unwrap_or_else(|| {
-            let (Arrival { wo, normal, .. }, [here, beyond]) = (self.arrival, pair);
+            let (ScatterContext { wo, normal, .. }, [here, beyond]) = (self.context, pair);
             let wi = if here == beyond { -*wo } else { interface().refract(*wo, *normal) };
             let (share, eta_scale) = (Lanes::ZERO, (here / beyond) * (here / beyond));
             self.branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale, polarization: 0.0 });

@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use super::polarizer::let_through;
 use super::stack::PHASE_STEP;
-use super::{Arrival, Block, Mueller, Straight};
+use super::{Block, Mueller, ScatterContext, Straight};
 use crate::math::{DVec3, Transform};
 use crate::spectrum::Lanes;
 
@@ -72,15 +72,15 @@ impl Retarder {
         Straight { holes: Lanes::ZERO, panes: Lanes::ONE, polarization: 0.0 }
     }
 
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, mueller: &mut Mueller<N>) {
-        let Some(axis) = let_through(arrival, self.axis) else { return mueller.set_unchanged(arrival.present) };
-        let lanes = arrival.present.not_zero();
+    pub(super) fn mueller<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
+        let Some(axis) = let_through(context, self.axis) else { return mueller.set_unchanged(context.present) };
+        let lanes = context.present.not_zero();
         match self.retardance {
             Retardance::Phase(degrees) => {
                 let block = Block::of_retarder(degrees.to_radians());
                 mueller.set_lanes(axis, lanes, |_| block);
             }
-            Retardance::Path(path) => mueller.set_lanes(axis, lanes, |lane| path.block(arrival.wave(lane))),
+            Retardance::Path(path) => mueller.set_lanes(axis, lanes, |lane| path.block(context.wave(lane))),
         }
     }
 }

@@ -1,17 +1,17 @@
 //! A rough coated boundary, lane by lane: facets reflect and let through as the film does, and what they block is given
-//! back as [`Sides`] does for the bare one, so that no light is lost or won.
+//! back as [`FacetSides`] does for the bare one, so that no light is lost or won.
 
 use std::f64::consts::PI;
 
 use super::coated_boundary::shares_of_lane;
-use super::coating::{Averages, MetCoating};
+use super::coating::{Averages, LocalCoating};
 use super::film_averages::{FilmAverages, HatWeights};
 use super::film_kernel::FilmKernel;
-use super::{Arrival, Flow, Interface, Sides};
+use super::{BsdfValue, FacetSides, Interface, ScatterContext};
 
-/// What facets block of the light between two directions, the second of which may lie beyond the boundary: the same for
-/// all lanes that are refracted alike.
-pub(super) struct BlockedLight<'a> {
+/// The energy that single scattering loses between two directions, the second of which may lie beyond the boundary: the
+/// same for all lanes that are refracted alike.
+pub(super) struct MissingEnergy<'a> {
     /// The side of the second direction: 0 is the viewer's, 1 beyond.
     side: usize,
     /// Its cosine.
@@ -24,23 +24,23 @@ pub(super) struct BlockedLight<'a> {
     hats_around: [&'a HatWeights; 2],
 }
 
-impl<'a> BlockedLight<'a> {
+impl<'a> MissingEnergy<'a> {
     /// Between directions of cosines `from` and `to`, of which the latter lies beyond where it `crosses`.
-    pub(super) fn new(sides: &Sides, kernels: [&'a FilmKernel; 2], [from, to]: [f64; 2], crosses: bool) -> Self {
+    pub(super) fn new(sides: &FacetSides, kernels: [&'a FilmKernel; 2], [from, to]: [f64; 2], crosses: bool) -> Self {
         let (near, far, side) = (&sides.near, &sides.far, usize::from(crosses));
         Self {
             side,
             to,
-            bare: [near.blocked(from), if crosses { far } else { near }.blocked(to)],
-            bare_around: [near.mean_blocked(), far.mean_blocked()],
+            bare: [near.missing_energy(from), if crosses { far } else { near }.missing_energy(to)],
+            bare_around: [near.mean_missing_energy(), far.mean_missing_energy()],
             hats: [kernels[0].at(from), kernels[side].at(to)],
             hats_around: kernels.map(FilmKernel::mean),
         }
     }
 
     /// BSDF times cosine of a lane, times `square` where light crosses; of that which one facet sends on, `flow` knows
-    /// all but its share, `once`.
-    pub(super) fn value(&self, averages: &[Averages; 2], flow: &Flow, once: f64, square: f64) -> f64 {
+    /// all but its share, `single`.
+    pub(super) fn value(&self, averages: &[Averages; 2], flow: &BsdfValue, single: f64, square: f64) -> f64 {
         let Self { side, to, bare, bare_around, hats, hats_around } = self;
         let around = [0, 1].map(|i| (bare_around[i] + averages[i].added(hats_around[i])).max(f64::MIN_POSITIVE));
         // What the film leaves of what is blocked, where it absorbs: on the viewer's side, and on the way across.
@@ -50,23 +50,23 @@ impl<'a> BlockedLight<'a> {
         let enters = averages[0].mean[1] / left[0].max(f64::MIN_POSITIVE);
         let crossing = (enters * around[1] / around[0].max(around[1])).min(1.0);
         let way = if *side == 1 { crossing * square } else { 1.0 - crossing };
-        let [from_blocked, to_blocked] =
+        let [from_missing, to_missing] =
             [(0, 0), (1, *side)].map(|(end, side)| (bare[end] + averages[side].added(&hats[end])).max(0.0));
-        let again = from_blocked * to_blocked / around[*side] * to / PI;
-        way * left_on_way * again + once * flow.facet
+        let multiple = from_missing * to_missing / around[*side] * to / PI;
+        way * left_on_way * multiple + single * flow.facet
     }
 }
 
 /// What the film makes of a lane's light from many directions, on the viewer's side and beyond.
 pub(super) fn averages<'a, const N: usize>(
-    met: &MetCoating<'a, N>,
-    arrival: &Arrival<N>,
+    local: &LocalCoating<'a, N>,
+    context: &ScatterContext<N>,
     lane: usize,
 ) -> [Averages<'a>; 2] {
-    let turned = arrival.turned_around();
-    [(arrival, false), (&turned, true)].map(|(from, is_beyond)| {
+    let turned = context.turned_around();
+    [(context, false), (&turned, true)].map(|(from, is_beyond)| {
         let ([here, there], own) = (from.refracting(lane), [from.incident_of(lane), from.beyond_of(lane)]);
-        met.averages(lane, met.is_inside() != is_beyond, [own[0], own[1], here, there], |stack| {
+        local.averages(lane, local.is_inside() != is_beyond, [own[0], own[1], here, there], |stack| {
             let stack = if is_beyond { &stack.turned_around() } else { stack };
             let bare = |cos: f64| {
                 let interface = Interface::new(here, there, cos);

@@ -1,10 +1,13 @@
 //! A rough clear body, lane by lane.
 
 use super::coated_boundary::{block_at, shares_at};
-use super::coating::MetCoating;
-use super::rough_coating::{self, BlockedLight};
+use super::coating::LocalCoating;
+use super::rough_coating::{self, MissingEnergy};
 use super::roughness::above;
-use super::{Arrival, Block, Branch, Coating, Facet, Flow, Incoming, Interface, Mueller, RoughInterface, Sides, Way};
+use super::{
+    Block, Branch, BsdfValue, Coating, Facet, FacetSample, FacetSides, Incoming, Interface, Mueller, RoughInterface,
+    ScatterContext,
+};
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
@@ -15,14 +18,14 @@ const WIDTHS: f64 = 2.0;
 /// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices that refract. Lanes of
 /// one direction share the facets and what these block, and each has what they reflect and let through by its own
 /// indices.
-struct Meeting<'a, 'b, const N: usize> {
-    arrival: &'a Arrival<'b, N>,
+struct LaneBoundaries<'a, 'b, const N: usize> {
+    context: &'a ScatterContext<'b, N>,
     frame: Frame,
     wo: DVec3,
     /// Each different boundary, and the lanes that meet it.
     kinds: Vec<Kind<'a, N>>,
     parts: bool,
-    coating: Option<(&'a RoughInterface, MetCoating<'a, N>)>,
+    coating: Option<(&'a RoughInterface, LocalCoating<'a, N>)>,
     /// Cosine of the direction that was asked for last, and whether it lies beyond the surface.
     cos: f64,
     crosses: bool,
@@ -31,28 +34,28 @@ struct Meeting<'a, 'b, const N: usize> {
 /// Lanes that are refracted between the same two indices.
 struct Kind<'a, const N: usize> {
     indices: [f64; 2],
-    sides: Sides<'a>,
+    sides: FacetSides<'a>,
     present: Lanes<N>,
     count: f64,
     /// What light of these lanes does in the direction that was asked for last.
-    flow: Flow,
+    flow: BsdfValue,
     /// How many of them count beyond the surface.
     crossing: f64,
 }
 
-impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
-    fn new(boundary: &'a RoughBoundary<'a>, arrival: &'a Arrival<'b, N>) -> Self {
+impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
+    fn new(boundary: &'a RoughBoundary<'a>, context: &'a ScatterContext<'b, N>) -> Self {
         let interface = boundary.interface;
-        let parts = parts(interface, arrival);
-        let goes_on = if parts { arrival.draw.parting() } else { Lanes::ONE };
+        let parts = parts(interface, context);
+        let goes_on = if parts { context.draw.parting() } else { Lanes::ONE };
         let mut kinds: Vec<Kind<N>> = Vec::new();
-        for lane in (0..N).filter(|&lane| arrival.present[lane] != 0.0) {
-            let indices @ [n1, n2] = arrival.refracting(lane);
+        for lane in (0..N).filter(|&lane| context.present[lane] != 0.0) {
+            let indices @ [n1, n2] = context.refracting(lane);
             if n1 == n2 {
                 continue;
             }
             let known = kinds.iter().position(|kind| kind.indices == indices).unwrap_or_else(|| {
-                let (sides, flow) = (interface.between(n1, n2), Flow::default());
+                let (sides, flow) = (interface.between(n1, n2), BsdfValue::default());
                 kinds.push(Kind { indices, sides, present: Lanes::ZERO, count: 0.0, crossing: 0.0, flow });
                 kinds.len() - 1
             });
@@ -61,9 +64,9 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
             kind.count += 1.0;
             kind.crossing += f64::from(goes_on[lane]);
         }
-        let frame = Frame::about(arrival.normal);
-        let coating = boundary.coating.map(|coating| (interface, coating.met(arrival, arrival.from_inside)));
-        Self { arrival, wo: above(&frame, arrival.wo), frame, kinds, parts, coating, cos: 0.0, crosses: false }
+        let frame = Frame::about(context.normal);
+        let coating = boundary.coating.map(|coating| (interface, coating.local(context, context.from_inside)));
+        Self { context, wo: above(&frame, context.wo), frame, kinds, parts, coating, cos: 0.0, crosses: false }
     }
 
     /// Asks every kind of lanes about a direction above the surface or beyond it, for the mean of the densities with
@@ -94,7 +97,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 
     /// The lanes of such a kind that do.
     fn lanes(&self, kind: &Kind<N>) -> Lanes<N> {
-        if self.crosses && self.parts { kind.present * self.arrival.draw.parting() } else { kind.present }
+        if self.crosses && self.parts { kind.present * self.context.draw.parting() } else { kind.present }
     }
 
     /// What all lanes do there, the BSDF times the cosine, times a factor.
@@ -105,7 +108,7 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
     /// What those of a kind do, each by its own indices.
     fn light_of(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let light = match &self.coating {
-            Some((interface, met)) => self.coated(interface, met, kind, factor),
+            Some((interface, local)) => self.coated(interface, local, kind, factor),
             None => self.bare(kind, factor),
         };
         self.lanes(kind) * light
@@ -113,8 +116,8 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
 
     /// The same at a boundary without a coating, whether or not a lane goes on.
     fn bare(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
-        let (Flow { value, facet, cos, .. }, crosses) = (kind.flow, self.crosses);
-        let Some(own) = self.arrival.own_transmittance(cos) else {
+        let (BsdfValue { value, facet, cos, .. }, crosses) = (kind.flow, self.crosses);
+        let Some(own) = self.context.own_transmittance(cos) else {
             return Lanes::from_fn(|_| (value * factor) as f32);
         };
         let [here, beyond] = kind.indices;
@@ -123,36 +126,36 @@ impl<'a, 'b, const N: usize> Meeting<'a, 'b, N> {
         let facet = if crosses { facet } else { -facet };
         Lanes::from_fn(|i| {
             // Radiance changes by the lane's own indices, and `value` is that of the ray's.
-            let ratio = (self.arrival.incident_of(i) / self.arrival.beyond_of(i)) * (beyond / here);
+            let ratio = (self.context.incident_of(i) / self.context.beyond_of(i)) * (beyond / here);
             let square = if crosses { ratio * ratio } else { 1.0 };
             ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
         })
     }
 
     /// The same at a coated one.
-    fn coated(&self, interface: &RoughInterface, met: &MetCoating<N>, kind: &Kind<N>, factor: f64) -> Lanes<N> {
+    fn coated(&self, interface: &RoughInterface, local: &LocalCoating<N>, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let ([here, beyond], crosses) = (kind.indices, self.crosses);
         let kernels = interface.film_kernels(here, beyond);
-        let blocked = BlockedLight::new(&kind.sides, kernels, [self.wo.z, self.cos], crosses);
+        let missing = MissingEnergy::new(&kind.sides, kernels, [self.wo.z, self.cos], crosses);
         Lanes::from_fn(|lane| {
             if kind.present[lane] == 0.0 {
                 return 0.0;
             }
-            let shares = shares_at(met, self.arrival, lane, kind.flow.cos);
-            let ratio = self.arrival.incident_of(lane) / self.arrival.beyond_of(lane);
+            let shares = shares_at(local, self.context, lane, kind.flow.cos);
+            let ratio = self.context.incident_of(lane) / self.context.beyond_of(lane);
             let square = if crosses { ratio * ratio } else { 1.0 };
             // What one facet sends beyond is already converted by the ray's indices.
             let converted = if crosses { square * (beyond / here) * (beyond / here) } else { 1.0 };
-            let once = converted * if crosses { shares.refracted.mean() } else { shares.reflected.mean() };
-            let averages = rough_coating::averages(met, self.arrival, lane);
-            (factor * blocked.value(&averages, &kind.flow, once, square)) as f32
+            let single = converted * if crosses { shares.refracted.mean() } else { shares.reflected.mean() };
+            let averages = rough_coating::averages(local, self.context, lane);
+            (factor * missing.value(&averages, &kind.flow, single, square)) as f32
         })
     }
 
     /// The direction in the world; none where rounding has put it on the wrong side.
     fn to_world(&self, wi: DVec3) -> Option<DVec3> {
         let world = unit(self.frame.to_world(wi));
-        (world.dot(self.arrival.normal) * wi.z > 0.0).then_some(world)
+        (world.dot(self.context.normal) * wi.z > 0.0).then_some(world)
     }
 }
 
@@ -169,18 +172,18 @@ impl<const N: usize> Kind<'_, N> {
 /// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together:
 /// beside heroes the fixed ones, for if wavelengths drawn at random decided whether they count, some would count more
 /// often than others.
-pub(super) fn parts<const N: usize>(interface: &RoughInterface, arrival: &Arrival<N>) -> bool {
-    if !arrival.parts() {
+pub(super) fn parts<const N: usize>(interface: &RoughInterface, context: &ScatterContext<N>) -> bool {
+    if !context.parts() {
         return false;
     }
     let ratio = |i: usize| {
-        let [here, beyond] = arrival.refracting(i);
+        let [here, beyond] = context.refracting(i);
         here / beyond
     };
-    let counts = |&i: &usize| arrival.draw.shares(false)[i] != 0.0;
+    let counts = |&i: &usize| context.draw.shares(false)[i] != 0.0;
     let (least, most) =
         (0..N).filter(counts).map(ratio).fold((f64::INFINITY, 0.0_f64), |(l, m), x| (l.min(x), m.max(x)));
-    let (cos, middle) = (arrival.wo.dot(arrival.normal).clamp(0.0, 1.0), 0.5 * (least + most));
+    let (cos, middle) = (context.wo.dot(context.normal).clamp(0.0, 1.0), 0.5 * (least + most));
     let sin = (middle * (1.0 - cos * cos).sqrt()).min(1.0);
     let turned = (middle * cos - (1.0 - sin * sin).sqrt()).abs();
     sin * (most - least) / middle > WIDTHS * interface.facets().alpha() * turned
@@ -203,12 +206,17 @@ impl RoughBoundary<'_> {
     /// density of its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by
     /// the same function, `evaluate`: the two weights sum to 1 in every direction, however many branches the tracer
     /// follows, as one that is chosen with a probability is divided by it.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
-        let (tint, reflectance) = (arrival.read(self.transmittance), arrival.read(self.reflectance));
-        if arrival.lobes.has_delta() {
-            self.pass_equal_indices(arrival, tint, branches);
+    pub(super) fn scatter<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        u: [f64; 2],
+        branches: &mut Vec<Branch<N>>,
+    ) {
+        let (tint, reflectance) = (context.read(self.transmittance), context.read(self.reflectance));
+        if context.lobes.has_delta() {
+            self.pass_equal_indices(context, tint, branches);
         }
-        let mut meeting = Meeting::new(self, arrival);
+        let mut meeting = LaneBoundaries::new(self, context);
         let total: f64 = meeting.kinds.iter().map(|kind| kind.count).sum();
         let mut at = u[0] * total;
         let chosen = meeting.kinds.iter().position(|kind| {
@@ -225,7 +233,7 @@ impl RoughBoundary<'_> {
             let kind = &meeting.kinds[number];
             let [n1, n2] = kind.indices;
             let way = if number == chosen { crossed } else { kind.sides.draw(meeting.wo, u)[1] };
-            let (Some(Way { wi, facet }), true) = (way, kind.crossing > 0.0) else { continue };
+            let (Some(FacetSample { wi, facet }), true) = (way, kind.crossing > 0.0) else { continue };
             let Some(world) = meeting.to_world(wi) else { continue };
             let pdf = meeting.ask(wi, facet.map(|facet| (number, facet)));
             let share = if meeting.parts {
@@ -239,7 +247,7 @@ impl RoughBoundary<'_> {
                 branches.push(Branch { crosses: true, eta_scale, ..Branch::drawn(world, share * tint, pdf) });
             }
         }
-        if let Some(Way { wi, facet }) = reflected
+        if let Some(FacetSample { wi, facet }) = reflected
             && let Some(world) = meeting.to_world(wi)
         {
             let pdf = meeting.ask(wi, facet.map(|facet| (chosen, facet)));
@@ -251,38 +259,48 @@ impl RoughBoundary<'_> {
     }
 
     /// Between equal indices nothing happens at all.
-    fn pass_equal_indices<const N: usize>(&self, arrival: &Arrival<N>, tint: Lanes<N>, branches: &mut Vec<Branch<N>>) {
+    fn pass_equal_indices<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        tint: Lanes<N>,
+        branches: &mut Vec<Branch<N>>,
+    ) {
         let is_same = |i: usize| {
-            let [here, beyond] = arrival.refracting(i);
+            let [here, beyond] = context.refracting(i);
             here == beyond
         };
-        let same = Lanes::from_fn(|i| if is_same(i) { arrival.present[i] } else { 0.0 });
+        let same = Lanes::from_fn(|i| if is_same(i) { context.present[i] } else { 0.0 });
         if same.is_zero() {
             return;
         }
-        let parting = if parts(self.interface, arrival) { arrival.draw.parting() } else { Lanes::ONE };
+        let parting = if parts(self.interface, context) { context.draw.parting() } else { Lanes::ONE };
         let share = same * tint * parting;
-        let wi = -arrival.wo;
+        let wi = -context.wo;
         branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale: 1.0, polarization: 0.0 });
     }
 
     /// By the facet that reflects or refracts the light of each kind of lanes. What meets a second facet leaves
     /// unpolarized.
-    pub(super) fn mueller<const N: usize>(&self, arrival: &Arrival<N>, incoming: Incoming, mueller: &mut Mueller<N>) {
-        let arrival = &Arrival { present: Lanes::one_in(incoming.lanes), ..*arrival };
-        let mut meeting = Meeting::new(self, arrival);
+    pub(super) fn mueller<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        incoming: Incoming,
+        mueller: &mut Mueller<N>,
+    ) {
+        let context = &ScatterContext { present: Lanes::one_in(incoming.lanes), ..*context };
+        let mut meeting = LaneBoundaries::new(self, context);
         if meeting.ask(meeting.frame.to_local(incoming.wi), None) <= 0.0 {
             return *mueller = Mueller::NONE;
         }
         let crosses = meeting.crosses;
-        let tint = arrival.read(self.factor(crosses));
-        *mueller = Mueller { axis: arrival.wo.cross(incoming.wi), ..Mueller::NONE };
+        let tint = context.read(self.factor(crosses));
+        *mueller = Mueller { axis: context.wo.cross(incoming.wi), ..Mueller::NONE };
         for kind in meeting.going() {
             let lanes = meeting.lanes(kind);
             for lane in (0..N).filter(|&lane| lanes[lane] != 0.0) {
                 let block = match &meeting.coating {
-                    None => Block::at_boundary(arrival.own_boundary(lane, kind.flow.cos), crosses),
-                    Some((_, met)) => block_at(met, arrival, lane, kind.flow.cos, crosses),
+                    None => Block::at_boundary(context.own_boundary(lane, kind.flow.cos), crosses),
+                    Some((_, local)) => block_at(local, context, lane, kind.flow.cos, crosses),
                 };
                 // The facets' part of radiance that crosses is already changed by the ray's indices.
                 let [here, beyond] = kind.indices;
@@ -293,11 +311,11 @@ impl RoughBoundary<'_> {
     }
 
     /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.
-    pub(super) fn evaluate<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
-        let mut meeting = Meeting::new(self, arrival);
+    pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
+        let mut meeting = LaneBoundaries::new(self, context);
         let local = meeting.frame.to_local(wi);
         let pdf = if local.z == 0.0 { 0.0 } else { meeting.ask(local, None) };
-        (pdf > 0.0).then(|| (meeting.light(1.0) * arrival.read(self.factor(meeting.crosses)), pdf))
+        (pdf > 0.0).then(|| (meeting.light(1.0) * context.read(self.factor(meeting.crosses)), pdf))
     }
 
     fn factor(&self, crosses: bool) -> &Table {

@@ -5,7 +5,7 @@ use super::albedo_table::AlbedoTable;
 use super::facets::{OfFacet, later_digits};
 use super::film_kernel::FilmKernel;
 use super::fresnel::diffuse_transmittance;
-use super::{Facet, Facets, Flow};
+use super::{BsdfValue, Facet, Facets};
 use crate::math::DVec3;
 
 /// A rough boundary between two clear media: what its facets reflect and refract once, and lobes that give back what
@@ -16,8 +16,8 @@ use crate::math::DVec3;
 /// is blocked beyond the surface meets the boundary again, from the other side: as much as crosses both there and back
 /// from all around, T T', goes on as if it were not blocked ([`Facets::passed`]), for facets turn it there as little as
 /// here. So glass in a liquid of nearly its index is as invisible rough as smooth. All other light that meets a second
-/// facet is given back after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see [`Sides`].
-/// One row of the tables is computed when a ratio near it is first asked for.
+/// facet is given back after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see
+/// [`FacetSides`]. One row of the tables is computed when a ratio near it is first asked for.
 #[derive(Clone, Debug)]
 pub struct RoughInterface {
     facets: Facets,
@@ -51,16 +51,16 @@ impl RoughInterface {
     }
 
     /// The boundary as light meets it that comes from index `n1` and finds a different index `n2` beyond.
-    pub fn between(&self, n1: f64, n2: f64) -> Sides<'_> {
+    pub fn between(&self, n1: f64, n2: f64) -> FacetSides<'_> {
         let (denser, place) = place(n1, n2);
         let [near, far] = [denser, !denser].map(|denser| self.side(denser, place));
         // Light meets a boundary evenly as often from both sides if n^2 of it comes: what crosses is the same both
         // ways.
         let enters = diffuse_transmittance(n2 / n1);
         let leaves = enters * (n1 / n2) * (n1 / n2);
-        let most = near.mean_blocked().max(far.mean_blocked());
-        let crossing = [enters * far.mean_blocked() / most, leaves * near.mean_blocked() / most];
-        Sides { facets: &self.facets, indices: [n1, n2], near, far, crossing, straight: enters * leaves }
+        let most = near.mean_missing_energy().max(far.mean_missing_energy());
+        let crossing = [enters * far.mean_missing_energy() / most, leaves * near.mean_missing_energy() / most];
+        FacetSides { facets: &self.facets, indices: [n1, n2], near, far, crossing, straight: enters * leaves }
     }
 
     /// What films add to what is blocked, on the viewer's side and beyond, of ratios near that of the indices.
@@ -81,7 +81,8 @@ impl RoughInterface {
     }
 
     fn row(&self, denser: bool, row: usize) -> &AlbedoTable {
-        self.rows[row + if denser { RATIOS + 1 } else { 0 }].get_or_init(|| blocked(&self.facets, ratio(denser, row)))
+        self.rows[row + if denser { RATIOS + 1 } else { 0 }]
+            .get_or_init(|| missing_energy(&self.facets, ratio(denser, row)))
     }
 }
 
@@ -113,7 +114,7 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
 
 /// The share of the light from each cosine that meets a second facet: the mean over the visible facets, where the index
 /// beyond is `ratio` times that on this side.
-fn blocked(facets: &Facets, ratio: f64) -> AlbedoTable {
+fn missing_energy(facets: &Facets, ratio: f64) -> AlbedoTable {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
     AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Again { facets: *facets, ratio, straight }))
 }
@@ -128,7 +129,7 @@ struct Again {
 impl OfFacet for Again {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
-        Facet::new(&self.facets, [1.0, self.ratio], self.straight, [wo, h], None).again
+        Facet::new(&self.facets, [1.0, self.ratio], self.straight, [wo, h], None).multiple
     }
 }
 
@@ -152,19 +153,19 @@ impl Side<'_> {
     }
 
     /// The share of light from the cosine `z` that meets a second facet.
-    pub fn blocked(&self, z: f64) -> f64 {
+    pub fn missing_energy(&self, z: f64) -> f64 {
         let place = self.rows[0].place(z);
         self.mix(|row| row.at(place))
     }
 
     /// The share of light from all around that meets a second facet.
-    pub fn mean_blocked(&self) -> f64 {
+    pub fn mean_missing_energy(&self) -> f64 {
         self.mix(AlbedoTable::mean)
     }
 
     /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
     /// there.
-    fn blocked_and_density(&self, z: f64) -> [f64; 2] {
+    fn missing_energy_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
         let [[a, a_density], [b, b_density]] = self.rows.map(|row| row.value_and_density(place, z));
         [a + self.part * (b - a), a_density + self.often() * (b_density - a_density)]
@@ -172,7 +173,7 @@ impl Side<'_> {
 
     /// How often the second row is drawn from.
     fn often(&self) -> f64 {
-        self.part * self.rows[1].mean() / self.mean_blocked()
+        self.part * self.rows[1].mean() / self.mean_missing_energy()
     }
 
     /// A direction above the surface, drawn by nearly what is blocked times the cosine.
@@ -190,7 +191,7 @@ impl Side<'_> {
 /// the same both ways; and as far as that allows, as much crosses of what is blocked as of light from all around smooth
 /// glass: k_12 m_2 = T_12 m_2 / max(m_1, m_2).
 #[derive(Clone, Copy, Debug)]
-pub struct Sides<'a> {
+pub struct FacetSides<'a> {
     facets: &'a Facets,
     indices: [f64; 2],
     /// As met from the viewer's side.
@@ -205,30 +206,30 @@ pub struct Sides<'a> {
 
 /// A direction drawn for the viewer, and the facet that sent light from there, if it met only one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Way {
+pub struct FacetSample {
     /// Unit vector toward where the light came from.
     pub wi: DVec3,
     /// The facet.
     pub facet: Option<Facet>,
 }
 
-impl Sides<'_> {
+impl FacetSides<'_> {
     /// A direction above the surface and one beyond it for the viewer's direction `wo`; none where no light comes from.
     ///
     /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
     /// else they are its own. So all that is drawn goes on as light does: what is evaluated there over the density is
     /// at most 1 on each side and nearly 1 for both, and its product stays so along a path, however many surfaces that
     /// meets.
-    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<Way>; 2] {
+    pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<FacetSample>; 2] {
         let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
         let [chance, around] = later_digits(u);
-        if chance < facet.again {
-            let u = [around, chance / facet.again];
+        if chance < facet.multiple {
+            let u = [around, chance / facet.multiple];
             let [above, beyond] = [self.near.draw(u), self.far.draw(u)];
             return [above, DVec3 { z: -beyond.z, ..beyond }]
-                .map(|wi| (wi.z != 0.0).then_some(Way { wi, facet: None }));
+                .map(|wi| (wi.z != 0.0).then_some(FacetSample { wi, facet: None }));
         }
-        [0, 1].map(|i| (facet.once[i] > 0.0).then(|| Way { wi: facet.ways[i], facet: Some(facet) }))
+        [0, 1].map(|i| (facet.single[i] > 0.0).then(|| FacetSample { wi: facet.ways[i], facet: Some(facet) }))
     }
 
     fn facet(&self, directions: [DVec3; 2], known: Option<DVec3>) -> Facet {
@@ -236,32 +237,32 @@ impl Sides<'_> {
     }
 
     /// What is reflected from `wi`, above the surface, to `wo`. The facet is found where it is not given.
-    pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let again = self.near.blocked(wo.z);
-        let [blocked, lobe] = self.near.blocked_and_density(wi.z);
-        let lobes = (1.0 - self.crossing[0]) * again * blocked / self.near.mean_blocked() * wi.z / PI;
+    pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> BsdfValue {
+        let multiple = self.near.missing_energy(wo.z);
+        let [missing, lobe] = self.near.missing_energy_and_density(wi.z);
+        let lobes = (1.0 - self.crossing[0]) * multiple * missing / self.near.mean_missing_energy() * wi.z / PI;
         let facet = facet.or_else(|| Some(self.facet([wo, (wo + wi).try_normalize()?], Some(wi))));
-        let once = facet.map_or(Flow::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
-        once + Flow { value: lobes, pdf: again * lobe, ..Flow::default() }
+        let single = facet.map_or(BsdfValue::default(), |facet| facet.flow(0, self.facets.pdf(wo, facet.h)));
+        single + BsdfValue { value: lobes, pdf: multiple * lobe, ..BsdfValue::default() }
     }
 
     /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found
     /// where it is not given.
-    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> Flow {
-        let again = self.near.blocked(wo.z);
-        let [blocked, lobe] = self.far.blocked_and_density(-wi.z);
+    pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> BsdfValue {
+        let multiple = self.near.missing_energy(wo.z);
+        let [missing, lobe] = self.far.missing_energy_and_density(-wi.z);
         let [n1, n2] = self.indices;
         let square = (n1 / n2) * (n1 / n2);
-        let lobes = self.crossing[0] * again * blocked / self.far.mean_blocked() * -wi.z / PI;
+        let lobes = self.crossing[0] * multiple * missing / self.far.mean_missing_energy() * -wi.z / PI;
         let facet = facet.or_else(|| {
             let h = ((wo * n1 + wi * n2) * (n1 - n2).signum()).try_normalize()?;
             let met = h.z > 0.0 && wo.dot(h) > 0.0 && wi.dot(h) < 0.0;
             met.then(|| self.facet([wo, h], Some(wi)))
         });
-        let once = facet.filter(|facet| facet.cos[1] > 0.0).map_or(Flow::default(), |facet| {
+        let single = facet.filter(|facet| facet.cos[1] > 0.0).map_or(BsdfValue::default(), |facet| {
             let flow = facet.flow(1, self.facets.refraction_pdf(wo, facet.h, self.indices, facet.cos));
-            Flow { value: flow.value * square, facet: flow.facet * square, ..flow }
+            BsdfValue { value: flow.value * square, facet: flow.facet * square, ..flow }
         });
-        once + Flow { value: lobes * square, pdf: again * lobe, ..Flow::default() }
+        single + BsdfValue { value: lobes * square, pdf: multiple * lobe, ..BsdfValue::default() }
     }
 }

@@ -3,7 +3,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::albedo_table::AlbedoTable;
 use super::facets::OfFacet;
-use super::{Arrival, Facets, Lobes, RoughInterface, reflect};
+use super::{Facets, Lobes, RoughInterface, ScatterContext, reflect};
 use crate::math::{DVec3, Frame};
 
 /// How rough a surface is, from 0 (smooth) to 1, and what follows from it.
@@ -86,8 +86,8 @@ impl Roughness {
 #[derive(Clone, Debug)]
 pub struct RoughSurface {
     facets: Facets,
-    /// The share of light that meets a second facet.
-    blocked: AlbedoTable,
+    /// The share of light that meets a second facet, which single scattering loses.
+    missing_energy: AlbedoTable,
 }
 
 /// Directions of light at a rough surface, and what is reflected between them.
@@ -96,9 +96,9 @@ pub struct RoughReflection {
     /// Unit vector toward the light.
     pub wi: DVec3,
     /// BRDF times cosine of light reflected once, by perfect mirrors.
-    pub once: f64,
+    pub single: f64,
     /// The same of light reflected more often.
-    pub again: f64,
+    pub multiple: f64,
     /// Cosine of the angle at which a facet meets the light that is reflected once.
     pub cos: f64,
     /// Density per steradian with which `scatter` draws `wi`.
@@ -111,7 +111,7 @@ const STEPS: usize = 64;
 impl RoughSurface {
     fn new(alpha: f64) -> Self {
         let facets = Facets::new(alpha);
-        Self { facets, blocked: blocked(&facets) }
+        Self { facets, missing_energy: missing_energy(&facets) }
     }
 
     /// The facets themselves.
@@ -120,31 +120,31 @@ impl RoughSurface {
     }
 
     /// The share of light from all around that perfect mirrors would reflect more than once.
-    pub fn mean_blocked(&self) -> f64 {
-        self.blocked.mean()
+    pub fn mean_missing_energy(&self) -> f64 {
+        self.missing_energy.mean()
     }
 
     /// What is left, beside perfect mirrors, of light that is reflected more than once by facets of reflectance `mean`.
     ///
     /// A geometric series over further reflections: Hill 2018, *A Multi-Faceted Exploration*, part 3.
-    pub fn reflected_again(&self, mean: f64) -> f64 {
-        mean * mean * (1.0 - self.mean_blocked()) / (1.0 - mean * self.mean_blocked())
+    pub fn multiply_reflected(&self, mean: f64) -> f64 {
+        mean * mean * (1.0 - self.mean_missing_energy()) / (1.0 - mean * self.mean_missing_energy())
     }
 
     /// The share of light from the cosine `z` that perfect mirrors would reflect more than once.
-    pub fn blocked(&self, z: f64) -> f64 {
-        self.blocked.value(z)
+    pub fn missing_energy(&self, z: f64) -> f64 {
+        self.missing_energy.value(z)
     }
 
     /// Draws a direction of light for the viewer's direction `wo`; none if it lies below the surface.
     ///
     /// It is drawn from the lobe as often as perfect mirrors would reflect light more than once.
     pub fn scatter(&self, wo: DVec3, u: [f64; 2]) -> Option<RoughReflection> {
-        let again = self.blocked(wo.z);
-        if u[0] < again {
-            return self.evaluate(wo, self.blocked.draw([u[0] / again, u[1]]));
+        let multiple = self.missing_energy(wo.z);
+        if u[0] < multiple {
+            return self.evaluate(wo, self.missing_energy.draw([u[0] / multiple, u[1]]));
         }
-        let h = self.facets.visible_normal(wo, [(u[0] - again) / (1.0 - again), u[1]]);
+        let h = self.facets.visible_normal(wo, [(u[0] - multiple) / (1.0 - multiple), u[1]]);
         self.reflection(wo, reflect(wo, h), h)
     }
 
@@ -154,23 +154,27 @@ impl RoughSurface {
     }
 
     /// The same where light arrives; `wi` and the viewer's direction are those of the world.
-    pub(super) fn evaluate_at<const N: usize>(&self, arrival: &Arrival<N>, wi: DVec3) -> Option<RoughReflection> {
-        let frame = Frame::about(arrival.normal);
-        self.evaluate(above(&frame, arrival.wo), frame.to_local(wi))
+    pub(super) fn evaluate_at<const N: usize>(
+        &self,
+        context: &ScatterContext<N>,
+        wi: DVec3,
+    ) -> Option<RoughReflection> {
+        let frame = Frame::about(context.normal);
+        self.evaluate(above(&frame, context.wo), frame.to_local(wi))
     }
 
     fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> Option<RoughReflection> {
         if wi.z <= 0.0 {
             return None;
         }
-        let [blocked, lobe] = self.blocked.value_and_density(self.blocked.place(wi.z), wi.z);
-        let again = self.blocked(wo.z);
+        let [missing, lobe] = self.missing_energy.value_and_density(self.missing_energy.place(wi.z), wi.z);
+        let multiple = self.missing_energy(wo.z);
         Some(RoughReflection {
             wi,
-            once: self.facets.reflection(wo, wi, h),
-            again: again * blocked / self.mean_blocked() * wi.z / PI,
+            single: self.facets.reflection(wo, wi, h),
+            multiple: multiple * missing / self.mean_missing_energy() * wi.z / PI,
             cos: wo.dot(h).clamp(0.0, 1.0),
-            pdf: (1.0 - again) * self.facets.pdf(wo, h) + again * lobe,
+            pdf: (1.0 - multiple) * self.facets.pdf(wo, h) + multiple * lobe,
         })
     }
 }
@@ -182,7 +186,7 @@ pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
 }
 
 /// The share of light from each cosine that meets a second facet: the mean over the visible facets.
-fn blocked(facets: &Facets) -> AlbedoTable {
+fn missing_energy(facets: &Facets) -> AlbedoTable {
     let visible = facets.visible(1.0);
     AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Blocked(*facets)))
 }
@@ -193,6 +197,6 @@ struct Blocked(Facets);
 impl OfFacet for Blocked {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
-        self.0.left_and_blocked(wo, reflect(wo, h))[1]
+        self.0.unshadowed_and_shadowed(wo, reflect(wo, h))[1]
     }
 }

@@ -1,6 +1,6 @@
 use super::degree::{degree, largest, of_all_lanes};
 use super::last::Last;
-use super::{Arrival, Block, Branch, Coating, Interface, Mueller, StackShares, Straight, conductor_reflectance};
+use super::{Block, Branch, Coating, Interface, Mueller, ScatterContext, StackShares, Straight, conductor_reflectance};
 use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 
 /// A sheet that bends no light: light goes straight on, that of lights to the surfaces behind as well, or is mirrored.
@@ -69,43 +69,43 @@ impl Thin<Table> {
     }
 
     /// What goes straight on.
-    pub(super) fn straight<const N: usize>(&self, arrival: &Arrival<N>) -> Straight<N> {
-        let (panes, polarization) = self.share(arrival, true);
+    pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Straight<N> {
+        let (panes, polarization) = self.share(context, true);
         Straight { holes: Lanes::ZERO, panes, polarization }
     }
 
     /// What is mirrored.
-    pub(super) fn scatter<const N: usize>(&self, arrival: &Arrival<N>, branches: &mut Vec<Branch<N>>) {
-        let (share, polarization) = self.share(arrival, false);
+    pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, branches: &mut Vec<Branch<N>>) {
+        let (share, polarization) = self.share(context, false);
         if !share.is_zero() {
-            branches.push(Branch::mirrored(arrival, share, polarization));
+            branches.push(Branch::mirrored(context, share, polarization));
         }
     }
 
     /// What becomes of polarization in some lanes, of light that crosses the pane or is mirrored.
     pub(super) fn mueller<const N: usize>(
         &self,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         crosses: bool,
         lanes: LaneSet,
         mueller: &mut Mueller<N>,
     ) {
-        let (axis, cos) = (arrival.wo.cross(arrival.normal), arrival.wo.dot(arrival.normal));
+        let (axis, cos) = (context.wo.cross(context.normal), context.wo.dot(context.normal));
         let (index, transmittance) = match self {
             Self::Pane { index, transmittance } => (index, transmittance),
             Self::Film(film) => {
-                let film = film.met(arrival, false);
+                let film = film.local(context, false);
                 return mueller.set_lanes(axis, lanes, |lane| {
-                    let n = arrival.incident_of(lane);
+                    let n = context.incident_of(lane);
                     let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
                     if crosses { refracted.block() } else { reflected.block() }
                 });
             }
         };
-        let (index, left) = (arrival.draw.read_exact(index), arrival.read(transmittance));
+        let (index, left) = (context.draw.read_exact(index), context.read(transmittance));
         let mut last = Last::NONE;
         mueller.set_lanes(axis, lanes, |lane| {
-            let pane @ [n1, n2, t] = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
+            let pane @ [n1, n2, t] = [context.incident_of(lane), index[lane], f64::from(left[lane])];
             if n1 == n2 {
                 return if crosses { Block::IDENTITY.times(t) } else { Block::default() };
             }
@@ -118,26 +118,26 @@ impl Thin<Table> {
 
     /// What of each lane goes straight on, or is mirrored, and the largest degree of polarization that this gives to
     /// unpolarized light; of a film, in which light interferes, that of all lanes together.
-    fn share<const N: usize>(&self, arrival: &Arrival<N>, crosses: bool) -> (Lanes<N>, f32) {
-        let cos = arrival.wo.dot(arrival.normal);
+    fn share<const N: usize>(&self, context: &ScatterContext<N>, crosses: bool) -> (Lanes<N>, f32) {
+        let cos = context.wo.dot(context.normal);
         let mut lanes = [[0.0; 2]; N];
-        let present = (0..N).filter(|&lane| arrival.present[lane] != 0.0);
+        let present = (0..N).filter(|&lane| context.present[lane] != 0.0);
         let mean = |lanes: &[[f64; 2]; N]| Lanes::from_fn(|lane| (0.5 * (lanes[lane][0] + lanes[lane][1])) as f32);
         match self {
             Self::Pane { index, transmittance } => {
-                let (index, left) = (arrival.draw.read_exact(index), arrival.read(transmittance));
+                let (index, left) = (context.draw.read_exact(index), context.read(transmittance));
                 let mut last = Last::NONE;
                 for lane in present {
-                    let pane = [arrival.incident_of(lane), index[lane], f64::from(left[lane])];
+                    let pane = [context.incident_of(lane), index[lane], f64::from(left[lane])];
                     let [through, back] = last.of(pane, |[n1, n2, t]| all_reflections(&Interface::new(n1, n2, cos), t));
                     lanes[lane] = if crosses { through } else { back };
                 }
                 (mean(&lanes), largest(lanes.into_iter().map(degree)))
             }
             Self::Film(film) => {
-                let film = film.met(arrival, false);
+                let film = film.local(context, false);
                 for lane in present {
-                    let n = arrival.incident_of(lane);
+                    let n = context.incident_of(lane);
                     let StackShares { reflected, refracted } = film.at_cosine(lane, n, n, cos);
                     let share = if crosses { refracted } else { reflected };
                     lanes[lane] = [share.s, share.p];

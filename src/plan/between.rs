@@ -15,7 +15,7 @@ use crate::trace::{
 const LARGE: f64 = 1e6;
 
 /// A world in which light between surfaces is found in one way.
-pub(super) struct Way<'a> {
+pub(super) struct IndirectMethod<'a> {
     pub(super) world: World,
     /// What a person is told of it.
     pub(super) reasons: Vec<String>,
@@ -28,8 +28,8 @@ pub(super) struct Way<'a> {
 
 /// The world in which light between surfaces is found by light vertices, by bounces that are aimed at bright places, or
 /// by both, whichever pays most, if any does.
-pub(super) fn between(world: World, photons: &[PhotonWorth]) -> Way<'_> {
-    let plain = Way { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
+pub(super) fn between(world: World, photons: &[PhotonWorth]) -> IndirectMethod<'_> {
+    let plain = IndirectMethod { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
     let light = room_light(&plain.world);
     if let RoomLight { openings: Some(openings), is_rare: true, .. } = light {
         let aimed = plain.aimed_at_rare(openings);
@@ -42,7 +42,7 @@ pub(super) fn between(world: World, photons: &[PhotonWorth]) -> Way<'_> {
     others.fold(plain, |best, other| if other.gain > best.gain { other } else { best })
 }
 
-impl Way<'_> {
+impl IndirectMethod<'_> {
     /// How many of the photons for each camera sample make the time to an error least.
     pub(super) fn photons_of_a_sample(&self) -> f64 {
         self.noise().photons_of_a_sample(self.photons)

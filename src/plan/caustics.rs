@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::efficiency::{Worth, rounded, weigh};
+use super::efficiency::{PhotonGain, rounded, weigh};
 use super::words::{as_long, in_number};
 use crate::light::{Light, LightId};
 use crate::material::Material;
@@ -31,18 +31,18 @@ const PAIRS: usize = 1 << 19;
 const SIDE: u32 = 24;
 
 /// Whether caustics are shown to the camera by photons.
-pub(super) struct Shown {
+pub(super) struct CausticChoice {
     pub(super) caustics: Option<Caustics>,
     pub(super) why: Vec<String>,
     /// Whether photons are not gathered either, as they do not pay where the camera would see them.
     pub(super) settled: bool,
     /// A world whose photons have learned where to go.
-    pub(super) taught: Option<World>,
+    pub(super) guided: Option<World>,
 }
 
-impl Shown {
+impl CausticChoice {
     fn not(why: Vec<String>, settled: bool) -> Self {
-        Self { caustics: None, why, settled, taught: None }
+        Self { caustics: None, why, settled, guided: None }
     }
 }
 
@@ -92,17 +92,17 @@ impl Caustics {
 }
 
 /// The caustics of a scene that are worth photons, if any, and why.
-pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
+pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice {
     let Sources { small, mut large } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(why) => return Shown::not(why.into_iter().collect(), sees_receivers(scene)),
+        Err(why) => return CausticChoice::not(why.into_iter().collect(), sees_receivers(scene)),
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
     let all = Smoothness::ALL.to_vec();
     let world = piloted(unguided, LightPass { photons: of_all, lights, to: all, map: None });
     if let Some(why) = nowhere_to_aim(scene, &world) {
-        return Shown::not(vec![why], true);
+        return CausticChoice::not(vec![why], true);
     }
     let share = seen_photons(&world);
     let sizes = small.clone();
@@ -117,9 +117,9 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
         ));
     }
     if seen.is_empty() {
-        return Shown::not(lines, false);
+        return CausticChoice::not(lines, false);
     }
-    let Worth { mut photons, gain, of_smooth } = weigh(scene, &world, size);
+    let PhotonGain { mut photons, gain, of_smooth } = weigh(scene, &world, size);
     photons.retain(|photons| seen.iter().any(|(id, _)| photons.lights.contains(id)));
     let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
     let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(is_sent);
@@ -127,7 +127,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     if sending.is_empty() {
         let (from, why) = (named(scene, &large), not_worth(gain));
         lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-        return Shown::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
+        return CausticChoice::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
     }
     if !large.is_empty() {
         lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
@@ -146,7 +146,7 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> Shown {
     }));
     let to = aim(scene, &smooth);
     let caustics = Caustics { photons, smooth, from: named(scene, &sending), to, seen, gain };
-    Shown { caustics: Some(caustics), why: lines, settled: false, taught: Some(world) }
+    CausticChoice { caustics: Some(caustics), why: lines, settled: false, guided: Some(world) }
 }
 
 /// Why photons are not sent, for a world of which more is known by now.
@@ -346,7 +346,7 @@ fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
             scene.is_seen(object) && (may_receive(scene, material) || !material.is_see_through())
         };
         let hit = scene.nearest(&ray, f64::INFINITY, &counts)?;
-        may_receive(scene, scene.material_of(hit.object)).then(|| ray.at(hit.crossing.t))
+        may_receive(scene, scene.material_of(hit.object)).then(|| ray.at(hit.intersection.t))
     };
     rays.filter_map(place).collect()
 }

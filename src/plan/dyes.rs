@@ -11,11 +11,11 @@ use crate::spectrum::{
 const MOST: usize = 8;
 
 /// What tints light on a way: nothing, or a surface.
-struct Ways<'a> {
+struct PathTints<'a> {
     tints: Vec<Option<&'a Tint<'a>>>,
 }
 
-impl Ways<'_> {
+impl PathTints<'_> {
     /// What is left of light at wavelengths in nm.
     fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<Vec<f64>> {
         self.read(wavelengths_nm.len(), |tint| tint.at(wavelengths_nm, upsampler))
@@ -38,7 +38,7 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
         return 0.0;
     }
     let tints = survey.scattering(MOST).into_iter().chain(survey.smooth(MOST)).map(Some);
-    let ways = Ways { tints: std::iter::once(None).chain(tints).collect() };
+    let ways = PathTints { tints: std::iter::once(None).chain(tints).collect() };
     let judged: Vec<&(Curve, Emission)> = survey.judged().collect();
     let lights: Vec<&Curve> = judged.iter().map(|(curve, _)| curve).collect();
     let dyes: Vec<Dye> = survey.dyes.iter().map(|(dye, _)| dye.clone()).collect();
@@ -66,7 +66,7 @@ struct Lit<'a> {
 }
 
 impl Lit<'_> {
-    fn missed(&self, ways: &Ways, basis: &Basis) -> f64 {
+    fn missed(&self, ways: &PathTints, basis: &Basis) -> f64 {
         let Self { dye, glow, reflectance, curve, light } = *self;
         let colors = light.film_colors();
         let wavelengths = &colors.wavelengths_nm;

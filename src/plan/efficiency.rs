@@ -10,7 +10,7 @@ use crate::trace::{Effort, PhotonWorth, Smoothness, World, photons_worth, pilot_
 const LEFT: f64 = 0.5;
 
 /// What photons of some lights are worth beside camera samples.
-pub(super) struct Worth {
+pub(super) struct PhotonGain {
     /// The photons of those lights whose photons lower the time to an error.
     pub(super) photons: Vec<PhotonWorth>,
     /// How many times as long chance takes to the same error; none where it misses light for good, or there is no
@@ -25,10 +25,10 @@ pub(super) struct Worth {
 /// A light that is left to chance adds to the noise of camera samples: one that meets the lamp sees f of its radiance,
 /// and does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there
 /// are is found when all else is decided.
-pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> Worth {
+pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> PhotonGain {
     let mut colors = Distinct::default();
     let mut spike = |photons: &PhotonWorth| {
-        let to = Sent::new(scene, photons.to);
+        let to = TargetObjects::new(scene, photons.to);
         let of_light = |light: &LightId| to.shows(*light, size(*light), &mut colors).unwrap_or(f64::INFINITY);
         LEFT * photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64
     };
@@ -47,7 +47,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) 
     let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
     let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
     photons.truncate(best);
-    Worth { photons, gain, of_smooth }
+    PhotonGain { photons, gain, of_smooth }
 }
 
 /// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an
@@ -57,14 +57,14 @@ pub(super) fn rounded(photons: f64) -> f64 {
 }
 
 /// Objects that photons are sent to.
-struct Sent<'a> {
+struct TargetObjects<'a> {
     scene: &'a Scene<Curve>,
     to: Smoothness,
     /// The least solid angle in steradians into which they spread what mirrors would send in one direction.
     spread: f64,
 }
 
-impl<'a> Sent<'a> {
+impl<'a> TargetObjects<'a> {
     fn new(scene: &'a Scene<Curve>, to: Smoothness) -> Self {
         let sent = Self { scene, to, spread: 0.0 };
         let spread = |object: usize| scene.material_of(object as u32).spread();

@@ -1,7 +1,7 @@
 //! How the light of a scene is found.
 
-use super::between::{Way, between};
-use super::caustics::{self, Shown};
+use super::between::{IndirectMethod, between};
+use super::caustics::{self, CausticChoice};
 use super::photon_map;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
@@ -12,12 +12,12 @@ pub(super) struct Lit {
     pub(super) world: World,
     pub(super) because: Vec<String>,
     /// Where photons learned to go.
-    pub(super) taught: Option<World>,
+    pub(super) guided: Option<World>,
 }
 
 impl Lit {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let Shown { caustics, why, settled, taught } = caustics::caustics(scene, unlit);
+        let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, unlit);
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
         let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref(), settled);
         // Why nothing is shown matters only where nothing is gathered either.
@@ -27,7 +27,7 @@ impl Lit {
         let way = between(unlit.with_light_pass(light_pass), photons);
         // As many as are best beside the noise that all else leaves.
         let pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, way.photons_of_a_sample()));
-        let Way { mut world, reasons, .. } = way;
+        let IndirectMethod { mut world, reasons, .. } = way;
         if let Some(pass) = pass {
             world = world.with_light_pass(Some(LightPass { map, ..pass }));
         }
@@ -35,6 +35,6 @@ impl Lit {
         let left = caustics::without_end(scene, &world);
         let why = caustics::why_in(&world, why);
         let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
-        Self { world, because, taught }
+        Self { world, because, guided }
     }
 }

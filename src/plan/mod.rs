@@ -77,7 +77,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let (method, reason) = before_light(scene, basis, model_error);
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
-    let Lit { world, because, taught } = Lit::new(scene, &unlit);
+    let Lit { world, because, guided } = Lit::new(scene, &unlit);
     decisions.extend(because);
     let polarization = polarization::decide(scene, &world);
     decisions.extend(polarization.why);
@@ -88,7 +88,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let world = world.with_density(adaptive.map(|adaptive| adaptive.density));
     let method = Method { seed: scene.render.seed, ..world.method().clone() };
     let probe = probe(&world);
-    let times = photon_times(&taught.map_or(world.clone(), |taught| world.clone().taught_by(&taught)));
+    let times = photon_times(&guided.map_or(world.clone(), |guided| world.clone().guided_by(&guided)));
     let on_average = Probe { time: probe.time.mul_f64(times_rays), rays: probe.rays * times_rays, ..probe };
     let (cost, processor_time) = cost(scene, &method, &on_average, times);
     let mut because = vec![cost];
@@ -177,7 +177,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes
     let of_map = method.map().map_or(0, |map| map.all_photons());
     let shown = method.light_pass.as_ref().map_or(0, |pass| pass.photons);
     let photons = shown + of_map;
-    let of_photons = times.shown.mul_f64(shown as f64) + times.kept.mul_f64(of_map as f64);
+    let of_photons = times.splatted.mul_f64(shown as f64) + times.stored.mul_f64(of_map as f64);
     let of_light_paths = probe.light_paths.mul_f64(f64::from(method.samples));
     let time = probe.time.mul_f64(samples) + of_photons + of_light_paths;
     let (share, of) = match method.stop {

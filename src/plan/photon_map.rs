@@ -35,11 +35,11 @@ const FEWEST_SENT: u64 = 512;
 /// camera would see straight, and do not pay.
 pub(super) fn with_map(
     scene: &Scene<Curve>,
-    untaught: &World,
+    unguided: &World,
     shown: Option<&LightPass>,
     settled: bool,
 ) -> (Option<LightPass>, Vec<String>) {
-    let method = untaught.method();
+    let method = unguided.method();
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AutoText::Off;
     // What coats and narrow lobes throw and the camera would not see straight is not worth photons of its own.
@@ -47,8 +47,8 @@ pub(super) fn with_map(
     if is_off || settled || !is_aimed {
         return as_shown();
     }
-    let places = reached_places(untaught);
-    let samples = untaught.samples_of_the_format();
+    let places = reached_places(unguided);
+    let samples = unguided.samples_of_the_format();
     let most = f64::from(method.samples);
     // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
@@ -60,7 +60,7 @@ pub(super) fn with_map(
     let map = passes(PHOTONS, OF_A_PASS);
     let pass = shown.cloned().unwrap_or_else(|| LightPass {
         photons: (PHOTONS * samples).ceil() as u64,
-        lights: small_lights(untaught, &places, SMALL),
+        lights: small_lights(unguided, &places, SMALL),
         to: vec![Smoothness::Whole],
         map: None,
     });
@@ -69,9 +69,9 @@ pub(super) fn with_map(
     }
     let asked = |map| Some(LightPass { map: Some(map), ..pass.clone() });
     // A few photons tell whether any are gathered, however many the image will take.
-    let affordable = photons_within(&untaught.with_light_pass(asked(map)), RAYS_OF_A_LOOK as f64).max(FEWEST_SENT);
+    let affordable = photons_within(&unguided.with_light_pass(asked(map)), RAYS_OF_A_LOOK as f64).max(FEWEST_SENT);
     let few = MapPasses { photons: map.photons.min(FEW).min(affordable), ..map };
-    let with_few = untaught.with_light_pass(asked(few));
+    let with_few = unguided.with_light_pass(asked(few));
     let Some(worth) = gathered_worth(&with_few, &places) else { return as_shown() };
     let map = MapPasses { chance: chance(&worth), ..passes(photons(&worth), worth.enough.min(OF_A_PASS)) };
     let line = described(&map, samples, method);

@@ -7,7 +7,7 @@ use super::survey::{Survey, Tint, method_of_a_look, missed, strongest, tolerance
 use crate::material::Material;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity};
-use crate::trace::{ROUTES_NM, Route, Step, Way, World, routes};
+use crate::trace::{ROUTES_NM, Route, RouteEvent, Step, World, routes};
 
 /// Products of tints by number, with the weight of each.
 type Weighted = Vec<(usize, f64)>;
@@ -141,10 +141,10 @@ impl<'a> Keeping<'a> {
     /// The tints of a step.
     fn met(&mut self, step: &Step) -> Vec<u32> {
         let (way, rounded) = match step.way {
-            Way::Reflected(cos) => (0, (cos * COSINES).round().max(1.0) as i64),
-            Way::Crossed => (1, 0),
-            Way::Scattered => (2, 0),
-            Way::Inside(distance) => (3, (libm::log(distance) / libm::log(DISTANCE)).round() as i64),
+            RouteEvent::Reflected(cos) => (0, (cos * COSINES).round().max(1.0) as i64),
+            RouteEvent::Crossed => (1, 0),
+            RouteEvent::Scattered => (2, 0),
+            RouteEvent::Inside(distance) => (3, (libm::log(distance) / libm::log(DISTANCE)).round() as i64),
         };
         let material = &self.scene.materials[step.material as usize].material;
         let whole = material.with_parts();
@@ -203,12 +203,12 @@ fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Ti
     let filter = |quantity, curve: &'a Curve| vec![Tint::Filter(quantity, farthest_from_gray(curve))];
     match (whole[step.part], step.way) {
         (Material::Mirror(mirror), _) => filter(Quantity::Reflectance, &mirror.reflectance),
-        (Material::Thin(pane), Way::Crossed) => {
+        (Material::Thin(pane), RouteEvent::Crossed) => {
             pane.transmittance().map_or_else(Vec::new, |left| filter(Quantity::Transmittance, left))
         }
-        (Material::Dielectric(glass), Way::Crossed) => filter(Quantity::Transmittance, &glass.transmittance),
-        (Material::Dielectric(glass), Way::Reflected(_)) => filter(Quantity::Reflectance, &glass.reflectance),
-        (Material::Dielectric(glass), Way::Inside(_)) => {
+        (Material::Dielectric(glass), RouteEvent::Crossed) => filter(Quantity::Transmittance, &glass.transmittance),
+        (Material::Dielectric(glass), RouteEvent::Reflected(_)) => filter(Quantity::Reflectance, &glass.reflectance),
+        (Material::Dielectric(glass), RouteEvent::Inside(_)) => {
             vec![Tint::Depth(&glass.absorption, libm::exp(rounded as f64 * libm::log(DISTANCE)))]
         }
         (Material::Conductor(metal), _) if metal.coating.is_none() => {
@@ -216,7 +216,7 @@ fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Ti
         }
         (coated @ Material::Conductor(_), _) => films(coated).into_iter().take(1).map(Tint::Film).collect(),
         (Material::Diffuse(diffuse), _) => vec![Tint::Diffuse(farthest_from_gray(&diffuse.reflectance))],
-        (Material::Plastic(plastic), Way::Scattered) => {
+        (Material::Plastic(plastic), RouteEvent::Scattered) => {
             vec![Tint::Coated(plastic, farthest_from_gray(&plastic.reflectance))]
         }
         _ => Vec::new(),

@@ -355,8 +355,8 @@ impl Tint<'_> {
                 match metal.roughness.surface() {
                     None => reflected.collect(),
                     Some(surface) => {
-                        let blocked = surface.mean_blocked();
-                        reflected.map(|r| r + blocked * (surface.reflected_again(r) - r)).collect()
+                        let missing = surface.mean_missing_energy();
+                        reflected.map(|r| r + missing * (surface.multiply_reflected(r) - r)).collect()
                     }
                 }
             }

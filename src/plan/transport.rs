@@ -5,7 +5,7 @@ use super::words::percent;
 use crate::film::{Filter, Layer};
 use crate::light::Light;
 use crate::material::Material;
-use crate::scene::{Object, RenderText, Scene, Sight};
+use crate::scene::{Object, RenderText, Scene, Visibility};
 use crate::spectrum::{Basis, Curve, CurveKind};
 use crate::trace::{Branching, Method, Transport, World, branching};
 
@@ -84,7 +84,8 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
 
 /// That camera samples take surfaces with holes, or what is behind them, in whole.
 fn holes_beside_mattes(scene: &Scene<Curve>) -> Option<String> {
-    let has_mattes = scene.objects.iter().any(|object| matches!(object.sight, Sight::Holdout | Sight::ShadowCatcher));
+    let has_mattes =
+        scene.objects.iter().any(|object| matches!(object.visibility, Visibility::Holdout | Visibility::ShadowCatcher));
     let is_whole = |opacity: &Curve| matches!(opacity.kind, CurveKind::Number(opaque) if opaque * opacity.scale == 1.0);
     let is_mask = |material: &&Material<Curve>| matches!(material, Material::Mask(mask) if !is_whole(&mask.opacity));
     let parts = |object: &Object| scene.materials[object.material as usize].material.with_parts();

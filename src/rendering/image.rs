@@ -7,7 +7,7 @@ use super::origin::SAMPLES;
 use super::warnings::{few_samples, warnings};
 use crate::error::Result;
 use crate::film::{
-    Film, Format, Heading, Pixel, Provenance, SpectralImage, View, encode_exr, film_png, write_exr, write_png,
+    CameraView, Film, Format, Heading, Pixel, Provenance, SpectralImage, encode_exr, film_png, write_exr, write_png,
     write_spectral_exr,
 };
 use crate::trace::Report;
@@ -19,7 +19,7 @@ pub struct Image {
     pub(super) report: Report,
     pub(super) error: Option<ImageError>,
     pub(super) because: Vec<String>,
-    pub(super) view: View,
+    pub(super) view: CameraView,
     pub(super) format: Format,
     pub(super) provenance: Provenance,
     /// What is said of it if there is no light in it.

@@ -8,7 +8,7 @@ use super::identity::Identity;
 use super::image::Image;
 use super::origin::{NON_FINITE, SAMPLES};
 use crate::error::{Error, Result};
-use crate::film::{BlockReader, Film, Format, Kind, Provenance, Shard, View, write_blocks};
+use crate::film::{BlockReader, CameraView, Film, Format, Kind, Provenance, Shard, write_blocks};
 use crate::scene::FilmSettings;
 use crate::trace;
 
@@ -17,7 +17,7 @@ const PART: Kind = *b"AbbePrt1";
 
 /// What stands before the tiles.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Head {
+pub(super) struct Header {
     /// Read by itself, and first: what is of another version may not be read further.
     #[serde(skip)]
     identity: Identity,
@@ -25,7 +25,7 @@ pub(super) struct Head {
     /// The image without its pixels.
     pub(super) film: Film,
     pub(super) format: Format,
-    pub(super) view: View,
+    pub(super) view: CameraView,
     /// With what was left out of the light that all parts send alike; and what was left out beside that.
     pub(super) provenance: Provenance,
     pub(super) non_finite: u64,
@@ -46,7 +46,7 @@ pub(super) fn write(
     let shared = passes.non_finite_in_all_parts();
     provenance.set_count(NON_FINITE, shared);
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
-    let head = Head { identity, shard, film, format, view, provenance, non_finite };
+    let head = Header { identity, shard, film, format, view, provenance, non_finite };
     write_blocks(path, PART, &|blocks| {
         blocks.block(&head.identity)?;
         blocks.block(&head)?;
@@ -58,7 +58,7 @@ pub(super) fn write(
 ///
 /// # Errors
 /// [`Error::Arguments`] if it is no part, or not there; [`Error::Decode`] if it is damaged.
-pub(super) fn open(path: &Path) -> Result<(Head, BlockReader)> {
+pub(super) fn open(path: &Path) -> Result<(Header, BlockReader)> {
     let made = "parts are made by --shard, as in render --shard 1/4 scene.toml";
     if !path.exists() {
         return Error::refuse(format!("there is no part {}", path.display()), made);
@@ -70,13 +70,13 @@ pub(super) fn open(path: &Path) -> Result<(Head, BlockReader)> {
     if let Some(objection) = identity.objection() {
         return Error::refuse(format!("{} cannot be read: {objection}", path.display()), "merge it with that version");
     }
-    let head = Head { identity, ..blocks.block()? };
+    let head = Header { identity, ..blocks.block()? };
     let Film { width, height, .. } = head.film;
     let fits = u64::from(width) * u64::from(height) <= FilmSettings::MAX_PIXELS;
     if fits { Ok((head, blocks)) } else { Err(blocks.damaged()) }
 }
 
-impl Head {
+impl Header {
     /// Why another part is not of the same image, if it is not.
     pub(super) fn difference(&self, part: &Self) -> Option<String> {
         if part.shard.count() != self.shard.count() {

@@ -16,7 +16,7 @@ use super::part;
 use super::plan_file::read_plan;
 use super::warnings::dark;
 use crate::error::{Error, Result};
-use crate::film::{Fact, Film, Format, Provenance, Shard, View};
+use crate::film::{CameraView, Fact, Film, Format, Provenance, Shard};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, RenderText, Scene};
 use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare};
@@ -50,7 +50,7 @@ pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
 pub struct Rendering {
     plan: Plan,
     passes: trace::Rendering<'static>,
-    view: View,
+    view: CameraView,
     format: Format,
     /// What the image's file says of the render, but for the counts of what it has done.
     provenance: Provenance,
@@ -103,7 +103,7 @@ impl Rendering {
         has_memory(&scene, &plan.method, options.shard)?;
         let (world, photon_cost) = (prepare(&scene, plan.method.clone()), plan.photon_cost);
         let camera = &scene.camera;
-        let view = View {
+        let view = CameraView {
             world_to_camera: camera.world_to_camera(),
             world_to_ndc: camera.world_to_ndc(),
             screen_window_width: camera.screen_window_width(),

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::hit::{Ends, Hit, Primitive};
+use super::hit::{Hit, Primitive, RayEnds};
 use super::index::{Index, every};
-use super::object::{Object, Sight};
+use super::object::{Object, Visibility};
 use super::{Camera, FilmSettings, RenderText};
 use crate::film::{Format, Layer, RANKS};
 use crate::light::{Light, LightId};
@@ -88,7 +88,7 @@ impl<S> Scene<S> {
 
     /// Whether an image without any light is neither meant nor explained by a warning.
     pub fn is_dark_by_surprise(&self) -> bool {
-        let is_cut = |object: &Object| matches!(object.sight, Sight::ShadowCatcher | Sight::Holdout);
+        let is_cut = |object: &Object| matches!(object.visibility, Visibility::ShadowCatcher | Visibility::Holdout);
         let is_whole = self.film.crop.is_none() && self.format.layers.is_empty();
         is_whole && !self.is_dark_told && !self.objects.iter().any(is_cut)
     }
@@ -146,7 +146,7 @@ impl<S> Scene<S> {
 
     /// Whether the camera sees an object, or at least its hole.
     pub fn is_seen(&self, object: u32) -> bool {
-        self.objects[object as usize].sight != Sight::Hidden
+        self.objects[object as usize].visibility != Visibility::Hidden
     }
 
     /// The nearest surface of the plate's world along a ray, which may be of the camera: see [`Scene::is_of_plate`].
@@ -157,12 +157,12 @@ impl<S> Scene<S> {
     /// Whether an object stands for something that is in the plate, or lights it: a shadow catcher, a holdout, a lamp.
     pub fn is_of_plate(&self, object: u32) -> bool {
         let object = &self.objects[object as usize];
-        object.light.is_some() || matches!(object.sight, Sight::ShadowCatcher | Sight::Holdout)
+        object.light.is_some() || matches!(object.visibility, Visibility::ShadowCatcher | Visibility::Holdout)
     }
 
     /// Whether any object is a shadow catcher.
     pub fn has_shadow_catchers(&self) -> bool {
-        self.objects.iter().any(|object| object.sight == Sight::ShadowCatcher)
+        self.objects.iter().any(|object| object.visibility == Visibility::ShadowCatcher)
     }
 
     /// The nearest surface along a ray up to a distance, of those objects that count.
@@ -187,7 +187,7 @@ impl<S> Scene<S> {
         &self,
         ray: &Ray,
         distance: f64,
-        ends: impl Into<Ends>,
+        ends: impl Into<RayEnds>,
         last_occluder: &Cell<Option<u32>>,
     ) -> bool {
         self.index.is_occluded(&self.objects, ray, distance, ends.into(), last_occluder, every)
@@ -198,7 +198,7 @@ impl<S> Scene<S> {
         &self,
         ray: &Ray,
         distance: f64,
-        ends: impl Into<Ends>,
+        ends: impl Into<RayEnds>,
         last_occluder: &Cell<Option<u32>>,
         counts: &dyn Fn(u32) -> bool,
     ) -> bool {

@@ -1,6 +1,6 @@
 //! What rays meet, leave and lead to.
 
-use crate::shape::Crossing;
+use crate::shape::Intersection;
 
 /// Where a ray first meets the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,13 +8,13 @@ pub struct Hit {
     /// The object met.
     pub object: u32,
     /// Where on it.
-    pub crossing: Crossing,
+    pub intersection: Intersection,
 }
 
 impl Hit {
     /// What was met.
     pub fn primitive(&self) -> Primitive {
-        Primitive { object: self.object, part: self.crossing.part }
+        Primitive { object: self.object, part: self.intersection.part }
     }
 }
 
@@ -39,7 +39,7 @@ impl Primitive {
 
 /// What a ray leads from and to, if those are surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ends {
+pub struct RayEnds {
     /// What the ray leaves. A triangle is not met again by a ray that leaves it, which is not tested.
     pub left: Option<Primitive>,
     /// The object of the light that it leads to, which does not occlude itself ..
@@ -48,7 +48,7 @@ pub struct Ends {
     pub part: Option<u32>,
 }
 
-impl From<Option<u32>> for Ends {
+impl From<Option<u32>> for RayEnds {
     fn from(light: Option<u32>) -> Self {
         Self { light, ..Self::default() }
     }

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use super::hit::{Ends, Hit, Primitive};
+use super::hit::{Hit, Primitive, RayEnds};
 use super::object::Object;
 use crate::math::Ray;
 use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor, is_before};
@@ -56,18 +56,18 @@ impl Index {
         let triangle = left.map(|left| [left.object, left.part]);
         let left = left.unwrap_or(Primitive::NONE);
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &counts));
-        let mut nearest = pooled.map(|(object, crossing)| Hit { object, crossing });
-        let limit = nearest.map_or(distance, |hit| hit.crossing.t);
+        let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
+        let limit = nearest.map_or(distance, |hit| hit.intersection.t);
         self.in_order(ray, limit, |object, limit| {
             if !counts(object) {
                 return limit;
             }
             let shape = &objects[object as usize].shape;
-            if let Some(crossing) = shape.intersect_from(ray, limit, left.of(object)) {
-                if nearest.is_none_or(|n| crossing.t < n.crossing.t || object < n.object) {
-                    nearest = Some(Hit { object, crossing });
+            if let Some(intersection) = shape.intersect_from(ray, limit, left.of(object)) {
+                if nearest.is_none_or(|n| intersection.t < n.intersection.t || object < n.object) {
+                    nearest = Some(Hit { object, intersection });
                 }
-                return crossing.t;
+                return intersection.t;
             }
             limit
         });
@@ -80,11 +80,11 @@ impl Index {
         objects: &[Object],
         ray: &Ray,
         distance: f64,
-        ends: Ends,
+        ends: RayEnds,
         last_occluder: &Cell<Option<u32>>,
         counts: impl Fn(u32) -> bool,
     ) -> bool {
-        let Ends { left, light, part } = ends;
+        let RayEnds { left, light, part } = ends;
         // An object listed after the light's own does not hide it by an equal distance.
         let hides_at = |[object, other]: [u32; 2], t: f64| match light {
             Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::Relief;
+use super::NormalPerturbation;
 use crate::light::LightId;
 use crate::math::Ray;
-use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint};
+use crate::shape::{Coordinates, Intersection, Shape, SurfacePoint};
 
 /// Number of a material in its scene.
 pub type MaterialId = u32;
@@ -30,14 +30,14 @@ pub struct Object {
     /// The group of lights that it belongs to if it shines; its asset alone if absent.
     pub group: Option<String>,
     /// What the camera sees of it.
-    pub sight: Sight,
+    pub visibility: Visibility,
     /// The image that bends its normal, if there is one.
-    pub relief: Option<Arc<Relief>>,
+    pub relief: Option<Arc<NormalPerturbation>>,
 }
 
 /// What the camera sees of an object where it looks straight at it. Light, mirrors and shadows know no difference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sight {
+pub enum Visibility {
     /// All of it.
     #[default]
     Shown,
@@ -52,22 +52,22 @@ pub enum Sight {
 impl Object {
     /// The surface at a crossing, with the normal that its relief gives it.
     #[inline]
-    pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
-        let mut point = self.shape.point(ray, crossing);
+    pub fn point(&self, ray: &Ray, intersection: &Intersection) -> SurfacePoint {
+        let mut point = self.shape.point(ray, intersection);
         if let Some(relief) = &self.relief {
-            point.shading = relief.normal(&self.shape, crossing, &point);
+            point.shading = relief.normal(&self.shape, intersection, &point);
         }
         point
     }
 
     /// Where a point of its surface would lie in an image on it; (0, 0) if it has no coordinates.
-    pub fn chart_uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
+    pub fn chart_uv(&self, intersection: &Intersection, point: &SurfacePoint) -> [f64; 2] {
         let coordinates = self.coordinates.as_ref();
-        coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, crossing, point.position))
+        coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, intersection, point.position))
     }
 
     /// Where a point of its surface lies in the images of its material; (0, 0) if that is the same everywhere.
-    pub fn uv(&self, crossing: &Crossing, point: &SurfacePoint) -> [f64; 2] {
-        if self.varies { self.chart_uv(crossing, point) } else { [0.0; 2] }
+    pub fn uv(&self, intersection: &Intersection, point: &SurfacePoint) -> [f64; 2] {
+        if self.varies { self.chart_uv(intersection, point) } else { [0.0; 2] }
     }
 }

@@ -1,6 +1,6 @@
 use super::outline::{Outline, is_near};
 use super::triangle::difference_of_products;
-use super::{Crossing, SurfacePoint};
+use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
 /// A plane with affine coordinates (a, b): the points `center + a u + b v`. Disc and quad are regions of it.
@@ -39,14 +39,14 @@ impl AffinePlane {
     }
 
     /// The crossing with the whole plane; `uv` tells whether it lies in the region.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let to_center = self.center - ray.origin;
         let t = to_center.dot(self.normal) / ray.direction.dot(self.normal);
         if !(t > 0.0 && t <= t_max && t.is_finite()) {
             return None;
         }
         let d = ray.direction * t - to_center;
-        Some(Crossing { t, part: 0, uv: [d.dot(self.dual_u), d.dot(self.dual_v)] })
+        Some(Intersection { t, part: 0, uv: [d.dot(self.dual_u), d.dot(self.dual_v)] })
     }
 
     /// The point with the given coordinates.

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Neg;
 
-use super::{Crossing, Disc, Quad, Shape, SurfacePoint};
+use super::{Disc, Intersection, Quad, Shape, SurfacePoint};
 use crate::math::{DMat3, DVec3, Transform, level};
 
 /// The coordinates (u, v) of the points of a shape, by which images lie on it; a transform carries them along.
@@ -66,15 +66,15 @@ impl Coordinates {
     }
 
     /// At a crossing of the shape, whose point in the world is known.
-    pub fn at(&self, shape: &Shape, crossing: &Crossing, position: DVec3) -> [f64; 2] {
+    pub fn at(&self, shape: &Shape, intersection: &Intersection, position: DVec3) -> [f64; 2] {
         let unit = |uv: [f64; 2]| uv.map(|x| 0.5 + 0.5 * x);
         match self {
-            Self::Square => unit(crossing.uv),
+            Self::Square => unit(intersection.uv),
             Self::Mesh => {
-                shape.mesh().and_then(|mesh| mesh.coordinates(crossing.part, crossing.uv)).unwrap_or_default()
+                shape.mesh().and_then(|mesh| mesh.coordinates(intersection.part, intersection.uv)).unwrap_or_default()
             }
-            Self::Triangle { swapped } => swapped_if(*swapped, crossing.uv),
-            Self::Cube => unit(upright(crossing.part, crossing.uv)),
+            Self::Triangle { swapped } => swapped_if(*swapped, intersection.uv),
+            Self::Cube => unit(upright(intersection.part, intersection.uv)),
             Self::Sphere { center, inverse } => {
                 let DVec3 { x, y, z } = *inverse * (position - *center);
                 [0.5 + libm::atan2(x, z) / TAU, 1.0 - libm::atan2((x * x + z * z).sqrt(), y) / PI]
@@ -90,7 +90,7 @@ impl Coordinates {
     /// coordinates or a triangle of it lies on a line in the image.
     ///
     /// At the poles of a sphere, where u turns without moving the point, the first is 0.
-    pub fn tangents(&self, shape: &Shape, crossing: &Crossing, point: &SurfacePoint) -> Option<[DVec3; 2]> {
+    pub fn tangents(&self, shape: &Shape, intersection: &Intersection, point: &SurfacePoint) -> Option<[DVec3; 2]> {
         match self {
             Self::Square => {
                 let (Shape::Disc(Disc { plane }) | Shape::Quad(Quad { plane })) = shape else { return None };
@@ -103,12 +103,12 @@ impl Coordinates {
             }
             Self::Cube => {
                 let Shape::Cube(cube) = shape else { return None };
-                let plane = cube.face(crossing.part);
-                Some(upright(crossing.part, [plane.u * 2.0, plane.v * 2.0]))
+                let plane = cube.face(intersection.part);
+                Some(upright(intersection.part, [plane.u * 2.0, plane.v * 2.0]))
             }
             Self::Mesh => match shape {
-                Shape::Mesh(mesh) => mesh.tangents(crossing.part),
-                Shape::Instance(instance) => instance.tangents(crossing.part),
+                Shape::Mesh(mesh) => mesh.tangents(intersection.part),
+                Shape::Instance(instance) => instance.tangents(intersection.part),
                 _ => None,
             },
             Self::Sphere { center, inverse } => {
@@ -156,8 +156,8 @@ mod tests {
         let coordinates = Coordinates::new(&shape, map).expect("the shape has coordinates");
         let shape = shape.transformed(map);
         let ray = Ray { origin: from, direction: (toward - from).normalize() };
-        let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray meets the shape");
-        coordinates.at(&shape, &crossing, shape.point(&ray, &crossing).position)
+        let intersection = shape.intersect(&ray, f64::INFINITY).expect("the ray meets the shape");
+        coordinates.at(&shape, &intersection, shape.point(&ray, &intersection).position)
     }
 
     fn assert_near(found: [f64; 2], expected: [f64; 2]) {
@@ -302,12 +302,12 @@ mod tests {
     fn check(shape: &Shape, coordinates: &Coordinates, place: DVec3, outward: DVec3) {
         let see = |place: DVec3| {
             let ray = Ray { origin: place + outward, direction: -outward };
-            let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray meets the shape");
-            let point = shape.point(&ray, &crossing);
-            (crossing, point, coordinates.at(shape, &crossing, point.position))
+            let intersection = shape.intersect(&ray, f64::INFINITY).expect("the ray meets the shape");
+            let point = shape.point(&ray, &intersection);
+            (intersection, point, coordinates.at(shape, &intersection, point.position))
         };
-        let (crossing, point, [u, v]) = see(place);
-        let [along_u, along_v] = coordinates.tangents(shape, &crossing, &point).expect("it has coordinates");
+        let (intersection, point, [u, v]) = see(place);
+        let [along_u, along_v] = coordinates.tangents(shape, &intersection, &point).expect("it has coordinates");
         assert!(along_u.dot(point.normal).abs() <= 1e-12 * along_u.length(), "{shape:?}: out of the surface");
         const STEP: f64 = 1e-6;
         for way in [outward.any_orthonormal_vector(), outward.cross(outward.any_orthonormal_vector())] {

@@ -1,5 +1,5 @@
 use super::affine_plane::AffinePlane;
-use super::{Crossing, SurfacePoint};
+use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, UNIT_ROUNDOFF};
 
 /// A box, or after a transform a parallelepiped; its front is the outside.
@@ -40,7 +40,7 @@ impl Cube {
     }
 
     /// Slabs |coordinate| <= 1 in the cube's own coordinates: convex, so no ray slips through an edge.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let d = ray.origin - self.center;
         let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
         for axis in 0..3 {
@@ -65,17 +65,17 @@ impl Cube {
             return None;
         }
         let (t, face) = if enter.0 > 0.0 { enter } else { leave };
-        (t > 0.0 && t <= t_max && t.is_finite()).then(|| self.crossing(ray, t, face))
+        (t > 0.0 && t <= t_max && t.is_finite()).then(|| self.intersection(ray, t, face))
     }
 
-    fn crossing(&self, ray: &Ray, t: f64, face: usize) -> Crossing {
+    fn intersection(&self, ray: &Ray, t: f64, face: usize) -> Intersection {
         let d = ray.at(t) - self.center;
         // Kept inside the edges by more than the rounding of a slab coordinate, so that a ray that goes on inside
         // starts inside all slabs and meets no face it did not cross.
         let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + (self.center.abs() + self.extent()).dot(self.reach()));
         let limit = limit.max(0.0);
         let coordinate = |axis: usize| d.dot(self.duals[axis]).clamp(-limit, limit);
-        Crossing { t, part: face as u32, uv: [coordinate((face / 2 + 1) % 3), coordinate((face / 2 + 2) % 3)] }
+        Intersection { t, part: face as u32, uv: [coordinate((face / 2 + 1) % 3), coordinate((face / 2 + 2) % 3)] }
     }
 
     /// How much a rounding of a world coordinate can move a slab coordinate.
@@ -83,8 +83,8 @@ impl Cube {
         self.duals.iter().fold(DVec3::ZERO, |reach, dual| reach.max(dual.abs()))
     }
 
-    pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
-        self.faces[crossing.part as usize].point(crossing.uv)
+    pub(super) fn point(&self, intersection: &Intersection) -> SurfacePoint {
+        self.faces[intersection.part as usize].point(intersection.uv)
     }
 
     pub(super) fn center(&self) -> DVec3 {

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::Crossing;
+use super::Intersection;
 use super::affine_plane::AffinePlane;
 use crate::math::{Bounds, DMat3, DVec3, Ray, disk, level};
 
@@ -35,7 +35,7 @@ impl Disc {
         Some(Self { plane })
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         self.plane.intersect(ray, t_max).filter(|c| c.uv[0] * c.uv[0] + c.uv[1] * c.uv[1] < 1.0)
     }
 

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{Crossing, SurfacePoint};
+use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 
 /// A sphere after an uneven scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
@@ -32,9 +32,9 @@ impl Ellipsoid {
         }
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let t = self.roots(ray)?.into_iter().find(|&t| t > 0.0)?;
-        (t <= t_max).then(|| Crossing::at(t))
+        (t <= t_max).then(|| Intersection::at(t))
     }
 
     pub(super) fn point(&self, hit: DVec3) -> SurfacePoint {

@@ -99,10 +99,10 @@ fn sides(corners: &[DVec3; 3], axis: usize, at: f64) -> [Bounds; 2] {
             sides[1] = sides[1].union(Bounds::around([a]));
         }
         if (a[axis] < at) != (b[axis] < at) && b[axis] != at && a[axis] != at {
-            let crossing = a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]));
+            let intersection = a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]));
             // Five roundings of the product, of at most twice the larger coordinate, and that of the sum.
             let error = a.abs().max(b.abs()) * gamma(11);
-            let around = Bounds { min: crossing - error, max: crossing + error };
+            let around = Bounds { min: intersection - error, max: intersection + error };
             sides = sides.map(|side| side.union(around));
         }
     }

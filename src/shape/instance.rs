@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use super::hull::Hull;
-use super::{Crossing, Mesh, SurfacePoint, Triangle};
+use super::{Intersection, Mesh, SurfacePoint, Triangle};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, unit};
 
 /// A mesh placed by an affine map: many of them share the triangles of one.
@@ -59,7 +59,7 @@ impl Instance {
         &self.mesh
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
         self.mesh.intersect(&self.own(ray), t_max, left)
     }
 
@@ -74,7 +74,7 @@ impl Instance {
     }
 
     /// The crossing with one triangle alone.
-    pub(super) fn intersect_part(&self, ray: &Ray, part: u32) -> Option<Crossing> {
+    pub(super) fn intersect_part(&self, ray: &Ray, part: u32) -> Option<Intersection> {
         self.mesh.triangle(part).intersect(&self.own(ray), f64::INFINITY)
     }
 
@@ -84,8 +84,8 @@ impl Instance {
     }
 
     /// The point, its normal by the inverse transpose, which keeps the front in front in mirror images too.
-    pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
-        let SurfacePoint { position, error, normal, shading } = self.mesh.point(crossing);
+    pub(super) fn point(&self, intersection: &Intersection) -> SurfacePoint {
+        let SurfacePoint { position, error, normal, shading } = self.mesh.point(intersection);
         let placed = self.to_world.point(position);
         let turned = |normal: DVec3| {
             let turned = self.to_object.transposed(normal);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::hull::Hull;
 use super::{
-    Ball, Crossing, Cube, Density, Disc, Ellipsoid, Instance, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
+    Ball, Cube, Density, Disc, Ellipsoid, Instance, Intersection, Mesh, Plane, Polygon, Quad, ShapeSample, Sphere,
     SurfacePoint, Triangle,
 };
 use crate::math::{Bounds, DVec3, Ray, Transform, ball_surface, disk, gamma, triangle_coordinates};
@@ -34,12 +34,12 @@ pub enum Shape {
 
 impl Shape {
     /// The nearest crossing with 0 < t <= `t_max`.
-    pub fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         self.intersect_from(ray, t_max, None)
     }
 
     /// The same of a ray that may leave one of the shape's own parts. A flat one is not met again, which is not tested.
-    pub fn intersect_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
+    pub fn intersect_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
         match self {
             Self::Plane(plane) => plane.intersect(ray, t_max),
             Self::Triangle(triangle) => triangle.intersect(ray, t_max),
@@ -78,13 +78,13 @@ impl Shape {
     }
 
     /// The crossing with the triangle of a mesh alone, whatever lies before it; none of other shapes.
-    pub fn intersect_triangle(&self, ray: &Ray, part: u32) -> Option<Crossing> {
-        let crossing = match self {
+    pub fn intersect_triangle(&self, ray: &Ray, part: u32) -> Option<Intersection> {
+        let intersection = match self {
             Self::Mesh(mesh) => mesh.triangle(part).intersect(ray, f64::INFINITY),
             Self::Instance(instance) => instance.intersect_part(ray, part),
             _ => None,
         };
-        Some(Crossing { part, ..crossing? })
+        Some(Intersection { part, ..intersection? })
     }
 
     /// Whether `intersect` finds another triangle than this one, which the ray crosses at t.
@@ -107,25 +107,25 @@ impl Shape {
     }
 
     /// The surface at a crossing that `intersect` found on this ray.
-    pub fn point(&self, ray: &Ray, crossing: &Crossing) -> SurfacePoint {
+    pub fn point(&self, ray: &Ray, intersection: &Intersection) -> SurfacePoint {
         match self {
-            Self::Plane(plane) => plane.point(ray.at(crossing.t)),
-            Self::Triangle(triangle) => triangle.point(crossing.uv),
-            Self::Sphere(sphere) => sphere.point(ray.at(crossing.t)),
-            Self::Ellipsoid(ellipsoid) => ellipsoid.point(ray.at(crossing.t)),
-            Self::Disc(Disc { plane }) | Self::Quad(Quad { plane }) => plane.point(crossing.uv),
-            Self::Cube(cube) => cube.point(crossing),
-            Self::Mesh(mesh) => mesh.point(crossing),
-            Self::Instance(instance) => instance.point(crossing),
+            Self::Plane(plane) => plane.point(ray.at(intersection.t)),
+            Self::Triangle(triangle) => triangle.point(intersection.uv),
+            Self::Sphere(sphere) => sphere.point(ray.at(intersection.t)),
+            Self::Ellipsoid(ellipsoid) => ellipsoid.point(ray.at(intersection.t)),
+            Self::Disc(Disc { plane }) | Self::Quad(Quad { plane }) => plane.point(intersection.uv),
+            Self::Cube(cube) => cube.point(intersection),
+            Self::Mesh(mesh) => mesh.point(intersection),
+            Self::Instance(instance) => instance.point(intersection),
         }
     }
 
     /// The geometric unit normal there.
-    pub fn normal(&self, ray: &Ray, crossing: &Crossing) -> DVec3 {
+    pub fn normal(&self, ray: &Ray, intersection: &Intersection) -> DVec3 {
         if let Self::Mesh(mesh) = self {
-            mesh.polygon(crossing.part).normal()
+            mesh.polygon(intersection.part).normal()
         } else {
-            self.point(ray, crossing).normal
+            self.point(ray, intersection).normal
         }
     }
 
@@ -277,16 +277,18 @@ impl Shape {
     }
 
     /// Density per steradian with which `sample` draws the direction of a ray that first meets the shape at a crossing.
-    pub fn pdf(&self, ray: &Ray, crossing: &Crossing) -> f64 {
+    pub fn pdf(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let density = match self {
             Self::Plane(_) => return 0.0,
             Self::Sphere(sphere) => return sphere.pdf(ray),
             Self::Ellipsoid(ellipsoid) => return ellipsoid.pdf(ray),
             Self::Triangle(triangle) => Polygon::Triangle(triangle.clone()).density(ray.origin),
             Self::Quad(quad) => Polygon::Parallelogram(&quad.plane).density(ray.origin),
-            Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => self.density_of_part(crossing.part),
+            Self::Disc(_) | Self::Cube(_) | Self::Mesh(_) | Self::Instance(_) => {
+                self.density_of_part(intersection.part)
+            }
         };
-        self.toward(density, ray, crossing)
+        self.toward(density, ray, intersection)
     }
 
     /// How densely the area of a part is drawn.
@@ -297,8 +299,8 @@ impl Shape {
         }
     }
 
-    fn toward(&self, density: Density, ray: &Ray, crossing: &Crossing) -> f64 {
-        density.toward(crossing.t, self.normal(ray, crossing).dot(ray.direction).abs())
+    fn toward(&self, density: Density, ray: &Ray, intersection: &Intersection) -> f64 {
+        density.toward(intersection.t, self.normal(ray, intersection).dot(ray.direction).abs())
     }
 
     /// How many parts may be sampled one by one: triangles of a mesh, faces of a cube; 0 of other shapes.
@@ -326,9 +328,9 @@ impl Shape {
 
     /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
     /// crossing.
-    pub fn pdf_part(&self, ray: &Ray, crossing: &Crossing) -> f64 {
-        let part = self.part(crossing.part);
-        part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, crossing))
+    pub fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
+        let part = self.part(intersection.part);
+        part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, intersection))
     }
 
     /// A point from which light may reach a ball; none of an infinite shape, and of an instance, whose triangles are

@@ -4,7 +4,7 @@ use super::edges::open_edges;
 use super::packed::Packed;
 use super::triangle::{Facet, tangents_over};
 use super::turned::turned;
-use super::{Attributes, Crossing, Polygon, SurfacePoint, Triangle, Vertices};
+use super::{Attributes, Intersection, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
 /// Triangles over shared vertices, with a tree of boxes.
@@ -100,7 +100,7 @@ impl Mesh {
 
     /// The nearest crossing of a ray that may leave one of the triangles; of equally near ones, that of the triangle
     /// listed first.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
         self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
     }
 
@@ -117,12 +117,13 @@ impl Mesh {
     }
 
     #[inline]
-    pub(super) fn point(&self, crossing: &Crossing) -> SurfacePoint {
-        let point = match self.facets.get(crossing.part as usize) {
-            Some(facet) => facet.point(crossing.uv),
-            None => self.triangle(crossing.part).point(crossing.uv),
+    pub(super) fn point(&self, intersection: &Intersection) -> SurfacePoint {
+        let point = match self.facets.get(intersection.part as usize) {
+            Some(facet) => facet.point(intersection.uv),
+            None => self.triangle(intersection.part).point(intersection.uv),
         };
-        let shading = self.attributes.shading(self.triangles[crossing.part as usize], crossing.uv, point.normal);
+        let shading =
+            self.attributes.shading(self.triangles[intersection.part as usize], intersection.uv, point.normal);
         SurfacePoint { shading, ..point }
     }
 

@@ -2,7 +2,7 @@
 
 use super::bvh::{Crossings, GROUP, Line, Number, prefetch};
 use super::triangle::Sheared;
-use super::{Bvh, Crossing, Vectors, Vertices, Visitor, fragments};
+use super::{Bvh, Intersection, Vectors, Vertices, Visitor, fragments};
 use crate::math::{DVec3, Ray};
 
 /// A tree over triangles, and copies of all their corners.
@@ -50,7 +50,7 @@ impl Packed {
         t_max: f64,
         leaves: impl Fn(u32) -> bool,
         counts: impl Fn(u32) -> bool,
-    ) -> Option<Crossing> {
+    ) -> Option<Intersection> {
         match &self.blocks {
             Blocks::Single(blocks) => nearest(blocks, &self.bvh, ray, t_max, leaves, counts),
             Blocks::Double(blocks) => nearest(blocks, &self.bvh, ray, t_max, leaves, counts),
@@ -96,12 +96,12 @@ fn nearest<T: Number>(
     t_max: f64,
     leaves: impl Fn(u32) -> bool,
     counts: impl Fn(u32) -> bool,
-) -> Option<Crossing> {
+) -> Option<Intersection> {
     let sheared = Sheared::new(ray);
     let mut visitor =
         Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: None };
     bvh.walk_in_order(ray, t_max, &mut visitor);
-    visitor.found.map(|found| Crossing { part: bvh.items()[found.part as usize], ..found })
+    visitor.found.map(|found| Intersection { part: bvh.items()[found.part as usize], ..found })
 }
 
 #[inline]
@@ -127,21 +127,21 @@ struct Nearest<'a, T, L, F> {
     leaves: L,
     counts: F,
     /// Its part is the place in `items`.
-    found: Option<Crossing>,
+    found: Option<Intersection>,
 }
 
 impl<T, L, F: Fn(u32) -> bool> Nearest<'_, T, L, F> {
     /// Takes a crossing in place of what was found, if it counts and lies before that, and answers the new `t_max`.
     #[inline(always)]
-    fn take(&mut self, crossing: Crossing, t_max: f64) -> f64 {
+    fn take(&mut self, intersection: Intersection, t_max: f64) -> f64 {
         let item = |place: u32| self.items[place as usize];
-        if !(self.counts)(item(crossing.part)) {
+        if !(self.counts)(item(intersection.part)) {
             return t_max;
         }
-        if self.found.is_none_or(|found| crossing.t < found.t || item(crossing.part) < item(found.part)) {
-            self.found = Some(crossing);
+        if self.found.is_none_or(|found| intersection.t < found.t || item(intersection.part) < item(found.part)) {
+            self.found = Some(intersection);
         }
-        crossing.t
+        intersection.t
     }
 }
 
@@ -150,19 +150,19 @@ impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32) -> bool> Visitor for Nearest<'_, 
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
-            while let Some(lane) = next(&mut crossings.met) {
-                if crossings.t[lane] <= t_max {
+            let Some(mut intersections) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            while let Some(lane) = next(&mut intersections.met) {
+                if intersections.t[lane] <= t_max {
                     let part = (group * GROUP + lane) as u32;
-                    t_max = self.take(Crossing { part, ..crossing_of(&crossings, lane) }, t_max);
+                    t_max = self.take(Intersection { part, ..crossing_of(&intersections, lane) }, t_max);
                 }
             }
-            while let Some(lane) = next(&mut crossings.unsure) {
+            while let Some(lane) = next(&mut intersections.unsure) {
                 let part = (group * GROUP + lane) as u32;
                 if !(self.leaves)(self.items[part as usize])
-                    && let Some(crossing) = block.exactly(lane, &self.sheared, t_max)
+                    && let Some(intersection) = block.exactly(lane, &self.sheared, t_max)
                 {
-                    t_max = self.take(Crossing { part, ..crossing }, t_max);
+                    t_max = self.take(Intersection { part, ..intersection }, t_max);
                 }
             }
         }
@@ -190,14 +190,16 @@ impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32, f64) -> bool> Visitor for Any<'_,
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
         for group in first..first + groups {
             let block = &self.blocks[group];
-            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            let Some(mut intersections) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
             let counts = |lane: usize, t: f64| (self.counts)(self.items[group * GROUP + lane], t);
-            while let Some(lane) = next(&mut crossings.met) {
-                self.found |= counts(lane, crossings.t[lane]);
+            while let Some(lane) = next(&mut intersections.met) {
+                self.found |= counts(lane, intersections.t[lane]);
             }
-            while let Some(lane) = next(&mut crossings.unsure).filter(|_| !self.found) {
+            while let Some(lane) = next(&mut intersections.unsure).filter(|_| !self.found) {
                 self.found = !(self.leaves)(self.items[group * GROUP + lane])
-                    && block.exactly(lane, &self.sheared, t_max).is_some_and(|crossing| counts(lane, crossing.t));
+                    && block
+                        .exactly(lane, &self.sheared, t_max)
+                        .is_some_and(|intersection| counts(lane, intersection.t));
             }
             if self.found {
                 return None;
@@ -223,9 +225,9 @@ fn next(lanes: &mut u32) -> Option<usize> {
 
 /// The crossing with a triangle that is met.
 #[inline(always)]
-fn crossing_of(crossings: &Crossings, lane: usize) -> Crossing {
-    let Crossings { t, v, w, determinant, .. } = crossings;
-    Crossing { t: t[lane], part: 0, uv: [v[lane] / determinant[lane], w[lane] / determinant[lane]] }
+fn crossing_of(intersections: &Crossings, lane: usize) -> Intersection {
+    let Crossings { t, v, w, determinant, .. } = intersections;
+    Intersection { t: t[lane], part: 0, uv: [v[lane] / determinant[lane], w[lane] / determinant[lane]] }
 }
 
 impl<T: Number> Block<T> {
@@ -243,7 +245,7 @@ impl<T: Number> Block<T> {
 
     /// The crossing of one of the triangles with 0 < t <= `t_max`.
     #[inline(never)]
-    fn exactly(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Crossing> {
+    fn exactly(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Intersection> {
         let corner = |corner: &[[T; GROUP]; 3]| DVec3::from(corner.map(|x| x[lane].into()));
         sheared.intersect([corner(&self.0[0]), corner(&self.0[1]), corner(&self.0[2])], t_max)
     }
@@ -302,7 +304,7 @@ mod tests {
                 if i % 16 < 4 {
                     let one = |part: u32| {
                         let triangle = Triangle::new(faces[part as usize].map(corner));
-                        triangle.intersect(&ray, t_max).map(|crossing| Crossing { part, ..crossing })
+                        triangle.intersect(&ray, t_max).map(|intersection| Intersection { part, ..intersection })
                     };
                     let each = (0..faces.len() as u32).filter_map(one);
                     let nearest = each.min_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));

@@ -1,4 +1,4 @@
-use super::{Crossing, SurfacePoint};
+use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
 /// The infinite plane through `point`; its front is the side `normal` points to.
@@ -48,9 +48,9 @@ impl Plane {
 
     /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs
     /// nothing.
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
-        (t > 0.0 && t <= t_max && t.is_finite()).then(|| Crossing::at(t))
+        (t > 0.0 && t <= t_max && t.is_finite()).then(|| Intersection::at(t))
     }
 
     /// The point of the plane nearest to a computed hit.

@@ -1,6 +1,6 @@
 use super::mesh::SMALL;
 use super::packed::Packed;
-use super::{Crossing, Shape, Triangle, Vertices};
+use super::{Intersection, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
 
 /// The triangles of several small shapes in one tree, which a ray goes through once.
@@ -50,12 +50,12 @@ impl Pool {
         t_max: f64,
         left: Option<[u32; 2]>,
         counts: impl Fn(u32) -> bool,
-    ) -> Option<(u32, Crossing)> {
+    ) -> Option<(u32, Intersection)> {
         let owner = |item: u32| self.owners[item as usize];
         let leaves = |item| left == Some(owner(item));
-        let crossing = self.packed.nearest(ray, t_max, leaves, |item| counts(owner(item)[0]))?;
-        let [number, part] = owner(crossing.part);
-        Some((number, Crossing { part, ..crossing }))
+        let intersection = self.packed.nearest(ray, t_max, leaves, |item| counts(owner(item)[0]))?;
+        let [number, part] = owner(intersection.part);
+        Some((number, Intersection { part, ..intersection }))
     }
 
     /// Whether there is a crossing with 0 < t <= `t_max` that counts, told the shape's number, the part and t.

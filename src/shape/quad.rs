@@ -1,4 +1,4 @@
-use super::Crossing;
+use super::Intersection;
 use super::affine_plane::AffinePlane;
 use crate::math::{DVec3, Ray};
 
@@ -19,7 +19,7 @@ impl Quad {
         Self { plane: AffinePlane::new(center, u, v, u.normalize().cross(v.normalize())) }
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         self.plane.intersect(ray, t_max).filter(|c| c.uv[0].abs() <= 1.0 && c.uv[1].abs() <= 1.0)
     }
 }

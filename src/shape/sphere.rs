@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{Ball, Crossing, Ellipsoid, ShapeSample, SurfacePoint};
+use super::{Ball, Ellipsoid, Intersection, ShapeSample, SurfacePoint};
 use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, ball_surface, gamma};
 
 /// A sphere; its front is the outside.
@@ -28,8 +28,8 @@ impl Sphere {
     }
 
     /// Whether more than a spot of the surface may lie in another's: only where centers and radii are about the same.
-    /// Spheres that touch from within, their centers 1e-4 radii apart, lie within 1e-9 of their size of one another in a
-    /// hundredth of a radian.
+    /// Spheres that touch from within, their centers 1e-4 radii apart, lie within 1e-9 of their size of one another
+    /// over a hundredth of a radian.
     pub fn may_coincide(&self, other: &Self) -> bool {
         let near = 1e-4 * self.radius;
         (self.center - other.center).length() < near && (self.radius - other.radius).abs() < near
@@ -50,9 +50,9 @@ impl Sphere {
         }
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let t = self.roots(ray)?.into_iter().find(|&t| t > 0.0)?;
-        (t <= t_max).then(|| Crossing::at(t))
+        (t <= t_max).then(|| Intersection::at(t))
     }
 
     /// The point of the sphere nearest to a computed hit.

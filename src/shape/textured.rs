@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::mem::discriminant;
 use std::sync::Arc;
 
-use super::{Coordinates, Crossing, Disc, Quad, Shape, SurfacePoint};
+use super::{Coordinates, Disc, Intersection, Quad, Shape, SurfacePoint};
 use crate::math::{DVec3, Ray, disk_in_square, square_around_disk, triangle_coordinates, triangle_square};
 
 /// A place of the unit square on a part of a shape.
@@ -48,31 +48,31 @@ impl TexturedShape<'_> {
         }
     }
 
-    fn at(&self, crossing: &Crossing) -> [f64; 2] {
-        self.coordinates.at(self.shape, crossing, DVec3::ZERO)
+    fn at(&self, intersection: &Intersection) -> [f64; 2] {
+        self.coordinates.at(self.shape, intersection, DVec3::ZERO)
     }
 
     /// The crossing of no distance with a flat part.
-    fn crossing_at(&self, part: u32, place: [f64; 2]) -> Option<Crossing> {
+    fn crossing_at(&self, part: u32, place: [f64; 2]) -> Option<Intersection> {
         let uv = match self.coordinates {
             Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => disk_in_square(place)?,
             Coordinates::Square | Coordinates::Cube => place.map(|x| 2.0 * x - 1.0),
             Coordinates::Triangle { .. } | Coordinates::Mesh => triangle_coordinates(place),
             Coordinates::Sphere { .. } | Coordinates::Plane { .. } => return None,
         };
-        Some(Crossing { t: 0.0, part, uv })
+        Some(Intersection { t: 0.0, part, uv })
     }
 
     /// Where the square lies at a crossing of the shape, whose point in the world is known; none on a plane.
-    pub fn place(&self, crossing: &Crossing, position: DVec3) -> Option<Place> {
+    pub fn place(&self, intersection: &Intersection, position: DVec3) -> Option<Place> {
         let at = match self.coordinates {
-            Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => square_around_disk(crossing.uv)?,
-            Coordinates::Square | Coordinates::Cube => crossing.uv.map(|x| 0.5 + 0.5 * x),
-            Coordinates::Triangle { .. } | Coordinates::Mesh => triangle_square(crossing.uv),
-            Coordinates::Sphere { .. } => self.coordinates.at(self.shape, crossing, position),
+            Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => square_around_disk(intersection.uv)?,
+            Coordinates::Square | Coordinates::Cube => intersection.uv.map(|x| 0.5 + 0.5 * x),
+            Coordinates::Triangle { .. } | Coordinates::Mesh => triangle_square(intersection.uv),
+            Coordinates::Sphere { .. } => self.coordinates.at(self.shape, intersection, position),
             Coordinates::Plane { .. } => return None,
         };
-        Some(Place { at, area: self.area(crossing.part, at, position)? })
+        Some(Place { at, area: self.area(intersection.part, at, position)? })
     }
 
     /// Area of a part for one of the square at a place, which is a point of the world; none of a plane.
@@ -95,7 +95,7 @@ impl TexturedShape<'_> {
 
     /// How far the two edges of the square reach in the image, by u and by v each.
     pub fn edges(&self, part: u32) -> [[f64; 2]; 2] {
-        let corner = |uv| self.at(&Crossing { t: 0.0, part, uv });
+        let corner = |uv| self.at(&Intersection { t: 0.0, part, uv });
         let between = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [(c - a).abs(), (d - b).abs()];
         match self.coordinates {
             Coordinates::Square | Coordinates::Sphere { .. } | Coordinates::Plane { .. } => [[1.0, 0.0], [0.0, 1.0]],

@@ -1,6 +1,6 @@
 use super::bvh::Line;
 use super::outline::{Outline, is_near};
-use super::{Crossing, SurfacePoint};
+use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
 
 /// A triangle; its front is the side from which the points run counterclockwise.
@@ -30,7 +30,7 @@ impl Triangle {
         self.points
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         Sheared::new(ray).intersect(self.points, t_max)
     }
 
@@ -170,7 +170,7 @@ impl Sheared {
 
     /// The crossing with 0 < t <= `t_max`, edges and corners included.
     #[inline]
-    pub(super) fn intersect(&self, points: [DVec3; 3], t_max: f64) -> Option<Crossing> {
+    pub(super) fn intersect(&self, points: [DVec3; 3], t_max: f64) -> Option<Intersection> {
         let [x, y, z] = self.order;
         let [a, b, c] = points.map(|p| {
             let p = (p - self.origin).to_array();
@@ -197,7 +197,7 @@ impl Sheared {
             along = -triple_product(points.map(|p| difference(p, self.origin))) * self.shear.z.abs();
         }
         let t = along / determinant;
-        (t > 0.0 && t <= t_max).then(|| Crossing { t, part: 0, uv: [v / determinant, w / determinant] })
+        (t > 0.0 && t <= t_max).then(|| Intersection { t, part: 0, uv: [v / determinant, w / determinant] })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What an author should know of an index: how far its formula reaches, and which glass it imitates badly.
 
-use super::data::{self, Bending, Glass};
+use super::data::{self, Glass, GlassConstants};
 use super::{Curve, CurveKind, Named};
 
 /// The visible wavelengths by which nearly all light is seen, in nm.
@@ -35,11 +35,11 @@ pub fn imitation(curve: &Curve) -> Option<String> {
     let index = |nm: f64| curve.scale * (a + b / (nm * nm * 1e-6));
     let [nd, nf, nc] = [587.5618, 486.1327, 656.2725].map(index);
     let vd = (nd - 1.0) / (nf - nc);
-    let distance = |glass: &Bending| {
+    let distance = |glass: &GlassConstants| {
         let of_vd = glass.v_d.map_or(f64::INFINITY, |other| (other - vd) / 0.3);
         ((glass.n_d - nd) / 5e-4).abs().max(of_vd.abs())
     };
-    let like = data::bendings().iter().filter(|glass| distance(glass) < 1.0);
+    let like = data::glass_constants().iter().filter(|glass| distance(glass) < 1.0);
     let nearest = data::glass(like.min_by(|x, y| distance(x).total_cmp(&distance(y)))?.key)?;
     let apex = if nd < 1.9 { 60.0 } else { 30.0_f64 };
     let deviation = |n: f64| 2.0 * libm::asin(n * libm::sin((0.5 * apex).to_radians())).to_degrees() - apex;

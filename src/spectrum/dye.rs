@@ -68,7 +68,7 @@ impl Excitable<'_> {
 
 /// Where a surface would give back more light than it gets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Excess {
+pub struct EnergyExcess {
     /// The wavelength of the light, in nm.
     pub nm: f64,
     /// The share of it that is reflected or absorbed by the dye.
@@ -97,11 +97,11 @@ impl Dye {
     }
 
     /// The first wavelength at which a surface of a reflectance would give back more light than it gets.
-    pub fn excess(&self, reflectance: &Curve) -> Option<Excess> {
+    pub fn excess(&self, reflectance: &Curve) -> Option<EnergyExcess> {
         let (upsampler, absorbed, power) =
             (Upsampler::new(ColorSpace::default()), self.absorbed(), self.power_per_nm());
         let reflected = reflectance.reader(Quantity::Reflectance, &upsampler);
-        let at = |nm: f64| Excess {
+        let at = |nm: f64| EnergyExcess {
             nm,
             taken: reflected(nm) + absorbed(nm),
             given: reflected(nm) + absorbed(nm) * power * nm,

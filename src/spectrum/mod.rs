@@ -40,7 +40,7 @@ pub use color::{
 pub use curve::{Curve, CurveKind, Named, cauchy_through, sellmeier_squared};
 pub use distinct::Distinct;
 pub use draw::Draw;
-pub use dye::{Dye, Excess, Excitable, Excited};
+pub use dye::{Dye, EnergyExcess, Excitable, Excited};
 pub use emission::{Emission, FilmColors};
 pub use image::{Image, Wrap};
 pub use lanes::{LaneSet, Lanes};

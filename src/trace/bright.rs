@@ -173,8 +173,8 @@ impl Aiming<'_> {
                 Some((place, density)) if place == number => chance * density,
                 _ => {
                     let shape = &self.bright.targets[number].shape;
-                    let crossing = shape.intersect(&ray, f64::INFINITY);
-                    crossing.map_or(0.0, |crossing| chance * shape.pdf(&ray, &crossing))
+                    let intersection = shape.intersect(&ray, f64::INFINITY);
+                    intersection.map_or(0.0, |intersection| chance * shape.pdf(&ray, &intersection))
                 }
             };
         }

@@ -9,7 +9,7 @@ use crate::math::DVec3;
 pub(super) struct Contribution {
     /// The light it comes from; none where photons of several were gathered.
     pub(super) light: Option<LightId>,
-    pub(super) found: Found,
+    pub(super) found: FoundBy,
     /// How much, in the film's color space.
     pub(super) rgb: [f64; 3],
     /// How much of it polarization may change, as X + Y + Z.
@@ -22,9 +22,9 @@ pub(super) struct Contribution {
     pub(super) dispersed: bool,
 }
 
-/// How light was found.
+/// The technique by which light was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Found {
+pub(super) enum FoundBy {
     /// A path hit the light: a surface, with its unit normal on the front, or none of a sky; and whether the direction
     /// was drawn where lights were sampled as well.
     Hit { normal: Option<DVec3>, scattered: bool },
@@ -35,7 +35,7 @@ pub(super) enum Found {
     /// Photons were gathered, or one was met where it had landed.
     Gathered,
     /// A photon was shown to the camera.
-    Shown,
+    Splatted,
 }
 
 /// Adds a color to the numbers at the beginning of a row, or to another color.

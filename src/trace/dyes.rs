@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::arrived::{Arrived, SourceId};
+use super::received_light::{ReceivedLight, SourceId};
 use crate::light::LightId;
 use crate::material::{Diffuse, Material};
 use crate::scene::Scene;
@@ -81,9 +81,9 @@ impl Dyes {
     }
 
     /// How likely a path goes on with each of some dyes where it goes on in one way.
-    pub(super) fn chances(&self, dyes: Range<usize>) -> Chances<'_> {
+    pub(super) fn chances(&self, dyes: Range<usize>) -> DyeChances<'_> {
         let total: f64 = self.shares[dyes].iter().sum();
-        Chances { dyes: self, fit: (MOST / total).min(1.0), total }
+        DyeChances { dyes: self, fit: (MOST / total).min(1.0), total }
     }
 
     /// A dye as a source of light.
@@ -105,26 +105,26 @@ impl Dyes {
         emission: Lanes<N>,
         number: impl Fn(SourceId, Lanes<N>) -> f64,
     ) -> f64 {
-        let arrived = Arrived { source: light, draw, lanes: &emission, parted: false };
-        let of_dye = |dye| number(self.source(dye), draw.start() * self.excited(dye, &arrived) as f32);
+        let received = ReceivedLight { source: light, draw, lanes: &emission, parted: false };
+        let of_dye = |dye| number(self.source(dye), draw.start() * self.excited(dye, &received) as f32);
         (0..self.excitations.len()).map(of_dye).fold(0.0, f64::max)
     }
 
     /// How much a dye shines where light arrives in lanes: the number that stands for its brightness.
-    pub(super) fn excited<const N: usize>(&self, dye: usize, arrived: &Arrived<N>) -> f64 {
-        let Arrived { source, draw, lanes, parted } = *arrived;
+    pub(super) fn excited<const N: usize>(&self, dye: usize, received: &ReceivedLight<N>) -> f64 {
+        let ReceivedLight { source, draw, lanes, parted } = *received;
         self.excitation(dye, source).sensor(draw, *lanes, parted)[0]
     }
 }
 
 /// How likely a path goes on with some dyes.
-pub(super) struct Chances<'a> {
+pub(super) struct DyeChances<'a> {
     dyes: &'a Dyes,
     fit: f64,
     total: f64,
 }
 
-impl Chances<'_> {
+impl DyeChances<'_> {
     /// With one of them.
     pub(super) fn of(&self, dye: usize) -> f64 {
         self.fit * self.dyes.shares[dye]

@@ -1,7 +1,7 @@
 //! How the first surface sent light to the camera.
 
 use super::white::White;
-use crate::material::{Arrival, Lobes, Material, Scatter};
+use crate::material::{Lobes, Material, Scatter, ScatterContext};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
@@ -24,7 +24,7 @@ impl FirstLobe {
         white: Option<&White>,
         material: &Material<Table>,
         lobes: Lobes,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         wi: DVec3,
         crosses: bool,
     ) -> Self {
@@ -35,7 +35,7 @@ impl FirstLobe {
         let diffuse = match (lobes.intersects(Lobes::DIFFUSE_REFLECTION), lobes.intersects(glossy)) {
             (false, _) => [0.0; 3],
             (true, false) => [1.0; 3],
-            (true, true) => white.map_or([1.0; 3], |white| diffuse_share(white, material, arrival, wi)),
+            (true, true) => white.map_or([1.0; 3], |white| diffuse_share(white, material, context, wi)),
         };
         Self::Reflected { diffuse }
     }
@@ -45,12 +45,12 @@ impl FirstLobe {
 fn diffuse_share<const N: usize>(
     white: &White,
     material: &Material<Table>,
-    arrival: &Arrival<N>,
+    context: &ScatterContext<N>,
     wi: DVec3,
 ) -> [f32; 3] {
-    let Some((all, _)) = material.evaluate(arrival, wi) else { return [1.0; 3] };
-    let seen = |lanes: Lanes<N>| white.times(arrival.draw, lanes, false);
-    let (diffuse, all) = (seen(material.diffuse_part(arrival, wi)), seen(all));
+    let Some((all, _)) = material.evaluate(context, wi) else { return [1.0; 3] };
+    let seen = |lanes: Lanes<N>| white.times(context.draw, lanes, false);
+    let (diffuse, all) = (seen(material.diffuse_part(context, wi)), seen(all));
     std::array::from_fn(|channel| match all[channel] {
         all if all > 0.0 => (diffuse[channel] / all).clamp(0.0, 1.0) as f32,
         _ => 1.0,

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::contribution::{Contribution, Found, add};
+use super::contribution::{Contribution, FoundBy, add};
 use super::first_lobe::FirstLobe;
 use super::spectrum_sample::Spectrum;
 use super::white::White;
@@ -29,7 +29,7 @@ pub(super) struct Layers {
     pub(super) first: FirstSurface,
     /// The numbers by which mattes tell objects apart: of each matte that is wanted, a number for each object.
     pub(super) ids: Vec<(Layer, Vec<u32>)>,
-    /// Where the numbers of shadow catchers begin, if there are any: see [`Caught`].
+    /// Where the numbers of shadow catchers begin, if there are any: see [`CatcherLight`].
     caught: Option<usize>,
     /// The bands of a spectral image, if one is asked for.
     pub(super) spectrum: Option<Spectrum>,
@@ -54,7 +54,7 @@ fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
 
 /// Light that a pixel's shadow catchers send to the camera, as a color, or as luminance; or sums of it.
 #[derive(Clone, Copy)]
-pub(super) struct Caught<T> {
+pub(super) struct CatcherLight<T> {
     /// With all objects.
     pub(super) with: T,
     /// With those alone that are in the plate or light it.
@@ -63,7 +63,7 @@ pub(super) struct Caught<T> {
     pub(super) share: f64,
 }
 
-impl Caught<[f64; 3]> {
+impl CatcherLight<[f64; 3]> {
     /// The part of each channel that other objects take, times the share of the pixel; negative where they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
         [0, 1, 2].map(|channel| self.share * taken(self.with[channel], self.without[channel]))
@@ -75,7 +75,7 @@ fn taken(with: f64, without: f64) -> f64 {
     if without > 0.0 { 1.0 - with / without } else { 0.0 }
 }
 
-impl Caught<f64> {
+impl CatcherLight<f64> {
     /// A sum, without what it was before.
     pub(super) fn since(self, before: Self) -> Self {
         Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
@@ -193,17 +193,17 @@ impl Layers {
     }
 
     /// What shadow catchers show, by the sums of so many samples and what photons show.
-    pub(super) fn caught(&self, sums: &[f64], shown: &[f64], kept: f64) -> Option<Caught<[f64; 3]>> {
+    pub(super) fn caught(&self, sums: &[f64], splatted: &[f64], kept: f64) -> Option<CatcherLight<[f64; 3]>> {
         let at = self.caught?;
-        let mean = |number: usize| sums[at + number] / kept + shown.get(at + number).copied().unwrap_or_default();
+        let mean = |number: usize| sums[at + number] / kept + splatted.get(at + number).copied().unwrap_or_default();
         let [with, without] = [0, 3].map(|first| [0, 1, 2].map(|channel| mean(first + channel)));
-        Some(Caught { with, without, share: mean(6) })
+        Some(CatcherLight { with, without, share: mean(6) })
     }
 
     /// The luminance of what shadow catchers send.
-    pub(super) fn luminance_caught(&self, caught: &Caught<[f64; 3]>) -> Caught<f64> {
+    pub(super) fn luminance_caught(&self, caught: &CatcherLight<[f64; 3]>) -> CatcherLight<f64> {
         let [with, without] = [&caught.with, &caught.without].map(|rgb| self.luminance_of(rgb));
-        Caught { with, without, share: caught.share }
+        CatcherLight { with, without, share: caught.share }
     }
 
     /// Adds the numbers of shadow catchers to sums.
@@ -268,13 +268,13 @@ impl Layers {
             self.add_by_lobe(row, first, *bounces, rgb);
         }
         let kind = match (bounces, found) {
-            (0, Found::Hit { normal: Some(_), .. }) => Layer::Emission,
+            (0, FoundBy::Hit { normal: Some(_), .. }) => Layer::Emission,
             (0, _) => Layer::Background,
             (1, _) => Layer::Direct,
             _ => Layer::Indirect,
         };
         self.add_to(kind, row, *rgb);
-        if let Found::Gathered | Found::Shown = found {
+        if let FoundBy::Gathered | FoundBy::Splatted = found {
             self.add_to(Layer::Caustics, row, *rgb);
         }
         if *dispersed {

@@ -29,12 +29,12 @@ pub(super) struct Boundary {
     /// The medium it enters if it goes on.
     pub(super) beyond: Option<MaterialId>,
     /// What it then enters or leaves; none if the media around it stay as they are.
-    crossing: Option<Crossing>,
+    change: Option<MediumChange>,
 }
 
 /// A body that a ray enters or leaves.
 #[derive(Clone, Copy)]
-struct Crossing {
+struct MediumChange {
     material: MaterialId,
     enters: bool,
 }
@@ -81,7 +81,7 @@ impl Media {
         counts: &dyn Fn(u32) -> bool,
     ) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
-        for Crossing { material, enters } in crossings(scene, Ray { origin: start, direction }, None, counts) {
+        for MediumChange { material, enters } in medium_changes(scene, Ray { origin: start, direction }, None, counts) {
             let step = if enters { -1 } else { 1 };
             match balance.iter_mut().find(|(known, _)| *known == material) {
                 Some((_, count)) => *count += step,
@@ -94,7 +94,7 @@ impl Media {
     /// The media after walking from one point to another along a straight line, through those objects that count.
     pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: &dyn Fn(u32) -> bool) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
-        crossings(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
+        medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
     }
 
     /// The medium that is really there.
@@ -115,16 +115,16 @@ impl Media {
             let others = self.materials[..self.len as usize].iter().copied();
             strongest(scene, others.filter(|other| *other != material))
         };
-        Some(Boundary { here, beyond, crossing: Some(Crossing { material, enters }) })
+        Some(Boundary { here, beyond, change: Some(MediumChange { material, enters }) })
     }
 
     /// The media behind a boundary of these.
     pub(super) fn beyond(self, boundary: &Boundary) -> Self {
-        boundary.crossing.map_or(self, |crossing| self.behind(crossing))
+        boundary.change.map_or(self, |change| self.behind(change))
     }
 
     /// The media behind the surface of a body; these if they do not fit to it.
-    fn behind(self, Crossing { material, enters }: Crossing) -> Self {
+    fn behind(self, MediumChange { material, enters }: MediumChange) -> Self {
         if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
@@ -138,7 +138,7 @@ impl Media {
         direction: DVec3,
     ) -> (Boundary, bool) {
         let (here, enters) = (self.inside(scene), point.normal.dot(direction) < 0.0);
-        let same = Boundary { here, beyond: here, crossing: None };
+        let same = Boundary { here, beyond: here, change: None };
         if scene.materials[material as usize].material.medium().is_none() {
             return (same, true);
         }
@@ -191,22 +191,22 @@ impl Media {
 const MOST_CROSSINGS: usize = 100_000;
 
 /// The clear bodies that a straight walk enters and leaves, to a point or to infinity, of those objects that count.
-fn crossings(
+fn medium_changes(
     scene: &Scene<Table>,
     mut ray: Ray,
     to: Option<DVec3>,
     counts: &dyn Fn(u32) -> bool,
-) -> impl Iterator<Item = Crossing> {
+) -> impl Iterator<Item = MediumChange> {
     let surfaces = std::iter::from_fn(move || {
         let left = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
-        let hit = scene.nearest(&ray, f64::INFINITY, counts).filter(|hit| hit.crossing.t <= left)?;
+        let hit = scene.nearest(&ray, f64::INFINITY, counts).filter(|hit| hit.intersection.t <= left)?;
         let object = &scene.objects[hit.object as usize];
-        let point = object.shape.point(&ray, &hit.crossing);
+        let point = object.shape.point(&ray, &hit.intersection);
         let enters = point.normal.dot(ray.direction) < 0.0;
         ray = point.leave(ray.direction);
-        Some(Crossing { material: object.material, enters })
+        Some(MediumChange { material: object.material, enters })
     });
-    let is_of_body = move |crossing: &Crossing| scene.materials[crossing.material as usize].material.medium().is_some();
+    let is_of_body = move |change: &MediumChange| scene.materials[change.material as usize].material.medium().is_some();
     surfaces.take(MOST_CROSSINGS).filter(is_of_body)
 }
 

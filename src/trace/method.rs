@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BrightPlaces, SampleDensity, Smoothness, Sunlit};
+use super::{BrightPlaces, SampleDensity, Smoothness, SunlitPlaces};
 use crate::light::LightId;
 use crate::spectrum::Basis;
 
@@ -35,7 +35,7 @@ pub struct Method {
     pub light_vertices: bool,
     /// Where paths from suns, and from what is bright in an image of the sky, start for that; light of others is left
     /// to the camera's paths.
-    pub sunlit: Vec<Sunlit>,
+    pub sunlit: Vec<SunlitPlaces>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
 }

@@ -29,7 +29,6 @@
 //! dispersion    how far colors are pulled apart, and what tints light on its ways: rays of few colors
 //! ```
 
-mod arrived;
 mod bright;
 mod camera;
 mod contribution;
@@ -50,6 +49,7 @@ mod photon;
 mod photon_focus;
 mod photon_targets;
 mod probe;
+mod received_light;
 mod replicates;
 mod spectrum_sample;
 mod stats;
@@ -60,7 +60,7 @@ mod world;
 
 pub use bright::{BrightPlace, BrightPlaces};
 pub use density::SampleDensity;
-pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, SEEN_PIXELS, Step, Way, dispersion, routes};
+pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, RouteEvent, SEEN_PIXELS, Step, dispersion, routes};
 pub use image::{
     Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
     Stopped, TileNoise, bytes_of_film, render,
@@ -68,7 +68,7 @@ pub use image::{
 pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
-pub use path_start::Sunlit;
+pub use path_start::SunlitPlaces;
 pub use photon::light_paths_reach;
 pub use photon_focus::Smoothness;
 pub use probe::{

@@ -19,7 +19,7 @@ use crate::spectrum::Table;
 
 /// Places in the light of a sun, or of what is bright in an image of the sky, that paths from the camera find.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sunlit {
+pub struct SunlitPlaces {
     /// The sun or the sky.
     pub light: LightId,
     /// A ball around nearly all of them.
@@ -43,7 +43,7 @@ pub(super) enum PathStart {
 
 impl PathStart {
     /// Of one light, where places in the light of some are known.
-    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[Sunlit]) -> Self {
+    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
             return Self::Anywhere;
@@ -96,7 +96,7 @@ pub(super) struct SkyBeam {
 
 impl SkyBeam {
     /// None where no light was found, or the light does not come from far away.
-    fn new(scene: &Scene<Table>, sunlit: &Sunlit) -> Option<Self> {
+    fn new(scene: &Scene<Table>, sunlit: &SunlitPlaces) -> Option<Self> {
         let light = scene.lights.get(sunlit.light).filter(|light| light.is_infinite())?;
         let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
         let world = ball_around_all(scene)?;

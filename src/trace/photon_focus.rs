@@ -84,7 +84,7 @@ pub(super) struct Place {
 
 /// A ball around a part of such places, and its share of the photons of the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct FocusBall {
     pub(super) ball: Ball,
     pub(super) share: f64,
 }
@@ -133,8 +133,8 @@ fn walk(
     for _ in 0..SURFACES {
         let hit = if seen { scene.intersect_seen(&ray, left) } else { scene.intersect_from(&ray, left) }?;
         let object = &scene.objects[hit.object as usize];
-        let point = object.point(&ray, &hit.crossing);
-        distance -= hit.crossing.t;
+        let point = object.point(&ray, &hit.intersection);
+        distance -= hit.intersection.t;
         if distance < 0.0 {
             return None;
         }
@@ -173,7 +173,7 @@ pub(super) fn reach(places: &[Place]) -> Option<Ball> {
 ///
 /// A part of n places gets photons for the square root of n: by area, the near ones would get too few, and by pixels
 /// the far ones, where photons are gathered around places that look longer than wide.
-pub(super) fn parts(places: &[Place], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<Part> {
+pub(super) fn parts(places: &[Place], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<FocusBall> {
     let is_in = |place: &&Place| place.smoothness == smoothness && whole.contains(place.at);
     let mut places: Vec<Place> = places.iter().filter(is_in).copied().collect();
     if places.len() < FEWEST {
@@ -187,7 +187,7 @@ pub(super) fn parts(places: &[Place], smoothness: Smoothness, whole: &Ball, most
         let near = places.partition_point(|place| place.distance <= far).max(told + 1);
         let end = if parts.len() + 1 < most { near } else { places.len() };
         // Around what is nearer, too.
-        parts.push(Part { ball: around(&places[..end], WIDER), share: ((end - told) as f64).sqrt() });
+        parts.push(FocusBall { ball: around(&places[..end], WIDER), share: ((end - told) as f64).sqrt() });
         told = end;
     }
     let all: f64 = parts.iter().map(|part| part.share).sum();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{Part, Place, Smoothness, parts, reach};
+use super::photon_focus::{FocusBall, Place, Smoothness, parts, reach};
 use crate::light::{Beam, LeSample, LightId};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
@@ -125,8 +125,8 @@ impl PhotonTargets {
     }
 
     /// Follows what other targets of the same scene, of all these lights, have learned.
-    pub(super) fn follow(&mut self, taught: &Self) {
-        self.targets.clone_from(&taught.targets);
+    pub(super) fn follow(&mut self, guided: &Self) {
+        self.targets.clone_from(&guided.targets);
         self.targets.retain(|target| self.lights[target.light] && self.objects.contains(&Some(target.smoothness)));
         self.share_out();
     }
@@ -210,7 +210,7 @@ fn of_light(
     scene: &Scene<Table>,
     light: LightId,
     luminance: f64,
-    wholes: &[(Smoothness, Ball, Vec<Part>)],
+    wholes: &[(Smoothness, Ball, Vec<FocusBall>)],
     [even, disc]: &[Arc<Guide>; 2],
 ) -> Vec<PhotonTarget> {
     let target = |smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
@@ -259,7 +259,7 @@ pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> 
     // A ray crosses a plane once.
     for _ in scene.unbounded() {
         let Some(hit) = scene.nearest(&back, f64::INFINITY, &|_| true) else { break };
-        back.origin += sky * (hit.crossing.t + world.radius);
+        back.origin += sky * (hit.intersection.t + world.radius);
     }
     Ray { direction: ray.direction, ..back }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::layers::Caught;
+use super::layers::CatcherLight;
 use crate::film::{Filter, PassSum, SampleWeights};
 
 /// How many there are.
@@ -20,7 +20,7 @@ pub(super) struct Replicates {
     /// By how much gathered photons blur it; empty where none are gathered.
     blur: Sums,
     /// What photons show, times the samples that they were sent beside; empty where none are sent.
-    shown: Vec<[[f32; 3]; REPLICATES]>,
+    splatted: Vec<[[f32; 3]; REPLICATES]>,
     /// How much of it is covered; empty where no shadow catcher makes noise of that.
     covered: Vec<[Covered; REPLICATES]>,
 }
@@ -33,21 +33,21 @@ struct Covered {
     /// The luminance of shadow catchers with all objects and with those of the plate alone, and samples of them.
     caught: [f32; 3],
     /// What photons add to the first, times the samples that they were sent beside.
-    shown: f32,
+    splatted: f32,
 }
 
 impl Covered {
-    fn add(&mut self, samples: [&PassSum; 2], caught: Caught<f64>) {
+    fn add(&mut self, samples: [&PassSum; 2], caught: CatcherLight<f64>) {
         (0..2).for_each(|lobe| self.met[lobe] += samples[lobe].met());
         let caught = [caught.with, caught.without, caught.share];
         (0..3).for_each(|i| self.caught[i] += caught[i] as f32);
     }
 
     /// The alpha of a pixel, by the weights of its samples, where photons were shown for so many.
-    fn alpha(&self, weights: &SampleWeights, shown_for: f64) -> f64 {
+    fn alpha(&self, weights: &SampleWeights, splatted_for: f64) -> f64 {
         let met = weights.sum(self.met.map(f64::from)) / weights.taken();
         let [with, without, share] = self.caught.map(|sum| f64::from(sum) / weights.added());
-        let caught = Caught { with: with + f64::from(self.shown) / shown_for, without, share };
+        let caught = CatcherLight { with: with + f64::from(self.splatted) / splatted_for, without, share };
         (met.clamp(0.0, 1.0) + caught.coverage()).min(1.0)
     }
 }
@@ -143,7 +143,7 @@ impl Replicates {
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { Sums::new(pixels, is_signed) } else { Sums::default() };
         let covered = if catches { vec![[Covered::default(); REPLICATES]; pixels] } else { Vec::new() };
-        Self { light: Sums::new(pixels, is_signed), blur, shown: Vec::new(), covered }
+        Self { light: Sums::new(pixels, is_signed), blur, splatted: Vec::new(), covered }
     }
 
     /// Bytes of memory that they take for each pixel, where photons are shown or not.
@@ -159,7 +159,7 @@ impl Replicates {
     pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
         self.light.is_shaped_as(&other.light)
             && self.blur.is_shaped_as(&other.blur)
-            && [0, other.light.pixels()].contains(&self.shown.len())
+            && [0, other.light.pixels()].contains(&self.splatted.len())
             && self.covered.len() == other.covered.len()
     }
 
@@ -175,21 +175,27 @@ impl Replicates {
 
     /// Adds what photons of a replicate show in a pixel.
     pub(super) fn show(&mut self, pixel: usize, replicate: u32, rgb: [f64; 3]) {
-        if self.shown.is_empty() {
-            self.shown = vec![[[0.0; 3]; REPLICATES]; self.light.pixels()];
+        if self.splatted.is_empty() {
+            self.splatted = vec![[[0.0; 3]; REPLICATES]; self.light.pixels()];
         }
-        let sum = &mut self.shown[pixel][replicate as usize];
+        let sum = &mut self.splatted[pixel][replicate as usize];
         (0..3).for_each(|i| sum[i] += rgb[i] as f32);
     }
 
     /// Adds how much of a pixel one pass of a replicate covers, where shadow catchers sent so much luminance.
-    pub(super) fn add_alpha(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], caught: Caught<f64>) {
+    pub(super) fn add_alpha(
+        &mut self,
+        pixel: usize,
+        replicate: u32,
+        samples: [&PassSum; 2],
+        caught: CatcherLight<f64>,
+    ) {
         self.covered[pixel][replicate as usize].add(samples, caught);
     }
 
     /// Adds the luminance that photons of a replicate show on shadow catchers in a pixel.
     pub(super) fn show_caught(&mut self, pixel: usize, replicate: u32, luminance: f64) {
-        self.covered[pixel][replicate as usize].shown += luminance as f32;
+        self.covered[pixel][replicate as usize].splatted += luminance as f32;
     }
 
     /// The alpha of a pixel as each replicate has it, after so many samples of each; none where no shadow catchers make
@@ -208,11 +214,11 @@ impl Replicates {
     }
 
     /// A pixel as one replicate has it, where its photons were shown for so many samples.
-    fn pixel_of(&self, replicate: usize, pixel: usize, filter: Filter, shown_for: f64) -> [f64; 3] {
+    fn pixel_of(&self, replicate: usize, pixel: usize, filter: Filter, splatted_for: f64) -> [f64; 3] {
         let mean = self.light.mean(pixel, replicate, filter);
-        let shown = self.shown.get(pixel).map_or([0.0; 3], |shown| shown[replicate]);
-        let shown_for = if shown_for > 0.0 { shown_for } else { f64::INFINITY };
-        std::array::from_fn(|i| mean[i] + f64::from(shown[i]) / shown_for)
+        let splatted = self.splatted.get(pixel).map_or([0.0; 3], |splatted| splatted[replicate]);
+        let splatted_for = if splatted_for > 0.0 { splatted_for } else { f64::INFINITY };
+        std::array::from_fn(|i| mean[i] + f64::from(splatted[i]) / splatted_for)
     }
 
     /// By how much each replicate says that a pixel is blurred; none where no photons are gathered.
@@ -223,10 +229,10 @@ impl Replicates {
 
     /// The variance of a pixel's mean over all replicates that have begun, where the photons of each were shown for so
     /// many samples; none as long as fewer than two have.
-    pub(super) fn variance(&self, pixel: usize, filter: Filter, shown_for: [f64; REPLICATES]) -> Option<[f64; 3]> {
+    pub(super) fn variance(&self, pixel: usize, filter: Filter, splatted_for: [f64; REPLICATES]) -> Option<[f64; 3]> {
         let begun = (0..REPLICATES).filter(|&replicate| self.light.kept(pixel, replicate) > 0);
         let pixels: Vec<[f64; 3]> =
-            begun.map(|replicate| self.pixel_of(replicate, pixel, filter, shown_for[replicate])).collect();
+            begun.map(|replicate| self.pixel_of(replicate, pixel, filter, splatted_for[replicate])).collect();
         let count = pixels.len() as f64;
         (count > 1.0).then(|| {
             std::array::from_fn(|i| {

@@ -2,7 +2,7 @@
 //!
 //! Lanes are summed over all samples of a pixel, and are spread over the bands once for all of them.
 
-use super::arrived::{Arrived, SourceId};
+use super::received_light::{ReceivedLight, SourceId};
 use crate::scene::Scene;
 use crate::spectrum::visible::{EFFICACY, luminous};
 use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBands};
@@ -57,11 +57,11 @@ impl Spectrum {
     /// Light in all bands, and S1, S2 and S3 of it if they are wanted, of which `stokes` are the parts.
     pub(super) fn of<const N: usize>(
         &self,
-        arrived: &Arrived<N>,
+        received: &ReceivedLight<N>,
         stokes: Option<&[Lanes<N>; 3]>,
         factor: f64,
     ) -> Vec<f64> {
-        let Arrived { source, draw, lanes, parted } = *arrived;
+        let ReceivedLight { source, draw, lanes, parted } = *received;
         let (response, mut all) = (self.response(source), vec![0.0; self.numbers()]);
         for (lanes, bands) in self.parts(lanes, stokes).zip(all.chunks_exact_mut(self.bands.count())) {
             if !response.heroes(draw, &lanes, parted, |band, light| bands[band] += factor * light) {
@@ -90,12 +90,12 @@ pub(super) struct SpectrumSample<'a, const N: usize> {
     together: Vec<(usize, Lanes<N>, f64)>,
     alone: Vec<(usize, f64)>,
     /// Sums of the samples that were kept and are added, and of those that are subtracted.
-    kept: [Kept<N>; 2],
+    kept: [SpectrumSums<N>; 2],
 }
 
 /// Sums of samples, of one component after the other: lanes by their response, and bands.
 #[derive(Clone)]
-struct Kept<const N: usize> {
+struct SpectrumSums<const N: usize> {
     lanes: Vec<[f64; N]>,
     bands: Vec<f64>,
 }
@@ -103,7 +103,7 @@ struct Kept<const N: usize> {
 impl<'a, const N: usize> SpectrumSample<'a, N> {
     pub(super) fn new(spectrum: &'a Spectrum) -> Self {
         let lanes = vec![[0.0; N]; spectrum.components() * spectrum.responses.len()];
-        let nothing = Kept { lanes, bands: vec![0.0; spectrum.numbers()] };
+        let nothing = SpectrumSums { lanes, bands: vec![0.0; spectrum.numbers()] };
         Self { spectrum, together: Vec::new(), alone: Vec::new(), kept: [nothing.clone(), nothing] }
     }
 
@@ -114,9 +114,9 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
     }
 
     /// Receives light and the parts of it that S1, S2 and S3 are, times a factor.
-    pub(super) fn receive(&mut self, arrived: &Arrived<N>, stokes: Option<&[Lanes<N>; 3]>, factor: f64) {
+    pub(super) fn receive(&mut self, received: &ReceivedLight<N>, stokes: Option<&[Lanes<N>; 3]>, factor: f64) {
         let Self { spectrum, together, alone, .. } = self;
-        let Arrived { source, draw, lanes, parted } = *arrived;
+        let ReceivedLight { source, draw, lanes, parted } = *received;
         for (component, lanes) in spectrum.parts(lanes, stokes).enumerate() {
             let first_band = component * spectrum.bands.count();
             let found = |band, light| alone.push((first_band + band, factor * light));
@@ -142,7 +142,7 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
 
     /// Keeps what the sample, which is added or subtracted, has received.
     pub(super) fn keep(&mut self, is_subtracted: bool) {
-        let Kept { lanes: sums, bands } = &mut self.kept[usize::from(is_subtracted)];
+        let SpectrumSums { lanes: sums, bands } = &mut self.kept[usize::from(is_subtracted)];
         for (response, lanes, factor) in self.together.drain(..) {
             let sums = sums[response].iter_mut().zip(lanes.0);
             sums.for_each(|(sum, lane)| *sum += factor * f64::from(lane));

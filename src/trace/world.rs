@@ -5,14 +5,14 @@ use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
-use super::path_start::{PathStart, Sunlit};
+use super::path_start::{PathStart, SunlitPlaces};
 use super::photon_focus::places;
 use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Polarizing, Transport};
 use crate::light::{Light, LightId, LightSampler};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray};
-use crate::scene::{Hit, Scene, Sight};
+use crate::scene::{Hit, Scene, Visibility};
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
 
 /// Lights that are weighed one by one: of more, neighbors in the scene as one.
@@ -81,9 +81,9 @@ impl World {
         });
         let is_sky = |light: &Light<Table>| matches!(light, Light::Environment(_));
         let has_soft_light = scene.lights.iter().any(is_sky) && !scene.lights.iter().any(Light::sends_photons);
-        let hides_objects = scene.objects.iter().any(|object| object.sight != Sight::Shown);
-        let is_matte = |sight: Sight| matches!(sight, Sight::Holdout | Sight::ShadowCatcher);
-        let has_mattes = scene.objects.iter().any(|object| is_matte(object.sight));
+        let hides_objects = scene.objects.iter().any(|object| object.visibility != Visibility::Shown);
+        let is_matte = |visibility: Visibility| matches!(visibility, Visibility::Holdout | Visibility::ShadowCatcher);
+        let has_mattes = scene.objects.iter().any(|object| is_matte(object.visibility));
         let is_see_through = |object: u32| scene.material_of(object).is_see_through();
         let see_through: Vec<bool> = (0..scene.objects.len() as u32).map(is_see_through).collect();
         let see_through = if see_through.contains(&true) { see_through } else { Vec::new() };
@@ -135,9 +135,9 @@ impl World {
     }
 
     /// This world, its light pass's photons sent where another world of the same scene has learned to.
-    pub fn taught_by(mut self, taught: &Self) -> Self {
-        if let (Some(targets), Some(taught)) = (&mut self.photon_targets, &taught.photon_targets) {
-            targets.follow(taught);
+    pub fn guided_by(mut self, guided: &Self) -> Self {
+        if let (Some(targets), Some(guided)) = (&mut self.photon_targets, &guided.photon_targets) {
+            targets.follow(guided);
         }
         self
     }
@@ -151,7 +151,7 @@ impl World {
     }
 
     /// This world with light vertices, for which paths from suns start where some places in their light are.
-    pub fn with_light_vertices(&self, sunlit: Vec<Sunlit>) -> Self {
+    pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>) -> Self {
         let mut world = self.clone();
         world.path_starts = path_starts(&world.scene, &sunlit);
         (world.method.light_vertices, world.method.sunlit) = (true, sunlit);
@@ -269,8 +269,8 @@ impl World {
     }
 
     /// What the camera sees of an object.
-    pub(super) fn sight(&self, object: u32) -> Sight {
-        self.scene.objects[object as usize].sight
+    pub(super) fn visibility(&self, object: u32) -> Visibility {
+        self.scene.objects[object as usize].visibility
     }
 
     /// The media around the start of a ray of the camera, but for those that it does not see.
@@ -303,7 +303,7 @@ impl World {
     #[cold]
     pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
-        let [camera, start, end] = [self.scene.camera.position(), ray.origin, ray.at(hit.crossing.t)];
+        let [camera, start, end] = [self.scene.camera.position(), ray.origin, ray.at(hit.intersection.t)];
         let walked = |media: Media, way| media.after_walk(&self.scene, way, &is_hidden);
         walked(walked(self.hidden_media, [camera, start]), [start, end])
     }
@@ -356,6 +356,6 @@ impl World {
 }
 
 /// How paths of each light start.
-fn path_starts(scene: &Scene<Table>, sunlit: &[Sunlit]) -> Arc<[PathStart]> {
+fn path_starts(scene: &Scene<Table>, sunlit: &[SunlitPlaces]) -> Arc<[PathStart]> {
     (0..scene.lights.len()).map(|id| PathStart::of(scene, id, sunlit)).collect()
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use abbe::light::{Area, EmissionMap, KnownParts, Light, LightSample, ShownImage};
 use abbe::math::{DMat3, DVec3, Frame, Ray, Transform};
 use abbe::shape::{
-    Attributes, Coordinates, Crossing, Cube, Density, Disc, Ellipsoid, Mesh, Quad, Shape, ShapeSample, Sides, Sphere,
-    SurfacePoint, TexturedShape, Triangle, Vertices,
+    Attributes, Coordinates, Cube, Density, Disc, Ellipsoid, Intersection, Mesh, Quad, Shape, ShapeSample, Sides,
+    Sphere, SurfacePoint, TexturedShape, Triangle, Vertices,
 };
 use abbe::spectrum::{CurveKind, Image, Placement, TexelFilter, Texture, Wrap};
 
@@ -98,15 +98,15 @@ impl Bins {
 
 /// Tests what `sample` draws from a point against `pdf`; what does not lie on the drawn part is not seen.
 fn check_shape(name: &str, shape: &Shape, from: DVec3, bins: &Bins) {
-    let pdf = |ray: &Ray, crossing: &Crossing| shape.pdf(ray, crossing);
+    let pdf = |ray: &Ray, intersection: &Intersection| shape.pdf(ray, intersection);
     check_samples(name, shape, from, bins, |u| shape.sample(from, u), pdf);
 }
 
 /// What a light's sample says of the shape it is.
 fn of_light(shape: &Shape, sample: &LightSample) -> ShapeSample {
-    let crossing = shape.intersect(&sample.ray, f64::INFINITY).expect("the sample lies on the lamp");
+    let intersection = shape.intersect(&sample.ray, f64::INFINITY).expect("the sample lies on the lamp");
     let density = sample.pdf.map(Density::SolidAngle);
-    ShapeSample { direction: sample.ray.direction, part: Some(crossing.part), density }
+    ShapeSample { direction: sample.ray.direction, part: Some(intersection.part), density }
 }
 
 /// Tests how a shape is sampled as a lamp, by its parts, from a surface of some normal.
@@ -120,7 +120,7 @@ fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f
 
 fn check_light(name: &str, shape: &Shape, from: DVec3, bins: &Bins, (light, normal): (&Light<()>, DVec3)) {
     let sample = |u| Some(of_light(shape, &light.sample_li(&SurfacePoint::in_space(from), normal, u)?));
-    let pdf = |ray: &Ray, crossing: &Crossing| light.pdf_li(ray, normal, Some(crossing)).unwrap_or(0.0);
+    let pdf = |ray: &Ray, intersection: &Intersection| light.pdf_li(ray, normal, Some(intersection)).unwrap_or(0.0);
     check_samples(name, shape, from, bins, sample, pdf);
 }
 
@@ -130,7 +130,7 @@ fn check_samples(
     from: DVec3,
     bins: &Bins,
     sample: impl Fn([f64; 2]) -> Option<ShapeSample>,
-    pdf: impl Fn(&Ray, &Crossing) -> f64,
+    pdf: impl Fn(&Ray, &Intersection) -> f64,
 ) {
     let mut random = Random::new(name.bytes().map(u64::from).sum());
     let ray = |direction| Ray { origin: from, direction };
@@ -138,22 +138,24 @@ fn check_samples(
     for _ in 0..DRAWS {
         // Nothing drawn is nothing seen.
         let Some(sample) = sample(random.pair()) else { continue };
-        let crossing = shape.intersect(&ray(sample.direction), f64::INFINITY);
+        let intersection = shape.intersect(&ray(sample.direction), f64::INFINITY);
         let bin = bins.index(sample.direction).unwrap_or_else(|| panic!("{name}: drawn beside the shape"));
-        if let Some(crossing) = crossing.filter(|crossing| sample.part.is_none_or(|part| part == crossing.part)) {
+        if let Some(intersection) =
+            intersection.filter(|intersection| sample.part.is_none_or(|part| part == intersection.part))
+        {
             counts[bin] += 1;
             // What the draw says of its density is what is found of a direction met by chance.
             if let Some(density) = sample.density {
                 let ray = ray(sample.direction);
-                let cos = shape.point(&ray, &crossing).normal.dot(ray.direction).abs();
-                let (drawn, met) = (density.toward(crossing.t, cos), pdf(&ray, &crossing));
+                let cos = shape.point(&ray, &intersection).normal.dot(ray.direction).abs();
+                let (drawn, met) = (density.toward(intersection.t, cos), pdf(&ray, &intersection));
                 assert!((drawn / met - 1.0).abs() < 1e-9, "{name}: drawn with {drawn}, met with {met}");
             }
         }
     }
     let mut probabilities = bins.integrate(&mut random, |direction| {
         let ray = ray(direction);
-        shape.intersect(&ray, f64::INFINITY).map_or(0.0, |crossing| pdf(&ray, &crossing))
+        shape.intersect(&ray, f64::INFINITY).map_or(0.0, |intersection| pdf(&ray, &intersection))
     });
     let integral: f64 = probabilities.iter().sum();
     let seen = counts.iter().sum::<u64>() as f64 / DRAWS as f64;
@@ -320,10 +322,10 @@ fn directions_toward_the_triangles_of_copies_of_a_mesh_follow_their_density_and_
             let direction = (map.point(0.8 * random.direction()) - origin).normalize();
             let ray = Ray { origin, direction };
             let normal = random.direction();
-            let Some(crossing) = copy.intersect(&ray, f64::INFINITY) else { continue };
-            if copy.normal(&ray, &crossing).dot(ray.direction) < 0.0 && normal.dot(ray.direction) > 0.0 {
+            let Some(intersection) = copy.intersect(&ray, f64::INFINITY) else { continue };
+            if copy.normal(&ray, &intersection).dot(ray.direction) < 0.0 && normal.dot(ray.direction) > 0.0 {
                 seen += 1;
-                let density = lamp.pdf_li(&ray, normal, Some(&crossing));
+                let density = lamp.pdf_li(&ray, normal, Some(&intersection));
                 assert!(density.is_some_and(|density| density > 0.0), "{name}: {density:?} along {ray:?}");
             }
         }

@@ -136,15 +136,15 @@ fn a_caustic_behind_a_pane_that_is_held_out_is_hidden() {
 /// A thing in the plate that is seen through a pane is seen as through glass, not as a black pane that covers it all.
 #[test]
 fn what_stands_for_the_plate_is_seen_through_panes_as_all_else() {
-    let floor = |sheet: &str, sight: &str| seen_through(sheet, sight, "", [1.0, 1.0]);
+    let floor = |sheet: &str, visibility: &str| seen_through(sheet, visibility, "", [1.0, 1.0]);
     for sheet in ["thin = { index = 1.5, transmittance = 0.6 }", "polarizer.axis = [1, 0, 0]"] {
         let shown = floor(sheet, "");
         assert!(red(&shown) > 0.0);
-        for sight in ["holdout = true\n", "shadow_catcher = true\n"] {
-            let image = floor(sheet, sight);
-            assert_eq!(image.rgb(), shown.rgb(), "{sheet}, {sight}");
-            assert_eq!(rgb(&image, "residual"), rgb(&shown, "residual"), "{sheet}, {sight}");
-            assert!((coverage(&image) - 1.0).abs() < 1e-6, "{sheet}, {sight}: {}", coverage(&image));
+        for visibility in ["holdout = true\n", "shadow_catcher = true\n"] {
+            let image = floor(sheet, visibility);
+            assert_eq!(image.rgb(), shown.rgb(), "{sheet}, {visibility}");
+            assert_eq!(rgb(&image, "residual"), rgb(&shown, "residual"), "{sheet}, {visibility}");
+            assert!((coverage(&image) - 1.0).abs() < 1e-6, "{sheet}, {visibility}: {}", coverage(&image));
         }
     }
     // Nothing is met that lets all light through.
@@ -156,13 +156,13 @@ fn what_stands_for_the_plate_is_seen_through_panes_as_all_else() {
 /// it is seen through the holes of the pane is not.
 #[test]
 fn a_caustic_on_what_stands_for_the_plate_is_seen_through_panes() {
-    let image = |sight: &str, opacity: f64| {
+    let image = |visibility: &str, opacity: f64| {
         let text = format!(
             "camera = {{ position = [0, 4, 4], look_at = [0, 0, 0], vertical_fov = 12 }}\n\
              film = {{ width = 16, height = 16 }}\nrender = {{ samples = 16 }}\n[material]\n\
              gray.diffuse.reflectance = 0.5\nball.dielectric.index = 1.5\nclear.thin.index = 1.5\n\
              pane.mask = {{ material = \"clear\", opacity = {opacity} }}\n\
-             [[object]]\n{sight}shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
+             [[object]]\n{visibility}shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}\nmaterial = \"gray\"\n\
              [[object]]\nshape.sphere = {{ center = [1.5, 2, 0], radius = 0.6 }}\nmaterial = \"ball\"\n\
              [[object]]\nshape.quad = {{ center = [0, 3, 3], u = [9, 0, 0], v = [0, 9, -9] }}\nmaterial = \"pane\"\n\
              [[light]]\npoint = {{ position = [3, 4, 0], intensity = 10 }}\n"
@@ -172,10 +172,10 @@ fn a_caustic_on_what_stands_for_the_plate_is_seen_through_panes() {
     let caustics = |image: &Image| rgb(image, "caustics").as_flattened().iter().sum::<f64>();
     let [whole, half] = [1.0, 0.5].map(|opacity| caustics(&image("", opacity)));
     assert!(whole > 0.0 && half > whole, "{whole} and {half}");
-    for sight in ["holdout = true\n", "shadow_catcher = true\n"] {
-        let [through_whole, through_half] = [1.0, 0.5].map(|opacity| caustics(&image(sight, opacity)));
-        assert!((through_whole / whole - 1.0).abs() < 0.02, "{sight}: {through_whole} of {whole}");
-        assert!((through_half / (0.5 * whole) - 1.0).abs() < 0.02, "{sight}: {through_half} of half {whole}");
+    for visibility in ["holdout = true\n", "shadow_catcher = true\n"] {
+        let [through_whole, through_half] = [1.0, 0.5].map(|opacity| caustics(&image(visibility, opacity)));
+        assert!((through_whole / whole - 1.0).abs() < 0.02, "{visibility}: {through_whole} of {whole}");
+        assert!((through_half / (0.5 * whole) - 1.0).abs() < 0.02, "{visibility}: {through_half} of half {whole}");
     }
 }
 

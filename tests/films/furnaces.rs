@@ -1,10 +1,10 @@
 //! The white furnace under films: what is clear shows 1, and metal under a clear film what Abeles' matrices say.
 
-use abbe::material::{Arrival, Index, Lobes, Material};
+use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
 
 use super::reference::shares;
-use crate::support::arrivals::{self, arrival, material, toward};
+use crate::support::arrivals::{self, context, material, toward};
 
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const DRAWS: u32 = 1 << 12;
@@ -15,10 +15,10 @@ const BANDS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 /// What each band shows of an even sky, and how far chance may put it off.
 fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos: f64) -> [[f64; 2]; 3] {
     let draw = Draw::<4>::fixed(3);
-    let at = arrival(&draw, toward(cos, 0.4), indices[0]);
-    let arrival = Arrival { beyond: Index::Same(indices[1]), from_inside, ..at };
+    let at = context(&draw, toward(cos, 0.4), indices[0]);
+    let context = ScatterContext { beyond: Index::Same(indices[1]), from_inside, ..at };
     let allowed = if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 4.0 } else { 0.0 };
-    arrivals::furnace(material, &arrival, DRAWS).map(|[shown, error]| [shown, allowed * error])
+    arrivals::furnace(material, &context, DRAWS).map(|[shown, error]| [shown, allowed * error])
 }
 
 /// Clear films: a quarter wave, soap, a mirror of five layers, and more than a wavelength.

@@ -1,10 +1,10 @@
 //! The phase between both polarizations, which no image of unpolarized light shows.
 
-use abbe::material::{Arrival, Block, Incoming, Index, Layer, Mueller, PolarizedShare, Scatter, Stack, reflect};
+use abbe::material::{Block, Incoming, Index, Layer, Mueller, PolarizedShare, Scatter, ScatterContext, Stack, reflect};
 use abbe::math::Complex;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{arrival, material, toward};
+use crate::support::arrivals::{context, material, toward};
 
 /// What is reflected at 550 nm by one clear layer on n - i k, under an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {
@@ -48,18 +48,18 @@ fn total_reflection_of_lanes_that_go_together_keeps_all_polarization_under_a_fil
         let (direction_indices, [incident, beyond]) =
             ([Some(inside[1]), Some(outside[1])], [inside, outside].map(Table::new));
         for &cos in cosines {
-            let arrival = Arrival {
+            let context = ScatterContext {
                 from_inside: true,
                 incident: Index::Own(&incident),
                 beyond: Index::Own(&beyond),
                 direction_indices,
-                ..arrival(&draw, toward(cos, 0.4), 1.0)
+                ..context(&draw, toward(cos, 0.4), 1.0)
             };
-            let (wi, lanes) = (reflect(arrival.wo, arrival.normal), arrival.present.not_zero());
+            let (wi, lanes) = (reflect(context.wo, context.normal), context.present.not_zero());
             let incoming = Incoming { wi, crosses: false, single: true, lanes };
             for material in &materials {
                 let mut mueller = Mueller::NONE;
-                material.mueller(&arrival, incoming, &mut mueller);
+                material.mueller(&context, incoming, &mut mueller);
                 let Block { a, d, c, q } = mueller.block;
                 for lane in 0..3 {
                     let [a, d, c, q] = [a, d, c, q].map(|x| x[lane]);

@@ -2,7 +2,8 @@
 
 use abbe::film::Film;
 use abbe::material::{
-    Arrival, Branch, Dielectric, Index, Interface, Layer, Material, Roughness, Scatter, Stack, shared_transmittance,
+    Branch, Dielectric, Index, Interface, Layer, Material, Roughness, Scatter, ScatterContext, Stack,
+    shared_transmittance,
 };
 use abbe::math::{Complex, DVec2, DVec3};
 use abbe::plan::plan;
@@ -11,7 +12,7 @@ use abbe::spectrum::{
 };
 use abbe::trace::{Method, prepare, render};
 
-use crate::support::arrivals::{arrival, material, toward};
+use crate::support::arrivals::{context, material, toward};
 use crate::support::colors::{difference, lab};
 use crate::support::fresnel::reflectances;
 use crate::support::larger::larger;
@@ -58,9 +59,9 @@ fn clear(basis: &Basis, index: Table) -> Material<Table> {
 type Draws = Draw<MAX_LANES>;
 
 /// What a smooth surface sends on, by reflection and across: each lane's shares, and the direction.
-fn met(material: &Material<Table>, arrival: &Arrival<MAX_LANES>) -> [Option<Branch<MAX_LANES>>; 2] {
+fn met(material: &Material<Table>, context: &ScatterContext<MAX_LANES>) -> [Option<Branch<MAX_LANES>>; 2] {
     let mut branches = Vec::new();
-    material.scatter(arrival, [0.5; 2], &mut branches);
+    material.scatter(context, [0.5; 2], &mut branches);
     assert!(branches.len() <= 2, "lanes part");
     [false, true].map(|crosses| branches.iter().find(|branch| branch.crosses == crosses).copied())
 }
@@ -79,14 +80,14 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
             for degrees in (0..18).map(|i| f64::from(5 * i)) {
                 let (sin, cos) = libm::sincos(degrees.to_radians());
                 let wo = DVec3::new(sin, 0.0, cos);
-                let enters = Arrival {
+                let enters = ScatterContext {
                     normal: DVec3::Z,
                     beyond: Index::Own(&table),
                     direction_indices: [Some(1.0), Some(direction)],
-                    ..arrival(&draw, wo, 1.0)
+                    ..context(&draw, wo, 1.0)
                 };
                 let [Some(r), Some(t)] = met(&material, &enters) else { panic!("{} at {degrees}", glass.key) };
-                let leaves = Arrival { wo: -t.wi, ..enters.turned_around() };
+                let leaves = ScatterContext { wo: -t.wi, ..enters.turned_around() };
                 let [Some(inner), Some(out)] = met(&material, &leaves) else { panic!("{} at {degrees}", glass.key) };
                 assert!((out.wi + wo).length() < 1e-12, "{} at {degrees} degrees goes on to {}", glass.key, out.wi);
                 assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
@@ -212,18 +213,18 @@ fn d16_lanes_in_a_dispersive_liquid_meet_denser_glass_as_if_each_were_alone() {
         let material = material(&format!("dielectric = {{ index = \"N-SF66\"{coating} }}"));
         for step in 0..=500 {
             let cos = f64::from(step) / 500.0 + 1e-5;
-            let arrival = Arrival {
+            let context = ScatterContext {
                 incident: Index::Own(&incident),
                 beyond: Index::Own(&beyond),
                 direction_indices: direction.map(Some),
-                ..arrival(&draw, toward(cos, 0.4), 1.0)
+                ..context(&draw, toward(cos, 0.4), 1.0)
             };
             let mut branches = Vec::new();
-            material.scatter(&arrival, [0.5; 2], &mut branches);
+            material.scatter(&context, [0.5; 2], &mut branches);
             let reflected = branches.iter().find(|branch| !branch.crosses).expect("some is reflected");
             for lane in 0..3 {
                 let [n1, n2] = [liquid.0, flint.0].map(|n| n[lane]);
-                let wave = arrival.waves.of_lane(&draw, lane);
+                let wave = context.waves.of_lane(&draw, lane);
                 let layers = layer.map(|(index, thickness_nm)| Layer { index: Complex::from(index), thickness_nm });
                 let alone = Stack::new(wave, layers.into_iter()).shares(n1, n2.into(), n1 * cos.min(1.0));
                 let off = (f64::from(reflected.share[lane]) - alone.reflected.mean()).abs();

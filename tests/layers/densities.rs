@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use abbe::material::{Arrival, Lobes, Material, Scatter};
+use abbe::material::{Lobes, Material, Scatter, ScatterContext};
 use abbe::math::Frame;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{NORMAL, arrival, material, toward};
+use crate::support::arrivals::{NORMAL, context, material, toward};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
@@ -31,13 +31,13 @@ const FINER: [usize; 2] = [24, 60];
 const DRAWS: u64 = 100_000;
 
 /// The share of directions in every cell of cosine and azimuth by their density.
-fn probabilities(material: &Material<Table>, arrival: &Arrival<4>) -> Vec<f64> {
-    let finer = FINER[usize::from(arrival.lobes == Lobes::NARROW_REFLECTION)];
+fn probabilities(material: &Material<Table>, context: &ScatterContext<4>) -> Vec<f64> {
+    let finer = FINER[usize::from(context.lobes == Lobes::NARROW_REFLECTION)];
     let [up, around] = CELLS.map(|cells| cells * finer);
     let mut cells = vec![0.0; CELLS[0] * CELLS[1]];
     for (i, j) in (0..up).flat_map(|i| (0..around).map(move |j| (i, j))) {
         let (z, azimuth) = ((i as f64 + 0.5) / up as f64, TAU * (j as f64 + 0.5) / around as f64);
-        let pdf = material.evaluate(arrival, toward(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
+        let pdf = material.evaluate(context, toward(z, azimuth)).map_or(0.0, |(_, pdf)| pdf);
         cells[i / finer * CELLS[1] + j / finer] += pdf * TAU / (up * around) as f64;
     }
     cells
@@ -54,11 +54,11 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
         let material = material(text);
         for cos in VIEWS {
             let draw = Draw::<4>::fixed(3);
-            let arrival = Arrival { lobes, ..arrival(&draw, toward(cos, 0.0), 1.0) };
+            let context = ScatterContext { lobes, ..context(&draw, toward(cos, 0.0), 1.0) };
             let (mut random, mut counts, mut missed) = (Random::new(number as u64), vec![0; CELLS[0] * CELLS[1]], 0);
             let mut branches = Vec::new();
             for _ in 0..DRAWS {
-                material.scatter(&arrival, [random.number(), random.number()], &mut branches);
+                material.scatter(&context, [random.number(), random.number()], &mut branches);
                 let wide: Vec<_> = branches.drain(..).filter(|branch| branch.pdf.is_some()).collect();
                 assert!(wide.len() <= 1, "{text}: one direction for all that scatters widely");
                 let Some(branch) = wide.first() else {
@@ -69,7 +69,7 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
                 let azimuth = (libm::atan2(local.y, local.x) / TAU).rem_euclid(1.0);
                 let place = |x: f64, cells: usize| ((x * cells as f64) as usize).min(cells - 1);
                 counts[place(local.z, CELLS[0]) * CELLS[1] + place(azimuth, CELLS[1])] += 1;
-                let (light, pdf) = material.evaluate(&arrival, branch.wi).expect("it was drawn");
+                let (light, pdf) = material.evaluate(&context, branch.wi).expect("it was drawn");
                 let drawn = branch.pdf.expect("it is wide");
                 // Near a mirror image the density keeps the digits of the direction, less the facets' narrowness.
                 assert!((pdf / drawn - 1.0).abs() < 1e-6, "{text}: {pdf}, {drawn}");
@@ -79,7 +79,7 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
                 }
             }
             // What lies below the surface is the last cell.
-            let mut expected = probabilities(&material, &arrival);
+            let mut expected = probabilities(&material, &context);
             let sum: f64 = expected.iter().sum();
             assert!(sum < 1.0 + 1e-3, "{text}, cos {cos}: the density sums to {sum}");
             if missed == 0 {
@@ -102,8 +102,8 @@ fn lobes_told_apart_make_up_the_whole() {
         assert!(material.lobes().has_narrow_apart(), "{text}");
         for (cos, z, azimuth) in [(0.95, 0.9, 0.5), (0.5, 0.55, 0.51), (0.1, 0.2, 0.4), (0.7, 0.3, 0.0)] {
             let of = |lobes: Lobes| {
-                let arrival = Arrival { lobes, ..arrival(&draw, toward(cos, 0.0), 1.0) };
-                material.evaluate(&arrival, toward(z, TAU * azimuth)).expect("both are above the surface").0
+                let context = ScatterContext { lobes, ..context(&draw, toward(cos, 0.0), 1.0) };
+                material.evaluate(&context, toward(z, TAU * azimuth)).expect("both are above the surface").0
             };
             let [all, base, narrow] = [Lobes::ALL, Lobes::DIFFUSE_REFLECTION, Lobes::NARROW_REFLECTION].map(of);
             for lane in 0..3 {

@@ -3,7 +3,7 @@
 use abbe::material::{Interface, Material, Scatter, diffuse_transmittance};
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, PARTS, arrival, material, toward};
+use crate::support::arrivals::{self, PARTS, context, material, toward};
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
@@ -13,7 +13,7 @@ const DRAWS: u32 = 1 << 14;
 /// What a material shows of an even environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    arrivals::furnace(material, &arrival(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
+    arrivals::furnace(material, &context(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn light_goes_both_ways_alike() {
             let ((a, around_a), (b, around_b)) = (direction(), direction());
             let (wo, wi) = (toward(a, around_a), toward(b, around_b));
             let [there, back] = [(wo, wi), (wi, wo)]
-                .map(|(wo, wi)| material.evaluate(&arrival(&draw, wo, 1.0), wi).expect("both lie above the surface").0);
+                .map(|(wo, wi)| material.evaluate(&context(&draw, wo, 1.0), wi).expect("both lie above the surface").0);
             for lane in 0..3 {
                 let [there, back] = [f64::from(there[lane]) / b, f64::from(back[lane]) / a];
                 // A cosine near the horizon keeps 12 digits of 16, and lanes keep 7.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method, Smoothness, Sunlit, World};
+use abbe::trace::{LightPass, MapPasses, Method, Smoothness, SunlitPlaces, World};
 
 use super::{LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, room, screen, smooth, walls};
 use crate::support::scenes::{body, environment, quad, scene, view};
@@ -113,7 +113,7 @@ fn paths_may_start_in_any_part_of_a_suns_light() {
     ];
     for (what, center, radius, cell) in parts {
         let cells = cell.map(|cell| (cell, 1.0)).into_iter().collect();
-        let sunlit = Sunlit { light: 0, center: DVec3::from(center), radius, cells };
+        let sunlit = SunlitPlaces { light: 0, center: DVec3::from(center), radius, cells };
         let part = |world: &World| world.with_light_vertices(vec![sunlit.clone()]);
         if what == "nothing" {
             let [plain, looked] =
@@ -143,7 +143,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
         "[[light]]\nenvironment = {{ radiance = {{ image = {file:?}, scale = 0.8 }}, transform = [{turn}] }}\n"
     );
     let part = |cells: Vec<(u32, f32)>, center: [f64; 3], radius: f64| {
-        let sunlit = Sunlit { light: 0, center: DVec3::from(center), radius, cells };
+        let sunlit = SunlitPlaces { light: 0, center: DVec3::from(center), radius, cells };
         move |world: &World| world.with_light_vertices(vec![sunlit.clone()])
     };
     let with = |more: &[String]| open("", &[std::slice::from_ref(&sky), more].concat());

@@ -439,14 +439,14 @@ fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
         for _ in 0..2000 {
             // From inside every ray leaves once, through the back of a face, where the map puts that face.
             let ray = Ray::new(map.point(INSIDE), random.direction());
-            let crossing = mesh.intersect(&ray, f64::INFINITY).expect("a closed body");
-            let there = mesh.point(&ray, &crossing);
+            let intersection = mesh.intersect(&ray, f64::INFINITY).expect("a closed body");
+            let there = mesh.point(&ray, &intersection);
             assert!(there.normal.dot(ray.direction) > 0.0, "{map:?}");
-            assert!((there.position - ray.at(crossing.t)).length() < 1e-13);
-            let corners = FACES[crossing.part as usize].map(|corner| map.point(points[corner as usize]));
+            assert!((there.position - ray.at(intersection.t)).length() < 1e-13);
+            let corners = FACES[intersection.part as usize].map(|corner| map.point(points[corner as usize]));
             assert!((there.position - corners[0]).dot(there.normal).abs() < 1e-13);
-            let onward = there.leave(ray.direction);
-            assert!(mesh.intersect(&onward, f64::INFINITY).is_none());
+            let through = there.leave(ray.direction);
+            assert!(mesh.intersect(&through, f64::INFINITY).is_none());
         }
     }
 }

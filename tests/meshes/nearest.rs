@@ -2,7 +2,7 @@
 
 use abbe::math::{DVec3, Ray};
 use abbe::scene::{Hit, Scene};
-use abbe::shape::{Crossing, Mesh, Shape, Triangle, Vertices};
+use abbe::shape::{Intersection, Mesh, Shape, Triangle, Vertices};
 use abbe::spectrum::Curve;
 
 use crate::support::random::Random;
@@ -11,16 +11,16 @@ use crate::support::scenes::{body, quad, scene, view};
 const RAYS: u32 = 100_000;
 
 /// The nearest crossing of all, of equally near ones the first.
-fn search(shapes: impl Iterator<Item = (u32, Option<Crossing>)>) -> Option<(u32, Crossing)> {
+fn search(shapes: impl Iterator<Item = (u32, Option<Intersection>)>) -> Option<(u32, Intersection)> {
     shapes
-        .filter_map(|(number, crossing)| Some((number, crossing?)))
+        .filter_map(|(number, intersection)| Some((number, intersection?)))
         .reduce(|nearest, next| if next.1.t < nearest.1.t { next } else { nearest })
 }
 
 fn assert_found(scene: &Scene<Curve>, ray: &Ray) -> bool {
     let shapes = scene.objects.iter().enumerate();
     let all = shapes.map(|(number, object)| (number as u32, object.shape.intersect(ray, f64::INFINITY)));
-    let nearest = search(all).map(|(object, crossing)| Hit { object, crossing });
+    let nearest = search(all).map(|(object, intersection)| Hit { object, intersection });
     assert_eq!(scene.intersect(ray), nearest, "{ray:?}");
     nearest.is_some()
 }
@@ -150,7 +150,7 @@ fn assert_mesh_finds(points: &[DVec3], faces: &[[u32; 3]], rays: u32, half: f64,
         let ray = ray(random, half);
         let all = triangles.iter().enumerate();
         let all = all.map(|(number, triangle)| (number as u32, triangle.intersect(&ray, f64::INFINITY)));
-        let nearest = search(all).map(|(part, crossing)| Crossing { part, ..crossing });
+        let nearest = search(all).map(|(part, intersection)| Intersection { part, ..intersection });
         assert_eq!(mesh.intersect(&ray, f64::INFINITY), nearest, "{ray:?}");
         met += u32::from(nearest.is_some());
     }

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use abbe::math::{DVec3, Ray};
-use abbe::scene::{Ends, Hit};
+use abbe::scene::{Hit, RayEnds};
 
 use crate::support::random::Random;
 use crate::support::scenes::{body, environment, scene, view};
@@ -46,24 +46,26 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
         let [origin, target] = [(); 2].map(|()| DVec3::new(place(), place(), place()));
         let Some(direction) = (target - origin).try_normalize() else { continue };
         let ray = Ray { origin, direction };
-        let crossings = || {
-            let crossing = |object: usize| scene.objects[object].shape.intersect(&ray, f64::INFINITY);
-            (0..scene.objects.len()).filter_map(move |i| crossing(i).map(|crossing| Hit { object: i as u32, crossing }))
+        let intersections = || {
+            let intersection = |object: usize| scene.objects[object].shape.intersect(&ray, f64::INFINITY);
+            (0..scene.objects.len())
+                .filter_map(move |i| intersection(i).map(|intersection| Hit { object: i as u32, intersection }))
         };
-        let nearest = crossings().min_by(|a, b| a.crossing.t.total_cmp(&b.crossing.t).then(a.object.cmp(&b.object)));
+        let nearest =
+            intersections().min_by(|a, b| a.intersection.t.total_cmp(&b.intersection.t).then(a.object.cmp(&b.object)));
         assert_eq!(scene.intersect(&ray), nearest, "{ray:?}");
         let Some(hit) = nearest else { continue };
         met += 1;
-        ties += usize::from(crossings().filter(|other| other.crossing.t == hit.crossing.t).count() > 1);
+        ties += usize::from(intersections().filter(|other| other.intersection.t == hit.intersection.t).count() > 1);
         // A light at the distance of a crossing, as an object of its own or none.
-        let distance = if i % 3 == 0 { hit.crossing.t } else { random.between(0.0, 5.0) };
+        let distance = if i % 3 == 0 { hit.intersection.t } else { random.between(0.0, 5.0) };
         for light in [None, Some(hit.object), Some(0), Some(5), Some(7)] {
             let hides = |other: &Hit| {
                 light.is_none_or(|light| light != other.object)
-                    && (other.crossing.t < distance
-                        || other.crossing.t == distance && light.is_none_or(|light| other.object < light))
+                    && (other.intersection.t < distance
+                        || other.intersection.t == distance && light.is_none_or(|light| other.object < light))
             };
-            let expected = crossings().any(|other| hides(&other));
+            let expected = intersections().any(|other| hides(&other));
             assert_eq!(
                 scene.is_occluded(&ray, distance, light, &Cell::new(None)),
                 expected,
@@ -100,12 +102,12 @@ fn the_triangle_of_a_lamp_is_occluded_by_others_of_the_lamp_and_by_what_stands_b
             let shape = &scene.objects[lamp].shape;
             let own = shape.intersect(&ray, f64::INFINITY);
             for part in 0..12 {
-                let Some(crossing) = shape.intersect_triangle(&ray, part) else { continue };
-                let ends = Ends { left: None, light: Some(lamp as u32), part: Some(part) };
-                let whole = scene.is_occluded(&ray, crossing.t, Some(lamp as u32), &Cell::new(None));
-                let expected = whole || own != Some(crossing);
+                let Some(intersection) = shape.intersect_triangle(&ray, part) else { continue };
+                let ends = RayEnds { left: None, light: Some(lamp as u32), part: Some(part) };
+                let whole = scene.is_occluded(&ray, intersection.t, Some(lamp as u32), &Cell::new(None));
+                let expected = whole || own != Some(intersection);
                 assert_eq!(
-                    scene.is_occluded(&ray, crossing.t, ends, &Cell::new(None)),
+                    scene.is_occluded(&ray, intersection.t, ends, &Cell::new(None)),
                     expected,
                     "{ray:?} {lamp} {part}"
                 );

@@ -88,13 +88,13 @@ fn some_crossing_is_found_just_where_there_is_a_nearest_one() {
         let to = random.direction() * random.between(0.0, 1.5);
         let ray = Ray::new(from, to - from);
         match mesh.intersect(&ray, f64::INFINITY) {
-            Some(crossing) => {
+            Some(intersection) => {
                 met += 1;
                 assert!(
-                    mesh.is_crossed(&ray, f64::INFINITY, None) && mesh.is_crossed(&ray, crossing.t, None),
+                    mesh.is_crossed(&ray, f64::INFINITY, None) && mesh.is_crossed(&ray, intersection.t, None),
                     "{ray:?}"
                 );
-                assert!(!mesh.is_crossed(&ray, crossing.t.next_down(), None), "{ray:?}");
+                assert!(!mesh.is_crossed(&ray, intersection.t.next_down(), None), "{ray:?}");
             }
             None => assert!(!mesh.is_crossed(&ray, f64::INFINITY, None), "{ray:?}"),
         }

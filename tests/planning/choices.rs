@@ -2,7 +2,7 @@
 
 use abbe::plan::{Plan, plan};
 use abbe::spectrum::Basis;
-use abbe::trace::{Method, ROUTES_NM, Route, Step, Transport, Way, World, routes};
+use abbe::trace::{Method, ROUTES_NM, Route, RouteEvent, Step, Transport, World, routes};
 
 use crate::support::scenes::{body, environment, scene, view};
 
@@ -247,7 +247,9 @@ fn routes_are_no_longer_than_paths() {
         let method = Method::of_paths(basis, Transport::Random { split: 1.0, roulette: 0.0 }, 1);
         let found = routes(&World::new(&scene, Method { max_bounces, ..method })).concat();
         let of_pane = |step: &Step| scene.materials[step.material as usize].name == "pane";
-        let counts = |step: &&Step| !(matches!(step.way, Way::Inside(_)) || of_pane(step) && step.way == Way::Crossed);
+        let counts = |step: &&Step| {
+            !(matches!(step.way, RouteEvent::Inside(_)) || of_pane(step) && step.way == RouteEvent::Crossed)
+        };
         let surfaces = |route: &Route| route.steps.iter().filter(counts).count();
         let longest = found.iter().map(surfaces).max();
         assert_eq!(longest, Some(max_bounces as usize), "{} routes", found.len());

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use abbe::material::{RoughInterface, Sides};
+use abbe::material::{FacetSides, RoughInterface};
 use abbe::math::DVec3;
 
 use super::each;
@@ -18,7 +18,7 @@ const INDICES: [f64; 3] = [1.001, 1.05, 2.2];
 const DRAWS: u32 = 1 << 17;
 
 /// The light that comes back and the light that crosses, of an even environment: radiance over n^2 is 1 everywhere.
-fn furnace(sides: &Sides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
+fn furnace(sides: &FacetSides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
     let (wo, mut sum) = (at(cos, 0.3), [0.0; 2]);
     for u in points(DRAWS) {
         let [reflected, crossed] = sides.draw(wo, u);

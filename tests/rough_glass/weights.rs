@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use abbe::material::{Flow, RoughInterface, Sides, Way};
+use abbe::material::{BsdfValue, FacetSample, FacetSides, RoughInterface};
 use abbe::math::DVec3;
 
 use crate::support::arrivals::about_z as at;
@@ -14,15 +14,15 @@ const INDICES: [f64; 6] = [1.001, 1.1, 1.5, 2.4, 4.0, 9.9];
 const COSINES: [f64; 7] = [1e-12, 1e-3, 0.05, 0.3, 0.6, 0.9, 1.0];
 
 /// All of these, seen from a direction.
-fn each(check: impl Fn(&Sides, [f64; 2], DVec3, &str)) {
+fn each(check: impl Fn(&FacetSides, [f64; 2], DVec3, &str)) {
     super::each(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
         check(sides, indices, at(cos, 0.7), what)
     });
 }
 
 /// What is evaluated over the density, radiance over n^2, on both sides of one draw.
-fn weights(sides: &Sides, [n1, n2]: [f64; 2], wo: DVec3, ways: [Option<Way>; 2]) -> [f64; 2] {
-    let over = |flow: Flow| flow.value / flow.pdf;
+fn weights(sides: &FacetSides, [n1, n2]: [f64; 2], wo: DVec3, ways: [Option<FacetSample>; 2]) -> [f64; 2] {
+    let over = |flow: BsdfValue| flow.value / flow.pdf;
     let [above, beyond] = ways;
     [
         above.map_or(0.0, |way| over(sides.reflected(wo, way.wi, way.facet))),
@@ -67,7 +67,7 @@ fn cell(wi: DVec3) -> usize {
 }
 
 /// The light of every cell, by quadrature of the BSDF times cosine; radiance over n^2.
-fn light(sides: &Sides, [n1, n2]: [f64; 2], wo: DVec3) -> Vec<f64> {
+fn light(sides: &FacetSides, [n1, n2]: [f64; 2], wo: DVec3) -> Vec<f64> {
     let (mut cells, finer) = (vec![0.0; 2 * CELLS * CELLS], CELLS * FINER);
     for (i, j) in (0..finer).flat_map(|i| (0..finer).map(move |j| (i, j))) {
         let around = (j as f64 + (i as f64 * 0.618_033_988_75).fract()) / finer as f64;

@@ -140,9 +140,9 @@ fn g5_no_draw_is_not_a_number() {
             for u in corners.into_iter().chain(inside) {
                 let wo = at(cos, 0.3);
                 let Some(drawn) = surface.scatter(wo, u) else { continue };
-                let numbers = [drawn.once, drawn.again, drawn.cos, drawn.pdf, drawn.wi.length()];
+                let numbers = [drawn.single, drawn.multiple, drawn.cos, drawn.pdf, drawn.wi.length()];
                 assert!(numbers.iter().all(|x| x.is_finite() && *x >= 0.0), "{value}, {cos:e}, {u:?}: {drawn:?}");
-                let weight = (drawn.once + drawn.again) / drawn.pdf;
+                let weight = (drawn.single + drawn.multiple) / drawn.pdf;
                 assert!(drawn.pdf > 0.0 && weight <= 2.5, "{value}, {cos:e}, {u:?}: {weight}, {drawn:?}");
             }
         }
@@ -162,7 +162,7 @@ fn light_goes_the_same_way_back() {
             });
             let [there, back] = [(a, b), (b, a)].map(|(wo, wi)| {
                 let reflection = surface.evaluate(wo, wi).expect("it lies above");
-                [reflection.once, reflection.again].map(|x| x / wi.z)
+                [reflection.single, reflection.multiple].map(|x| x / wi.z)
             });
             for (x, y) in there.into_iter().zip(back) {
                 assert!((x - y).abs() <= 1e-12 * x.max(y), "{value}: {a} {b}: {x} and {y}");

@@ -4,7 +4,7 @@ use abbe::material::{Material, Roughness};
 use abbe::math::DVec3;
 use abbe::spectrum::{Draw, Table};
 
-use crate::support::arrivals::{self, LOSSLESS, arrival, material, points, toward};
+use crate::support::arrivals::{self, LOSSLESS, context, material, points, toward};
 use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 
@@ -21,7 +21,7 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 /// What a metal shows of an even environment of radiance 1, under a medium of an index.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
-    arrivals::furnace(material, &arrival(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
+    arrivals::furnace(material, &context(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
 }
 
 #[test]
@@ -49,11 +49,11 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
             let blocked: f64 = points(DRAWS)
                 .map(|[v, around]| {
                     let h = surface.facets().visible_normal(wo, [around, 1.0 - v * v]);
-                    2.0 * v * surface.facets().left_and_blocked(wo, h * (2.0 * wo.dot(h)) - wo)[1]
+                    2.0 * v * surface.facets().unshadowed_and_shadowed(wo, h * (2.0 * wo.dot(h)) - wo)[1]
                 })
                 .sum();
             let exact = blocked / f64::from(DRAWS);
-            worst = larger(worst, (surface.blocked(cos) - exact).abs());
+            worst = larger(worst, (surface.missing_energy(cos) - exact).abs());
         }
     }
     println!("table off by at most {worst:.1e}");

@@ -1,12 +1,12 @@
 //! Rough metals under lamps: aiming at them and meeting them agree, and nearly smooth metals look smooth.
 
-use abbe::material::{Arrival, Material, Roughness, Scatter};
+use abbe::material::{Material, Roughness, Scatter, ScatterContext};
 use abbe::math::DVec3;
 use abbe::plan::plan;
 use abbe::spectrum::Draw;
 use abbe::trace::{Transport, prepare};
 
-use crate::support::arrivals::arrival;
+use crate::support::arrivals::context;
 use crate::support::scenes::{
     EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, assert_aimed_at_as_met, body, image, lamps, method, scene, view,
 };
@@ -43,8 +43,8 @@ fn a_point_light_shows_the_brdf_itself() {
         let draw = Draw::<4>::fixed(3);
         let here = DVec3::new(0.5, 0.0, 0.0);
         let (wo, to_light) = ((DVec3::new(4.0, 3.0, 0.5) - here).normalize(), DVec3::new(-1.0, 2.0, 0.3) - here);
-        let arrival = Arrival { normal: DVec3::Y, ..arrival(&draw, wo, 1.0) };
-        let evaluated = world.scene().material_of(0).evaluate(&arrival, to_light.normalize());
+        let context = ScatterContext { normal: DVec3::Y, ..context(&draw, wo, 1.0) };
+        let evaluated = world.scene().material_of(0).evaluate(&context, to_light.normalize());
         let (brdf_cos, _) = evaluated.expect("the light is above the floor");
         let shown = image(&text, SINGLE_PATH).0.pixels[0].rgb;
         for (band, shown) in shown.into_iter().enumerate() {

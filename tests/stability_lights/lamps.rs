@@ -69,12 +69,12 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
             let sphere = Shape::Sphere(Sphere::new(center, radius));
             let sample = sphere.sample(DVec3::ZERO, random.pair()).expect("it is outside");
             let ray = Ray { origin: DVec3::ZERO, direction: sample.direction };
-            let crossing = sphere.intersect(&ray, f64::INFINITY);
+            let intersection = sphere.intersect(&ray, f64::INFINITY);
             // At the rim itself a direction may pass by rounding; a draw there is as rare as the rim is thin.
-            let Some(crossing) = crossing else { continue };
+            let Some(intersection) = intersection else { continue };
             let [x, y, z] = center.to_array().map(|x| Exact::from(x) * Exact::from(x));
             let solid_angle = Exact::from(2.0 * PI) * one_minus_cos(radius, x + y + z);
-            let off = (Exact::from(sphere.pdf(&ray, &crossing)) * solid_angle - Exact::from(1.0)).abs().rounded();
+            let off = (Exact::from(sphere.pdf(&ray, &intersection)) * solid_angle - Exact::from(1.0)).abs().rounded();
             assert!(off <= 1e-14, "R / D = {ratio}: the density is off by {off:e}");
             worst = larger(worst, off);
         }
@@ -85,7 +85,7 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
             let u = [(f64::from(i) + 0.5) / 4096.0, f64::from(i.reverse_bits()) / 4_294_967_296.0];
             let ray = Ray { origin: DVec3::ZERO, direction: sphere.sample(DVec3::ZERO, u).expect("outside").direction };
             match sphere.intersect(&ray, f64::INFINITY) {
-                Some(crossing) => sum += ray.direction.z / sphere.pdf(&ray, &crossing) / 4096.0,
+                Some(intersection) => sum += ray.direction.z / sphere.pdf(&ray, &intersection) / 4096.0,
                 None => lost += 1,
             }
         }

@@ -1,12 +1,12 @@
 //! Rows S5, D7 and D8: directions stay unit vectors, for the sphere's and Fresnel's formulas assume it.
 
-use abbe::material::{Arrival, Index, Interface, Scatter, reflect};
+use abbe::material::{Index, Interface, Scatter, ScatterContext, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
 use abbe::shape::SurfacePoint;
 use abbe::spectrum::{Draw, Table};
 use abbe::trace::prepare;
 
-use crate::support::arrivals::arrival;
+use crate::support::arrivals::context;
 use crate::support::exact::{Exact, ExactVector};
 use crate::support::larger::larger;
 use crate::support::random::Random;
@@ -75,8 +75,8 @@ fn s5_every_material_sends_light_on_along_unit_vectors() {
         for _ in 0..20_000 {
             let wo = random.direction().normalize();
             let normal = normal_toward(wo, &mut random);
-            let arrival = Arrival { normal, incident: Index::Own(&inside), ..arrival(&draw, wo, 1.0) };
-            material.scatter(&arrival, random.pair(), &mut branches);
+            let context = ScatterContext { normal, incident: Index::Own(&inside), ..context(&draw, wo, 1.0) };
+            material.scatter(&context, random.pair(), &mut branches);
             assert!(!branches.is_empty());
             worst = branches.drain(..).map(|branch| off_unit(branch.wi)).fold(worst, larger);
         }

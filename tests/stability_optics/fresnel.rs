@@ -2,11 +2,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use abbe::material::{Arrival, Branch, Index, Interface, Material, Scatter};
+use abbe::material::{Branch, Index, Interface, Material, Scatter, ScatterContext};
 use abbe::math::{DVec3, UNIT_ROUNDOFF};
 use abbe::spectrum::{Draw, Lanes, Table};
 
-use crate::support::arrivals::{arrival, material};
+use crate::support::arrivals::{context, material};
 use crate::support::exact::Exact;
 use crate::support::larger::larger;
 use crate::support::random::Random;
@@ -243,8 +243,8 @@ fn the_reference_agrees_with_brewster() {
 
 fn branches(material: &Material<Table>, wo: DVec3, normal: DVec3, incident: f64, beyond: f64) -> Vec<Branch<4>> {
     let draw = Draw::<4>::fixed(3);
-    let arrival = Arrival { normal, beyond: Index::Same(beyond), ..arrival(&draw, wo, incident) };
+    let context = ScatterContext { normal, beyond: Index::Same(beyond), ..context(&draw, wo, incident) };
     let mut branches = Vec::new();
-    material.scatter(&arrival, [0.5; 2], &mut branches);
+    material.scatter(&context, [0.5; 2], &mut branches);
     branches
 }

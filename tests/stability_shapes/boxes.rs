@@ -124,9 +124,12 @@ fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
     assert_eq!(mesh.degenerate(), 0);
     let shape = Shape::Mesh(mesh.into());
     let ray = Ray::new(DVec3::new(0.0, 0.0, -10.0 * f64::from(most)), DVec3::Z);
-    let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
-    assert!((crossing.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && crossing.part == 0, "{crossing:?}");
-    assert!(shape.area().is_finite() && shape.pdf(&ray, &crossing).is_finite());
+    let intersection = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through the first triangle");
+    assert!(
+        (intersection.t / (9.0 * f64::from(most)) - 1.0).abs() < 1e-15 && intersection.part == 0,
+        "{intersection:?}"
+    );
+    assert!(shape.area().is_finite() && shape.pdf(&ray, &intersection).is_finite());
 }
 
 /// Long shapes that run aslant, about and beside the center of the world.
@@ -170,8 +173,8 @@ fn b6_boxes_of_pieces_hold_all_that_rays_meet_of_a_shape() {
             let aim = if random.number() < 0.5 { at } else { whole.center() };
             let ray = Ray::new(aim + random.direction() * 4.0, DVec3::X);
             let ray = Ray::new(ray.origin, aim - ray.origin);
-            if let Some(crossing) = shape.intersect(&ray, f64::INFINITY) {
-                let point = shape.point(&ray, &crossing).position;
+            if let Some(intersection) = shape.intersect(&ray, f64::INFINITY) {
+                let point = shape.point(&ray, &intersection).position;
                 assert!(boxes.iter().any(|bounds| within(bounds, point)), "{shape:?}, {ray:?}");
                 hits += 1;
             }
@@ -207,7 +210,7 @@ fn b6_objects_whose_pieces_have_boxes_are_met_as_if_they_were_whole_and_few_are_
     for _ in 0..5000 {
         let origin = random.direction() * 6.0;
         let ray = Ray::new(origin, random.direction() * 3.0 - origin);
-        let found = scene.nearest(&ray, f64::INFINITY, &counts).map(|hit| (hit.crossing.t, hit.object));
+        let found = scene.nearest(&ray, f64::INFINITY, &counts).map(|hit| (hit.intersection.t, hit.object));
         let each = (0..).zip(scene.objects.iter());
         let each = each.filter_map(|(i, one)| Some((one.shape.intersect(&ray, f64::INFINITY)?.t, i)));
         let nearest = each.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -245,7 +248,7 @@ fn b6_triangles_that_are_cut_are_met_as_if_they_were_whole() {
             _ => steps(1e9).normalize(),
         };
         let ray = Ray { origin, direction };
-        let found = mesh.intersect(&ray, f64::INFINITY).map(|crossing| (crossing.t, crossing.part));
+        let found = mesh.intersect(&ray, f64::INFINITY).map(|intersection| (intersection.t, intersection.part));
         let each = (0..).zip(&alone).filter_map(|(i, one)| Some((one.intersect(&ray, f64::INFINITY)?.t, i)));
         let nearest = each.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         assert_eq!(found, nearest, "{ray:?}");

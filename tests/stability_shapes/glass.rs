@@ -42,14 +42,14 @@ fn scatter(direction: DVec3, normal: DVec3, leaving: bool, random: &mut Random) 
 pub fn follow(body: &Shape, mut ray: Ray, size: f64, random: &mut Random, tally: &mut Tally) {
     let mut inside = false;
     for event in 0..MOST {
-        let Some(crossing) = body.intersect(&ray, f64::INFINITY) else {
+        let Some(intersection) = body.intersect(&ray, f64::INFINITY) else {
             tally.wrong += u64::from(inside);
             return;
         };
         tally.events += 1;
-        let key = (crossing.t / size).to_bits().rotate_left(17) ^ u64::from(crossing.part);
+        let key = (intersection.t / size).to_bits().rotate_left(17) ^ u64::from(intersection.part);
         tally.hash = (tally.hash ^ key).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
-        let point = body.point(&ray, &crossing);
+        let point = body.point(&ray, &intersection);
         let leaving = ray.direction.dot(point.normal) > 0.0;
         let again = event > 0 && !inside;
         if leaving != inside || again {

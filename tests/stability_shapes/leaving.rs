@@ -27,7 +27,7 @@ const SETTINGS: [(f64, f64, f64); 12] = [
 
 /// A ray that left a surface, from where to where, and the corners of the triangle that it left.
 struct Departure {
-    arrival: Ray,
+    context: Ray,
     t: f64,
     point: SurfacePoint,
     leaving: Ray,
@@ -68,12 +68,12 @@ fn departures(
         if cos.abs() < 0.05 {
             continue;
         }
-        let arrival = Ray::new(place(x, y) - direction * distance * size, direction);
-        let Some(crossing) = built.intersect(&arrival, f64::INFINITY) else { continue };
-        let point = built.point(&arrival, &crossing);
+        let context = Ray::new(place(x, y) - direction * distance * size, direction);
+        let Some(intersection) = built.intersect(&context, f64::INFINITY) else { continue };
+        let point = built.point(&context, &intersection);
         let leaving = point.leave(Ray::new(DVec3::ZERO, random.direction()).direction);
         tested += 1;
-        test(&built, &Departure { arrival, t: crossing.t, point, leaving, corners, fourth });
+        test(&built, &Departure { context, t: intersection.t, point, leaving, corners, fourth });
         if tested == COUNT {
             return;
         }
@@ -109,7 +109,7 @@ fn hits_neighbor(departure: &Departure) -> bool {
 fn x1_without_an_offset_half_of_all_new_rays_hit_the_surface_that_they_leave() {
     let (mut own, mut all) = (0, 0);
     departures(SETTINGS[0], anywhere, first, |shape, departure| {
-        let origin = departure.arrival.at(departure.t);
+        let origin = departure.context.at(departure.t);
         own += usize::from(hits(shape, &Ray { origin, direction: departure.leaving.direction }));
         all += 1;
     });

@@ -12,9 +12,9 @@ fn returns(rays: usize, mut draw: impl FnMut(&mut Random) -> (Shape, DVec3)) -> 
     for _ in 0..rays {
         let (shape, target) = draw(&mut random);
         let direction = random.direction();
-        let arrival = Ray::new(target - direction * random.between(1.0, 5.0), direction);
-        let Some(crossing) = shape.intersect(&arrival, f64::INFINITY) else { continue };
-        let point = shape.point(&arrival, &crossing);
+        let context = Ray::new(target - direction * random.between(1.0, 5.0), direction);
+        let Some(intersection) = shape.intersect(&context, f64::INFINITY) else { continue };
+        let point = shape.point(&context, &intersection);
         let direction = Ray::new(DVec3::ZERO, random.direction()).direction;
         let inward = shape.is_closed() && direction.dot(point.normal) < 0.0;
         let leaving = point.leave(if inward { -direction } else { direction });

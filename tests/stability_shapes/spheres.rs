@@ -32,7 +32,7 @@ fn ray_at_impact(center: DVec3, distance: f64, impact: f64, random: &mut Random)
 }
 
 fn hit(shape: &Shape, ray: &Ray) -> Option<f64> {
-    shape.intersect(ray, f64::INFINITY).map(|crossing| crossing.t)
+    shape.intersect(ray, f64::INFINITY).map(|intersection| intersection.t)
 }
 
 #[test]
@@ -116,8 +116,8 @@ fn s4_rays_that_bounce_off_a_sphere_as_large_as_a_wall_cross_the_room() {
 }
 
 fn meet(shape: &Shape, ray: &Ray) -> SurfacePoint {
-    let crossing = shape.intersect(ray, f64::INFINITY).expect("the ray was aimed at the sphere");
-    shape.point(ray, &crossing)
+    let intersection = shape.intersect(ray, f64::INFINITY).expect("the ray was aimed at the sphere");
+    shape.point(ray, &intersection)
 }
 
 /// A ray that leaves toward the inside starts there and meets the far side.

@@ -1,7 +1,7 @@
 //! Rows T1 to T5 of the stability catalog: edges, slivers, sizes and triangles without area.
 
 use abbe::math::{DVec3, Frame, Ray, UNIT_ROUNDOFF};
-use abbe::shape::{Crossing, Mesh, Shape, Triangle, Vertices, read_mesh};
+use abbe::shape::{Intersection, Mesh, Shape, Triangle, Vertices, read_mesh};
 
 use super::OFFSET;
 use crate::meshes::files::file;
@@ -58,8 +58,8 @@ fn t2_edges_are_seldom_hit_twice_and_the_first_of_the_nearest_triangles_is_taken
         let mut doubles = 0;
         for ray in &rays {
             let all = (0..).zip(&triangles);
-            let hits: Vec<Crossing> = all
-                .filter_map(|(part, triangle)| Some(Crossing { part, ..triangle.intersect(ray, f64::INFINITY)? }))
+            let hits: Vec<Intersection> = all
+                .filter_map(|(part, triangle)| Some(Intersection { part, ..triangle.intersect(ray, f64::INFINITY)? }))
                 .collect();
             let nearest = hits.iter().copied().min_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));
             assert_eq!(shape.intersect(ray, f64::INFINITY), nearest);
@@ -80,8 +80,8 @@ fn t2_of_coincident_triangles_the_one_listed_first_is_hit() {
     let mesh = Mesh::new(Vertices::Double(points), twice).expect("the faces have areas");
     let shape = Shape::Mesh(mesh.into());
     for ray in rays.iter().flatten() {
-        let crossing = shape.intersect(ray, f64::INFINITY).expect("the ball is closed");
-        assert!(crossing.part < count, "{crossing:?}");
+        let intersection = shape.intersect(ray, f64::INFINITY).expect("the ball is closed");
+        assert!(intersection.part < count, "{intersection:?}");
     }
 }
 
@@ -115,8 +115,8 @@ fn t3_slivers_are_hit_and_know_where() {
             }
             tested += 1;
             let shape = Shape::Triangle(Triangle::new(points));
-            let crossing = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through its inside");
-            for (found, exact) in crossing.uv.into_iter().zip(exact) {
+            let intersection = shape.intersect(&ray, f64::INFINITY).expect("the ray runs through its inside");
+            for (found, exact) in intersection.uv.into_iter().zip(exact) {
                 worst = larger(worst, (Exact::from(found) - exact).abs().rounded());
             }
         }
@@ -142,8 +142,8 @@ fn t4_triangles_of_any_size_are_hit_inside_and_missed_outside() {
             if margin.abs() < 1e-3 {
                 continue;
             }
-            let crossing = Shape::Triangle(Triangle::new(points)).intersect(&ray, f64::INFINITY);
-            assert_eq!(crossing.is_some(), margin > 0.0, "size {size:e}: {points:?}, {ray:?}");
+            let intersection = Shape::Triangle(Triangle::new(points)).intersect(&ray, f64::INFINITY);
+            assert_eq!(intersection.is_some(), margin > 0.0, "size {size:e}: {points:?}, {ray:?}");
         }
     }
 }

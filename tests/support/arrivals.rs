@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use abbe::material::{Arrival, Index, Lobes, Material, Scatter};
+use abbe::material::{Index, Lobes, Material, Scatter, ScatterContext};
 use abbe::math::{DVec3, Frame};
 use abbe::spectrum::{Basis, ColorSpace, Draw, Table, Waves};
 use abbe::trace::prepare;
@@ -40,9 +40,9 @@ pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
 static WAVES: LazyLock<Waves> = LazyLock::new(|| Basis::rgb(ColorSpace::Rec709).waves());
 
 /// Light from a surface under a medium of an index, toward `wo`.
-pub fn arrival<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Arrival<'_, N> {
+pub fn context<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> ScatterContext<'_, N> {
     let [incident, beyond] = [Index::Same(index); 2];
-    Arrival {
+    ScatterContext {
         lobes: Lobes::ALL,
         wo,
         normal: NORMAL,
@@ -67,10 +67,10 @@ pub fn about_z(cos: f64, azimuth: f64) -> DVec3 {
 
 /// What each band shows of an even environment, whose radiance over n^2 is 1, with the standard error if draws are
 /// independent.
-pub fn furnace(material: &Material<Table>, arrival: &Arrival<4>, draws: u32) -> [[f64; 2]; 3] {
+pub fn furnace(material: &Material<Table>, context: &ScatterContext<4>, draws: u32) -> [[f64; 2]; 3] {
     let (mut sums, mut branches) = ([[0.0; 2]; 3], Vec::new());
     for u in points(draws) {
-        material.scatter(arrival, u, &mut branches);
+        material.scatter(context, u, &mut branches);
         let mut shown = [0.0; 3];
         for branch in branches.drain(..) {
             (0..3).for_each(|band| shown[band] += f64::from(branch.share[band]) / branch.eta_scale);
@@ -80,7 +80,7 @@ pub fn furnace(material: &Material<Table>, arrival: &Arrival<4>, draws: u32) -> 
         }
     }
     let straight =
-        material.straight(arrival).map_or([0.0; 3], |straight| [0, 1, 2].map(|band| straight.share()[band].into()));
+        material.straight(context).map_or([0.0; 3], |straight| [0, 1, 2].map(|band| straight.share()[band].into()));
     std::array::from_fn(|band| {
         let [mean, square] = sums[band];
         [mean + straight[band], ((square - mean * mean).max(0.0) / f64::from(draws)).sqrt()]

@@ -7,7 +7,7 @@ mod probe;
 mod unlit;
 mod view;
 
-use super::{Object, Scene, Sight};
+use super::{Object, Scene, Visibility};
 use crate::spectrum::Curve;
 
 pub(super) use probe::{met_from_outside, ray_into};
@@ -30,7 +30,8 @@ pub(super) fn check(scene: &mut Scene<Curve>) {
 /// Shadow catchers on which no shadow can be seen.
 fn black_catchers(scene: &Scene<Curve>) -> Vec<String> {
     let is_black = |object: &&Object| scene.materials[object.material as usize].material.is_black();
-    let catchers = scene.objects.iter().filter(|object| object.sight == Sight::ShadowCatcher).filter(is_black);
+    let catchers =
+        scene.objects.iter().filter(|object| object.visibility == Visibility::ShadowCatcher).filter(is_black);
     let told = |object: &Object| {
         format!("{} is black and catches no shadow: give it the reflectance of what it stands for", object.name)
     };

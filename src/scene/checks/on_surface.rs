@@ -47,6 +47,6 @@ fn surface_at(scene: &Scene<Curve>, place: DVec3, size: f64) -> Option<u32> {
     // One of the three leads through the surface, whatever its normal.
     DVec3::AXES.into_iter().find_map(|direction| {
         let hit = scene.intersect(&Ray { origin: place - direction * (STEP * size), direction })?;
-        ((hit.crossing.t - STEP * size).abs() <= NEAR * size).then_some(hit.object)
+        ((hit.intersection.t - STEP * size).abs() <= NEAR * size).then_some(hit.object)
     })
 }

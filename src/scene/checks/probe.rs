@@ -18,6 +18,6 @@ pub(in crate::scene) fn met_from_outside(
     on_ball: [f64; 2],
 ) -> Option<(SurfacePoint, DVec3)> {
     let ray = ray_into(&shape.bounds()?, place, on_ball)?;
-    let crossing = shape.intersect(&ray, f64::INFINITY)?;
-    Some((shape.point(&ray, &crossing), ray.direction))
+    let intersection = shape.intersect(&ray, f64::INFINITY)?;
+    Some((shape.point(&ray, &intersection), ray.direction))
 }

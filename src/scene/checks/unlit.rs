@@ -201,8 +201,8 @@ fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     let direction = ball_surface([a, b]);
     let origin = bounds.min + size * DVec3::new(x, y, z) - direction * (2.0 * size.length());
     let line = Ray { origin, direction };
-    let crossing = area.shape.intersect(&line, f64::INFINITY)?;
-    let point = area.shape.point(&line, &crossing);
+    let intersection = area.shape.intersect(&line, f64::INFINITY)?;
+    let point = area.shape.point(&line, &intersection);
     let back = area.sides == Sides::Both && point.normal.dot(direction) > 0.0;
     let normal = if back { -point.normal } else { point.normal };
     let ray = point.leave(cosine_about(normal, [c, d]));

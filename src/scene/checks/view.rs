@@ -73,7 +73,7 @@ impl<'a> View<'a> {
             let of_camera = is_camera && turns == 0;
             let hit = if of_camera { self.scene.intersect_seen(&ray, None) } else { self.scene.intersect(&ray) };
             let Some(hit) = hit else { return false };
-            let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            let point = self.scene.objects[hit.object as usize].point(&ray, &hit.intersection);
             let material = self.scene.material_of(hit.object);
             let [u, v, pass, _] = sampler.four_plain(key, 0);
             key = key.child(0);
@@ -117,14 +117,14 @@ impl<'a> View<'a> {
     pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
         self.first_hits().map(|met| {
             let (ray, hit) = met?;
-            let point = self.scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+            let point = self.scene.objects[hit.object as usize].point(&ray, &hit.intersection);
             Some((hit.object, point.normal.dot(ray.direction) > 0.0))
         })
     }
 
     /// How far along the viewing direction that lies which rays through all of the image meet first.
     pub(super) fn depths(&self) -> impl Iterator<Item = f64> {
-        let depth = |(ray, hit): (Ray, Hit)| self.scene.camera.depth(ray.origin + ray.direction * hit.crossing.t);
+        let depth = |(ray, hit): (Ray, Hit)| self.scene.camera.depth(ray.origin + ray.direction * hit.intersection.t);
         self.first_hits().flatten().map(depth)
     }
 

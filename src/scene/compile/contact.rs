@@ -95,8 +95,8 @@ fn share_a_surface(body: &Object, other: &Object) -> bool {
         let Some(mut ray) = ray_into(&bounds, DVec3::new(x, y, z), [u, v]) else { return false };
         let direction = ray.direction;
         for _ in 0..DEEP {
-            let Some(crossing) = body.shape.intersect(&ray, f64::INFINITY) else { return false };
-            let point = body.shape.point(&ray, &crossing);
+            let Some(intersection) = body.shape.intersect(&ray, f64::INFINITY) else { return false };
+            let point = body.shape.point(&ray, &intersection);
             let before = Ray { origin: point.position - direction * step, direction };
             if let Some(met) = other.shape.intersect(&before, step + NEAR * size) {
                 let parallel = other.shape.point(&before, &met).normal.cross(point.normal).length() < 1e-6;

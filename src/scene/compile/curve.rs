@@ -5,12 +5,12 @@ use super::curve_name::{
     color_called, illuminant_called, image_called, in_quotes, temperature_called, unknown_glass, unknown_illuminant,
     unknown_metal, unknown_reflectance,
 };
-use super::curve_range::{Refusal, article, factor, hardly_a_layer, possible};
+use super::curve_range::{CurveError, article, factor, hardly_a_layer, possible};
 use super::curve_text::{CurveText, KindText, ONE_OF_EACH, finite, not_finite};
 use super::measures::unit_of_wavelength;
 use super::radiometry::on_film;
 use super::spectrum_file::read_columns;
-use crate::scene::text::{At, FileKind, Value, shown, utf8};
+use crate::scene::text::{FileKind, Spanned, Value, shown, utf8};
 use crate::scene::web_color::of_bytes;
 use crate::spectrum::{
     ColorSpace, Curve, CurveKind, Emission, Quantity, cauchy_through, data, imitation, reach, reach_of_absorption,
@@ -33,7 +33,7 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     text.luminance.map_or(Some(()), finite)?;
     let kind = kind(context, text, quantity)?;
     let curve = Curve { kind, scale: text.scale.it, luminance: text.luminance.map(|luminance| luminance.it) };
-    if let Some(At { place, it: luminance }) = text.luminance {
+    if let Some(Spanned { place, it: luminance }) = text.luminance {
         place.told(factor("a luminance", luminance))?;
         if luminance > 0.0 && !Emission::new(&curve, ColorSpace::default()).xyz()[1].is_normal() {
             return place.refuse("a light without power has no luminance");
@@ -176,19 +176,19 @@ fn is_transposed(pairs: &[[f64; 2]]) -> bool {
 }
 
 /// That samples are a spectrum of a quantity.
-fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), Refusal> {
+fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), CurveError> {
     if let Some(at) = samples.as_flattened().iter().position(|x| !x.is_finite()) {
-        return Err(Refusal::new(not_finite(samples.as_flattened()[at])).at(at / 2));
+        return Err(CurveError::new(not_finite(samples.as_flattened()[at])).at(at / 2));
     }
     ascending(samples)?;
     if let ([[nm, power]], Quantity::Emission) = (samples, quantity) {
-        let refusal = Refusal::new("an emission of one sample is dark: it is 0 beyond its ends");
+        let refusal = CurveError::new("an emission of one sample is dark: it is 0 beyond its ends");
         return Err(refusal.help(format!("for one wavelength write {{ lines = [[{nm}, {power}]] }}")).at(0));
     }
     if let (Some([last, _]), Quantity::Emission) = (samples.last(), quantity)
         && *last <= START_NM
     {
-        let refusal = Refusal::new(format!("an emission that ends at {last} nm is dark: it is 0 beyond its ends"));
+        let refusal = CurveError::new(format!("an emission that ends at {last} nm is dark: it is 0 beyond its ends"));
         return Err(refusal
             .help("light is visible from 360 nm on, and excites dyes from 300 nm on")
             .at(samples.len() - 1));
@@ -202,18 +202,18 @@ fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(
     })
 }
 
-fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
+fn ascending(samples: &[[f64; 2]]) -> Result<(), CurveError> {
     let Some([first, _]) = samples.first() else {
-        return Err(Refusal::new("a table of samples holds at least one [wavelength in nm, value]"));
+        return Err(CurveError::new("a table of samples holds at least one [wavelength in nm, value]"));
     };
     if are_swapped(samples) {
         let [value, nm] = samples[0].map(shown);
-        let refusal = Refusal::new(format!("a first wavelength of {value} nm is far from visible light"));
+        let refusal = CurveError::new(format!("a first wavelength of {value} nm is far from visible light"));
         return Err(refusal.help(format!("the wavelength stands before its value: write [{nm}, {value}]")).at(0));
     }
     if let Some(i) = samples.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
         let [before, after] = [samples[i][0], samples[i + 1][0]];
-        let refusal = Refusal::new(format!("wavelengths increase from sample to sample ({after} after {before})"));
+        let refusal = CurveError::new(format!("wavelengths increase from sample to sample ({after} after {before})"));
         let refusal = if after < before { refusal.help("sort them, the shortest first") } else { refusal };
         return Err(refusal.at(i + 1));
     }
@@ -221,7 +221,7 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), Refusal> {
         return Ok(());
     }
     let help = unit_of_wavelength(*first, 100.0..=830.0).unwrap_or("wavelengths are in nm".into());
-    Err(Refusal::new(format!("a first wavelength of {first} nm is far from visible light")).help(help).at(0))
+    Err(CurveError::new(format!("a first wavelength of {first} nm is far from visible light")).help(help).at(0))
 }
 
 /// Whether pairs are values and wavelengths in nm, which increase as those of a spectrum do, in this order.
@@ -241,7 +241,7 @@ fn file_of_samples<'d>(
 ) -> Option<CurveKind> {
     let place = text.place;
     // The second column is taken where none is named.
-    let column = text.column.unwrap_or(At { place, it: 2 });
+    let column = text.column.unwrap_or(Spanned { place, it: 2 });
     if column.it < 2 {
         return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
     }
@@ -260,7 +260,7 @@ fn file_of_samples<'d>(
     let samples: Vec<[f64; 2]> = rows.iter().map(|row| row.pair).collect();
     match samples_fit(&samples, quantity, text.scale.it) {
         Ok(()) => Some(CurveKind::Samples(samples)),
-        Err(Refusal { message, help, entry: Some(entry), .. }) => {
+        Err(CurveError { message, help, entry: Some(entry), .. }) => {
             place.tell(format!("{file}, line {}: {message}", rows[entry].line), help)
         }
         Err(refusal) => refusal.tell(text.value),
@@ -281,7 +281,7 @@ fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
 }
 
 /// The two-term Cauchy curve through n_d with the Abbe number V_d = (n_d - 1) / (n_F - n_C).
-fn abbe(text: &CurveText, nd: At<f64>, vd: At<f64>) -> Option<CurveKind> {
+fn abbe(text: &CurveText, nd: Spanned<f64>, vd: Spanned<f64>) -> Option<CurveKind> {
     if vd.it <= 0.0 {
         return vd.place.refuse("an Abbe number is above 0");
     }
@@ -293,7 +293,7 @@ fn abbe(text: &CurveText, nd: At<f64>, vd: At<f64>) -> Option<CurveKind> {
     Some(kind)
 }
 
-fn sellmeier(text: &CurveText, b: &At<Vec<f64>>, c: &At<Vec<f64>>) -> Option<CurveKind> {
+fn sellmeier(text: &CurveText, b: &Spanned<Vec<f64>>, c: &Spanned<Vec<f64>>) -> Option<CurveKind> {
     let place = text.place;
     if b.it.len() != c.it.len() || b.it.is_empty() {
         let (b, c) = (b.it.len(), c.it.len());
@@ -322,13 +322,13 @@ fn sellmeier(text: &CurveText, b: &At<Vec<f64>>, c: &At<Vec<f64>>) -> Option<Cur
 
 /// That a formula of an index bends light by a possible amount at all visible wavelengths. One of exactly 1 is of
 /// coefficients that are 0 or in another unit.
-fn bends(scale: f64, kind: &CurveKind) -> Result<(), Refusal> {
+fn bends(scale: f64, kind: &CurveKind) -> Result<(), CurveError> {
     let curve = Curve { scale, ..kind.clone().into() };
     let value = curve.values(Quantity::Index);
     (360..=830).try_for_each(|nm| {
         let (value, place) = (value(f64::from(nm)), format!(" at {nm} nm"));
         if value == 1.0 {
-            return Err(Refusal::new(format!("a refractive index is above 1, not 1{place}")));
+            return Err(CurveError::new(format!("a refractive index is above 1, not 1{place}")));
         }
         possible(Quantity::Index, value, &place)
     })
@@ -352,11 +352,11 @@ fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
     }
 }
 
-fn blackbody(kelvin: f64) -> Result<(), Refusal> {
+fn blackbody(kelvin: f64) -> Result<(), CurveError> {
     if (100.0..=1e9).contains(&kelvin) {
         return Ok(());
     }
-    let refusal = Refusal::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(kelvin)));
+    let refusal = CurveError::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(kelvin)));
     let units = [("kK", 1e3), ("MK", 1e6)].map(|(unit, factor)| (unit, kelvin * factor));
     Err(refusal.help(match units.into_iter().find(|(_, kelvin)| (1000.0..=40_000.0).contains(kelvin)) {
         Some((unit, kelvin)) => format!("in {unit}? Temperatures are in kelvin: then write {}", shown(kelvin)),
@@ -367,7 +367,7 @@ fn blackbody(kelvin: f64) -> Result<(), Refusal> {
 /// An entry of the catalog.
 fn named(context: &mut Context, text: &CurveText, name: &str, quantity: Quantity) -> Option<CurveKind> {
     let place = text.value;
-    let (found, unknown): (_, fn(&str) -> Refusal) = match quantity {
+    let (found, unknown): (_, fn(&str) -> CurveError) = match quantity {
         Quantity::Index => (CurveKind::glass(name), unknown_glass),
         Quantity::MetalIndex | Quantity::MetalExtinction => (CurveKind::metal(name), unknown_metal),
         Quantity::Absorption => return absorption(context, place, name),

@@ -2,24 +2,24 @@
 
 use std::path::Path;
 
-use super::curve_range::Refusal;
+use super::curve_range::CurveError;
 use crate::error::{ends_in, nearest};
 use crate::scene::share;
 use crate::scene::text::{IMAGES, TABLES};
 use crate::scene::web_color::web_color;
 use crate::spectrum::data::{self, bare};
 
-pub(super) fn unknown_glass(name: &str) -> Refusal {
+pub(super) fn unknown_glass(name: &str) -> CurveError {
     unknown(name, "glass", data::known_as())
 }
 
-pub(super) fn unknown_metal(name: &str) -> Refusal {
+pub(super) fn unknown_metal(name: &str) -> CurveError {
     unknown(name, "metal", data::metals().flat_map(|metal| [vec![metal.name], metal.aliases].concat()))
 }
 
-pub(super) fn unknown_reflectance(name: &str) -> Refusal {
+pub(super) fn unknown_reflectance(name: &str) -> CurveError {
     if let Some(help) = in_quotes(name).or_else(|| color_called(name)) {
-        return Refusal::new(format!("there is no reflectance named {name:?}")).help(help);
+        return CurveError::new(format!("there is no reflectance named {name:?}")).help(help);
     }
     let full = || data::reflectances().map(|patch| patch.name);
     unknown(name, "reflectance", full().map(bare).chain(full()))
@@ -59,14 +59,14 @@ pub(super) fn temperature_called(text: &str) -> Option<String> {
     is_light.then(|| format!("write {{ blackbody = {kelvin} }}"))
 }
 
-pub(super) fn unknown_illuminant(name: &str) -> Refusal {
+pub(super) fn unknown_illuminant(name: &str) -> CurveError {
     match of_cie(name) {
         Some(light) => {
-            Refusal::new(format!("there is no illuminant named {name:?}")).help(format!("did you mean {light:?}?"))
+            CurveError::new(format!("there is no illuminant named {name:?}")).help(format!("did you mean {light:?}?"))
         }
         None if name.to_lowercase().ends_with("sodium") => {
             let help = "write { lines = [[589.0, 2], [589.6, 1]] } at low pressure; at high pressure it is \"HP1\"";
-            Refusal::new(format!("there is no illuminant named {name:?}")).help(help)
+            CurveError::new(format!("there is no illuminant named {name:?}")).help(help)
         }
         None => unknown(name, "illuminant", illuminants()),
     }
@@ -103,7 +103,7 @@ fn illuminants() -> impl Iterator<Item = &'static str> {
     data::illuminants().map(|illuminant| illuminant.name)
 }
 
-fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> Refusal {
+fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> CurveError {
     let number = name.replace(',', ".").replace('\u{2212}', "-");
     let names: Vec<&str> = names.collect();
     let near = || nearest(name, names.iter().copied()).or_else(|| begun(name, &names));
@@ -116,7 +116,7 @@ fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> 
             format!("`render catalog {what}` lists the known names{colors}")
         }
     };
-    Refusal::new(format!("there is no {what} named {name:?}")).help(help)
+    CurveError::new(format!("there is no {what} named {name:?}")).help(help)
 }
 
 /// The first of some names of several words that begins with these, such as `neutral 8 (.23 D)` with `neutral 8`.

@@ -13,7 +13,7 @@ const MAX_THICKNESS_NM: f64 = 1e5;
 const LEAST_THICKNESS_NM: f64 = 1e-3;
 
 /// Why a spectrum cannot be what it is used as.
-pub(super) struct Refusal {
+pub(super) struct CurveError {
     pub(super) message: String,
     /// What to do, where that is known.
     pub(super) help: Option<String>,
@@ -23,7 +23,7 @@ pub(super) struct Refusal {
     pub(super) entry: Option<usize>,
 }
 
-impl Refusal {
+impl CurveError {
     pub(super) fn new(message: impl Into<String>) -> Self {
         Self { message: message.into(), help: None, is_percent: false, entry: None }
     }
@@ -42,8 +42,8 @@ impl Refusal {
     }
 }
 
-impl From<Refusal> for Fault {
-    fn from(Refusal { message, help, .. }: Refusal) -> Self {
+impl From<CurveError> for Fault {
+    fn from(CurveError { message, help, .. }: CurveError) -> Self {
         Self { message, help }
     }
 }
@@ -54,17 +54,17 @@ pub(super) fn is_factor(value: f64) -> bool {
 }
 
 /// A number by which a whole light is made brighter or darker.
-pub(super) fn factor(name: &str, value: f64) -> Result<(), Refusal> {
+pub(super) fn factor(name: &str, value: f64) -> Result<(), CurveError> {
     let bound = match value {
         _ if value < 0.0 => "at least 0".to_owned(),
         _ if value > MAX_EMISSION => format!("at most {}", shown(MAX_EMISSION)),
         _ => return Ok(()),
     };
-    Err(Refusal::new(format!("{name} is {bound}, not {}", shown(value))))
+    Err(CurveError::new(format!("{name} is {bound}, not {}", shown(value))))
 }
 
 /// That a value is possible for a quantity; `place` says in the message where it is.
-pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), Refusal> {
+pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), CurveError> {
     let name = article(quantity);
     let (least, most, is_share) = match quantity {
         Quantity::Reflectance | Quantity::Transmittance | Quantity::Share | Quantity::Excitation => (0.0, 1.0, true),
@@ -79,14 +79,14 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
         return Ok(());
     }
     let shown_value = shown(value);
-    let refusal = Refusal::new(match quantity {
+    let refusal = CurveError::new(match quantity {
         Quantity::MetalIndex if value <= 0.0 => format!("{name} is above 0, not {shown_value}{place}"),
         _ if value < least => format!("{name} is at least {least}, not {shown_value}{place}"),
         _ => format!("{name} is at most {}, not {shown_value}{place}", shown(most)),
     });
     Err(match value {
         2.0..=100.0 if is_share => {
-            Refusal { is_percent: true, ..refusal.help(format!("in percent? Then write {}", shown(value / 100.0))) }
+            CurveError { is_percent: true, ..refusal.help(format!("in percent? Then write {}", shown(value / 100.0))) }
         }
         100.0..=255.0 if is_share => {
             refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
@@ -99,19 +99,19 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
 }
 
 /// That a layer of a thickness in nm is thick enough to be one, and thin enough to show that light interferes.
-pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), Refusal> {
+pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError> {
     let (name, value) = (article(Quantity::Thickness), shown(nm));
     if nm == 0.0 || (LEAST_THICKNESS_NM..=MAX_THICKNESS_NM).contains(&nm) {
         return Ok(());
     }
     if nm < 0.0 {
-        return Err(Refusal::new(format!("{name} is at least 0, not {value} nm{place}")));
+        return Err(CurveError::new(format!("{name} is at least 0, not {value} nm{place}")));
     }
     if nm > MAX_THICKNESS_NM {
-        let refusal = Refusal::new(format!("{name} is at most {MAX_THICKNESS_NM} nm, not {value} nm{place}"));
+        let refusal = CurveError::new(format!("{name} is at most {MAX_THICKNESS_NM} nm, not {value} nm{place}"));
         return Err(refusal.help("no eye sees how light interferes in more: for glass, leave the layer out"));
     }
-    let refusal = Refusal::new(format!("{name} of {value} nm{place} is less than that of an atom"));
+    let refusal = CurveError::new(format!("{name} of {value} nm{place} is less than that of an atom"));
     let in_nm = nm * 1e9;
     let help = (1.0..=MAX_THICKNESS_NM).contains(&in_nm);
     Err(if help { refusal.help(format!("in m? It is in nm: then write {}", shown(in_nm))) } else { refusal })

@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use crate::scene::text::{At, Fields, Value, at, exactly};
+use crate::scene::text::{Fields, Spanned, Value, at, exactly};
 use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
 
 /// Most and, as one over it, least repetitions in a unit.
@@ -17,17 +17,17 @@ pub(super) struct CurveText<'d> {
     pub(super) place: Value<'d>,
     pub(super) kind: KindText<'d>,
     /// The column of a file that holds the values, counted from 1.
-    pub(super) column: Option<At<'d, usize>>,
-    pub(super) encoding: Option<At<'d, Encoding>>,
+    pub(super) column: Option<Spanned<'d, usize>>,
+    pub(super) encoding: Option<Spanned<'d, Encoding>>,
     pub(super) channel: Option<Channel>,
     pub(super) wrap: Wrap,
     pub(super) filter: TexelFilter,
     /// How often an image or a pattern fits into a unit of u and of v.
-    pub(super) repeat: At<'d, [f64; 2]>,
+    pub(super) repeat: Spanned<'d, [f64; 2]>,
     /// A factor on every value.
-    pub(super) scale: At<'d, f64>,
+    pub(super) scale: Spanned<'d, f64>,
     /// CIE Y of an emission, in place of a factor.
-    pub(super) luminance: Option<At<'d, f64>>,
+    pub(super) luminance: Option<Spanned<'d, f64>>,
 }
 
 /// The ways to write a spectrum.
@@ -39,8 +39,8 @@ pub(super) enum KindText<'d> {
     Samples(Vec<[f64; 2]>),
     File(&'d str),
     Cauchy([f64; 2]),
-    Sellmeier { b: At<'d, Vec<f64>>, c: At<'d, Vec<f64>> },
-    Abbe { nd: At<'d, f64>, vd: At<'d, f64> },
+    Sellmeier { b: Spanned<'d, Vec<f64>>, c: Spanned<'d, Vec<f64>> },
+    Abbe { nd: Spanned<'d, f64>, vd: Spanned<'d, f64> },
     Illuminant(&'d str),
     Blackbody(f64),
     Lines(Vec<[f64; 2]>),
@@ -94,10 +94,10 @@ pub(super) const ONE_OF_EACH: &str = "write a pair for each wavelength, as in [[
 /// A number that a spectrum can be made of.
 fn real(value: Value) -> Option<f64> {
     let it = value.number()?;
-    finite(At { place: value, it }).map(|()| it)
+    finite(Spanned { place: value, it }).map(|()| it)
 }
 
-pub(super) fn finite(At { place, it }: At<f64>) -> Option<()> {
+pub(super) fn finite(Spanned { place, it }: Spanned<f64>) -> Option<()> {
     if it.is_finite() { Some(()) } else { place.refuse(not_finite(it)) }
 }
 
@@ -181,7 +181,7 @@ impl<'d> CurveText<'d> {
 
     /// A spectrum without a table.
     fn bare(value: Value<'d>, kind: KindText<'d>) -> Self {
-        let (scale, repeat) = (At { place: value, it: 1.0 }, At { place: value, it: [1.0; 2] });
+        let (scale, repeat) = (Spanned { place: value, it: 1.0 }, Spanned { place: value, it: [1.0; 2] });
         let (column, encoding, channel, luminance) = (None, None, None, None);
         let (wrap, filter) = (Wrap::default(), TexelFilter::default());
         Self { value, place: value, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance }
@@ -196,8 +196,8 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
     let channel = table.maybe("channel", |value| value.word(&CHANNELS));
     let wrap = table.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
     let filter = table.or("filter", TexelFilter::default(), |value| value.word(&FILTERS));
-    let repeat = table.or("repeat", At { place: value, it: [1.0; 2] }, at(one_or_two));
-    let scale = table.or("scale", At { place: value, it: 1.0 }, at(Value::number));
+    let repeat = table.or("repeat", Spanned { place: value, it: [1.0; 2] }, at(one_or_two));
+    let scale = table.or("scale", Spanned { place: value, it: 1.0 }, at(Value::number));
     let luminance = table.maybe("luminance", at(Value::number));
     let mut given = kinds.into_iter().flatten();
     let Some((place, kind)) = given.next() else {
@@ -232,7 +232,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
 
 /// How often an image or a pattern fits into a unit of u and of v: a number or two.
 pub(super) fn repeat(value: Value) -> Option<[f64; 2]> {
-    is_repeat(At { place: value, it: one_or_two(value)? })
+    is_repeat(Spanned { place: value, it: one_or_two(value)? })
 }
 
 fn one_or_two(value: Value) -> Option<[f64; 2]> {
@@ -240,7 +240,7 @@ fn one_or_two(value: Value) -> Option<[f64; 2]> {
 }
 
 /// Numbers of copies in a unit that are neither too large nor too small.
-pub(super) fn is_repeat(At { place: value, it: repeat }: At<[f64; 2]>) -> Option<[f64; 2]> {
+pub(super) fn is_repeat(Spanned { place: value, it: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
     match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
         Some(wrong) => value.refuse(format!(
             "`repeat` counts copies in a unit, {:e} to {MOST_REPEAT:e}, not {wrong}",

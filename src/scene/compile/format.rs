@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::measures::unit_of_wavelength;
 use crate::film::{Compression, FirstSurface, Format, Layer, Precision};
-use crate::scene::text::{At, Fields, Value, above_0_to, at};
+use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
 use crate::spectrum::WavelengthBands;
 use crate::spectrum::visible::{FIRST_NM, LAST_NM};
 
@@ -66,7 +66,7 @@ fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     match (is_absolute?, white?) {
         (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
         (false, None) => Some(None),
-        (false, Some(At { place, .. })) => place.refuse_key(
+        (false, Some(Spanned { place, .. })) => place.refuse_key(
             "a luminance of white goes with radiometry = \"absolute\"",
             Some("add that, or leave it out".into()),
         ),

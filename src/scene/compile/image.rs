@@ -10,7 +10,7 @@ use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{ImageFile, read_texture};
 use super::image_numbers::Meaning;
 use super::radiometry::on_film;
-use crate::scene::text::{At, Fault, FileKind, IMAGES};
+use crate::scene::text::{Fault, FileKind, IMAGES, Spanned};
 use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Texture};
 
 const IMAGE: FileKind =
@@ -29,7 +29,7 @@ pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, qua
 
 fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, quantity: Quantity) -> Option<Curve> {
     let (factor, placement) = (factor_on_image(text), text.placement());
-    let at_file = At { place: text.place, it: file };
+    let at_file = Spanned { place: text.place, it: file };
     let encoding = text.encoding.map(|encoding| encoding.it);
     let meaning = match quantity {
         // The grays of a thickness are numbers, which no screen has shown.
@@ -38,7 +38,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
         _ => Meaning::Light(encoding),
     };
     let image = match (text.channel, text.encoding) {
-        (Some(Channel::Alpha), Some(At { place, it: Encoding::Srgb })) => {
+        (Some(Channel::Alpha), Some(Spanned { place, it: Encoding::Srgb })) => {
             place.advise("alpha is a share, which no kind of file encodes as sRGB", "leave `encoding` out")
         }
         _ => image(context, &at_file, meaning, text.channel),
@@ -96,7 +96,7 @@ fn checker<'d>(
     }
     let repeat = is_repeat(text.repeat);
     let [first, second] = cells.each_ref().map(|cell| {
-        let scale = At { it: cell.scale.it * text.scale.it, ..cell.scale };
+        let scale = Spanned { it: cell.scale.it * text.scale.it, ..cell.scale };
         square(context, &CurveText { scale, ..cell.clone() }, quantity)
     });
     let (repeat, mut cells, mut scale) = (repeat?, [first?, second?], 1.0);
@@ -125,11 +125,11 @@ fn square<'d>(context: &mut Context, cell: &CurveText<'d>, quantity: Quantity) -
 /// An image as `read` takes it from its file.
 pub(super) fn read_file(
     context: &mut Context,
-    file: &At<&str>,
+    file: &Spanned<&str>,
     kind: &FileKind,
     read: impl FnOnce(&Path, &[u8]) -> Result<ImageFile, Fault>,
 ) -> Option<Arc<Image>> {
-    let At { place, it: file } = *file;
+    let Spanned { place, it: file } = *file;
     let bytes = place.file(file, kind)?;
     let ImageFile { image, warnings } = place.told(read(Path::new(file), &bytes))?;
     context.has_read(place.path(file), &bytes);
@@ -140,7 +140,7 @@ pub(super) fn read_file(
 /// An image, read once for each meaning of its numbers.
 pub(super) fn image(
     context: &mut Context,
-    file: &At<&str>,
+    file: &Spanned<&str>,
     meaning: Meaning,
     channel: Option<Channel>,
 ) -> Option<Arc<Image>> {

@@ -59,8 +59,8 @@ fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
 pub(super) fn bodies_around(shape: &Shape, ray: &Ray) -> i32 {
     let (mut ray, mut bodies) = (*ray, 0);
     for _ in 0..MOST {
-        let Some(crossing) = shape.intersect(&ray, f64::INFINITY) else { break };
-        let point = shape.point(&ray, &crossing);
+        let Some(intersection) = shape.intersect(&ray, f64::INFINITY) else { break };
+        let point = shape.point(&ray, &intersection);
         bodies += if point.normal.dot(ray.direction) > 0.0 { 1 } else { -1 };
         ray = point.leave(ray.direction);
     }

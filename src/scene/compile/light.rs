@@ -14,7 +14,7 @@ use super::transform::{Step, map_of, steps};
 use crate::light::{Environment, Light, Panorama, Point, Sky, SkyPolarization, Spot, Sun};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::Scene;
-use crate::scene::text::{At, Fields, Value, above_0_to, at};
+use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
 use crate::spectrum::{Curve, Placement, Quantity};
 
 /// A light of a scene.
@@ -174,7 +174,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         let position = position?;
         let toward = match (toward?, target?) {
             (Some(toward), None) => toward.it,
-            (None, Some(At { place, it: target })) => match (target - position).try_normalize() {
+            (None, Some(Spanned { place, it: target })) => match (target - position).try_normalize() {
                 Some(toward) => toward,
                 None => return place.advise("the spot looks at the very point where it stands", "name another point"),
             },
@@ -221,7 +221,7 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         }
         let factor = factor_on_image(&radiance);
         let turn = turn.and_then(|turn| turn.map_or(Some(Transform::IDENTITY), |turn| rotation(&turn.it)));
-        let panorama = panorama(context, &At { place: radiance.place, it: file });
+        let panorama = panorama(context, &Spanned { place: radiance.place, it: file });
         let (factor, turn, panorama) = (radiometry::on_film(context, &radiance, factor?.into())?, turn?, panorama?);
         let rotation = DMat3::from_cols(turn.vector(DVec3::X), turn.vector(DVec3::Y), turn.vector(DVec3::Z));
         Some(Environment { radiance: factor, image: Some(Sky::new(panorama, rotation)), polarization })
@@ -242,7 +242,7 @@ fn sky_polarization(value: Value) -> Option<SkyPolarization> {
 }
 
 /// The map of steps that only turn.
-fn rotation(steps: &[At<Step>]) -> Option<Transform> {
+fn rotation(steps: &[Spanned<Step>]) -> Option<Transform> {
     match steps.iter().find(|step| !matches!(step.it, Step::Rotate(_))) {
         Some(step) => {
             let message = "an environment has no place and no size: it can be turned only";
@@ -252,7 +252,7 @@ fn rotation(steps: &[At<Step>]) -> Option<Transform> {
     }
 }
 
-fn panorama(context: &mut Context, file: &At<&str>) -> Option<Panorama> {
+fn panorama(context: &mut Context, file: &Spanned<&str>) -> Option<Panorama> {
     let image = read_file(context, file, &BRIGHT_IMAGE, read_image)?;
     let (width, height) = (image.width(), image.height());
     if width != 2 * height {

@@ -8,7 +8,7 @@ use super::context::Context;
 use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, point};
 use super::written::Written;
 use crate::math::DVec3;
-use crate::scene::text::{At, Fields, Numbers, Rows, Value, at};
+use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, at};
 use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
 
 /// How the names of mesh files end.
@@ -26,10 +26,10 @@ type Face = SmallVec<[u32; 4]>;
 
 /// What the scene file says of the points of a mesh.
 struct Inline<'d> {
-    points: Option<At<'d, Vec<DVec3>>>,
-    faces: Option<At<'d, Vec<Face>>>,
-    normals: Option<At<'d, Vec<DVec3>>>,
-    uv: Option<At<'d, Vec<[f64; 2]>>>,
+    points: Option<Spanned<'d, Vec<DVec3>>>,
+    faces: Option<Spanned<'d, Vec<Face>>>,
+    normals: Option<Spanned<'d, Vec<DVec3>>>,
+    uv: Option<Spanned<'d, Vec<[f64; 2]>>>,
 }
 
 /// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
@@ -63,7 +63,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         }
         let mesh = built(context, name, value, parts, smooth)?;
         let written = written(&mesh, file.map(|file| file.it));
-        if let Some(At { place, it: file }) = file {
+        if let Some(Spanned { place, it: file }) = file {
             context.meshes.insert((place.path(file), smooth), mesh);
         }
         Some(written)
@@ -187,8 +187,8 @@ impl Inline<'_> {
     }
 }
 
-fn read_file(context: &mut Context, name: &str, file: &At<&str>, smooth: bool) -> Option<Parts> {
-    let At { place, it: file } = *file;
+fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bool) -> Option<Parts> {
+    let Spanned { place, it: file } = *file;
     let path = place.path(file);
     let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
     let mesh = match mesh {

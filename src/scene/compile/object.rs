@@ -4,15 +4,15 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::context::Context;
+use super::normal_perturbation::{ReliefText, relief};
 use super::parts::{Materials, defined, unknown_material};
-use super::relief::{ReliefText, relief};
 use super::shape::SHAPE;
 use super::transform::{map_of, steps};
 use super::written::Written;
 use crate::material::Material;
 use crate::math::Transform;
-use crate::scene::Sight;
-use crate::scene::text::{At, Fields, Value, at};
+use crate::scene::Visibility;
+use crate::scene::text::{Fields, Spanned, Value, at};
 use crate::shape::{Mesh, Shape};
 use crate::spectrum::Curve;
 
@@ -30,15 +30,15 @@ pub(super) struct Draft<'d> {
     /// Its name, or `object N` counted from 1.
     pub(super) name: String,
     pub(super) material: &'d str,
-    pub(super) shape: At<'d, Written<'d>>,
+    pub(super) shape: Spanned<'d, Written<'d>>,
     /// What is done with the shape, and where that stands.
-    pub(super) map: At<'d, Transform>,
+    pub(super) map: Spanned<'d, Transform>,
     /// What is done, in place of that, with each of many such shapes; one shape if absent.
-    pub(super) instances: Option<Vec<At<'d, Transform>>>,
+    pub(super) instances: Option<Vec<Spanned<'d, Transform>>>,
     pub(super) relief: Option<ReliefText<'d>>,
     /// The group of lights that it belongs to.
     pub(super) group: Option<&'d str>,
-    pub(super) sight: Sight,
+    pub(super) visibility: Visibility,
 }
 
 /// The names by which objects find their materials.
@@ -69,13 +69,13 @@ pub(super) fn object<'d>(
         };
         let map = object.or(
             "transform",
-            At { place: entry, it: Transform::IDENTITY },
+            Spanned { place: entry, it: Transform::IDENTITY },
             at(|value| map_of(&steps(value)?, Transform::IDENTITY)),
         );
         let instances = object.get("instances");
         let relief = relief(context, object);
         let group = object.maybe("group", group);
-        let sight = sight(object);
+        let visibility = visibility(object);
         for (kind, _) in SHAPE.kinds {
             object.stray(kind, format!("`{kind}` is a shape"), format!("write shape.{kind} = {{ .. }}"));
         }
@@ -86,7 +86,7 @@ pub(super) fn object<'d>(
         }));
         let instances = instances.map_or(Some(None), |value| maps(value, map?.it).map(Some));
         let (shape, map, named, instances) = (shape?, map?, named?, instances?);
-        let (group, sight, relief) = (group?, sight?, relief?);
+        let (group, visibility, relief) = (group?, visibility?, relief?);
         let written = &shape.it.shape;
         if let (Some(_), Shape::Mesh(mesh)) = (named.it.medium(), written) {
             glass_on(mesh, context.averaged.contains(&Arc::as_ptr(mesh)))
@@ -103,7 +103,7 @@ pub(super) fn object<'d>(
             };
             context.warn(format!("{name}: {what} the image where u and v are 0"));
         }
-        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief, group, sight })
+        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief, group, visibility })
     })
 }
 
@@ -133,21 +133,21 @@ fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
 }
 
 /// What the camera sees of an object.
-fn sight(object: &mut Fields) -> Option<Sight> {
+fn visibility(object: &mut Fields) -> Option<Visibility> {
     let visible = object.or("visible_to_camera", true, Value::yes_or_no);
     let mut kind = |key| object.maybe(key, at(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
     let (holdout, catcher) = (kind("holdout"), kind("shadow_catcher"));
-    let both = |key: At<'_, bool>, other: &str| {
+    let both = |key: Spanned<'_, bool>, other: &str| {
         let help = "an object is hidden, or cuts a hole, or shows the shadows on it: keep one of these";
         key.place.advise(format!("`{}` cannot be combined with `{other}`", key.place.key()), help)
     };
     match (visible?, holdout?, catcher?) {
         (false, Some(key), _) | (false, _, Some(key)) => both(key, "visible_to_camera = false"),
         (true, Some(_), Some(key)) => both(key, "holdout"),
-        (false, None, None) => Some(Sight::Hidden),
-        (true, Some(_), None) => Some(Sight::Holdout),
-        (true, None, Some(_)) => Some(Sight::ShadowCatcher),
-        (true, None, None) => Some(Sight::Shown),
+        (false, None, None) => Some(Visibility::Hidden),
+        (true, Some(_), None) => Some(Visibility::Holdout),
+        (true, None, Some(_)) => Some(Visibility::ShadowCatcher),
+        (true, None, None) => Some(Visibility::Shown),
     }
 }
 
@@ -188,7 +188,7 @@ impl<'m, 'd> Names<'m, 'd> {
 }
 
 /// The maps of instances, behind that of the whole.
-fn maps(value: Value, first: Transform) -> Option<Vec<At<Transform>>> {
+fn maps(value: Value, first: Transform) -> Option<Vec<Spanned<Transform>>> {
     let maps = value.list(at(|value| map_of(&steps(value)?, first)))?;
     match maps.is_empty() {
         true => value.refuse("a list without instances leaves nothing of the object"),

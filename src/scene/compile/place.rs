@@ -8,7 +8,7 @@ use super::parts::Materials;
 use super::shape::fits;
 use crate::material::Material;
 use crate::math::{DVec3, Transform};
-use crate::scene::text::{At, Value};
+use crate::scene::text::{Spanned, Value};
 use crate::scene::{NamedMaterial, Object};
 use crate::shape::{Coordinates, Shape};
 use crate::spectrum::Curve;
@@ -88,8 +88,9 @@ const ALONG: f64 = 1e-9;
 
 /// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
 fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
-    let Draft { name, material: material_name, shape: At { place, it: written }, map, instances, relief, .. } = draft;
-    let (group, sight) = (draft.group.map(str::to_owned), draft.sight);
+    let Draft { name, material: material_name, shape: Spanned { place, it: written }, map, instances, relief, .. } =
+        draft;
+    let (group, visibility) = (draft.group.map(str::to_owned), draft.visibility);
     let asset = name.clone();
     let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
         if varies && coordinates.is_none() {
@@ -102,7 +103,7 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
             None => None,
         };
         let (shape, asset, group) = (Arc::new(shape), asset.clone(), group.clone());
-        Some(Object { name, asset, shape, material, light: None, coordinates, varies, group, sight, relief })
+        Some(Object { name, asset, shape, material, light: None, coordinates, varies, group, visibility, relief })
     };
     let Some(instances) = instances else {
         let coordinates = Coordinates::new(&written.shape, &map.it);
@@ -110,7 +111,7 @@ fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Opt
         fits(&written.shape, &shape, map, place)?;
         return Some(vec![object(name, shape, coordinates)?]);
     };
-    let instance = |(number, map): (usize, At<Transform>)| {
+    let instance = |(number, map): (usize, Spanned<Transform>)| {
         let shape = written.shape.copied(&map.it);
         fits(&written.shape, &shape, map, map.place)?;
         object(format!("{name} [{}]", number + 1), shape, Coordinates::new(&written.shape, &map.it))

@@ -5,7 +5,7 @@ use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
 use super::mesh::mesh;
 use super::written::Written;
 use crate::math::{DVec3, Transform};
-use crate::scene::text::{At, Choice, Fields, Value, at, exactly};
+use crate::scene::text::{Choice, Fields, Spanned, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
 /// Smallest size relative to the coordinates: some thousand roundings.
@@ -113,7 +113,7 @@ fn cube(value: Value) -> Option<Shape> {
 
 /// That numbers hold the size and the place of a shape that a map has placed, given before and after that; `whole` is
 /// where it stands.
-pub(super) fn fits(shape: &Shape, placed: &Shape, map: At<Transform>, whole: Value) -> Option<()> {
+pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };
     let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
     let edges = match shape {

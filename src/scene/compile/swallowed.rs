@@ -7,7 +7,7 @@ use super::place::Placed;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::checks::met_from_outside;
 use crate::scene::text::and_more;
-use crate::scene::{Object, Sight};
+use crate::scene::{Object, Visibility};
 use crate::shape::{Shape, SurfacePoint};
 
 /// Points of a body that all have to lie in the other.
@@ -26,7 +26,7 @@ pub(super) fn swallowed(placed: &Placed) -> Option<String> {
             Ordering::Less => false,
             Ordering::Equal => other.material > body.material,
             Ordering::Greater => {
-                other.sight == Sight::Shown && !matches!(&*other.shape, Shape::Mesh(_) | Shape::Instance(_))
+                other.visibility == Visibility::Shown && !matches!(&*other.shape, Shape::Mesh(_) | Shape::Instance(_))
             }
         };
         let mut others = clear.iter().filter(|(other, priority)| is_there(other, *priority));

@@ -2,7 +2,7 @@
 
 use super::measures::{direction, near, point};
 use crate::math::{DMat3, DVec3, Transform};
-use crate::scene::text::{At, Choice, Fields, Value, at};
+use crate::scene::text::{Choice, Fields, Spanned, Value, at};
 
 /// One step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or
 /// `{ matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, by which columns are multiplied.
@@ -62,7 +62,7 @@ fn matrix(value: Value) -> Option<Transform> {
 }
 
 /// The steps of a list.
-pub(super) fn steps(value: Value) -> Option<Vec<At<Step>>> {
+pub(super) fn steps(value: Value) -> Option<Vec<Spanned<Step>>> {
     value.list(at(|step| {
         let (read, kind) = STEP.of(step)?;
         read(kind)
@@ -70,8 +70,8 @@ pub(super) fn steps(value: Value) -> Option<Vec<At<Step>>> {
 }
 
 /// The map that steps make, one after another, behind a first one.
-pub(super) fn map_of(steps: &[At<Step>], first: Transform) -> Option<Transform> {
-    steps.iter().try_fold(first, |map, At { place, it: step }| {
+pub(super) fn map_of(steps: &[Spanned<Step>], first: Transform) -> Option<Transform> {
+    steps.iter().try_fold(first, |map, Spanned { place, it: step }| {
         let next = match *step {
             Step::Scale(factors) => Transform::scale(factors),
             Step::Rotate(map) | Step::Matrix(map) => map,

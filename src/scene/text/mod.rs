@@ -30,6 +30,6 @@ pub(super) use settings::set;
 pub(super) use texts::{Place, Texts};
 pub(super) use tree::parsed;
 pub(super) use utf8::utf8;
-pub(super) use value::{At, Value, above_0_to, at, exactly};
+pub(super) use value::{Spanned, Value, above_0_to, at, exactly};
 pub(super) use variables::{SET, fill};
 pub(super) use words::{and_more, shown};

@@ -286,7 +286,7 @@ impl<'d> Value<'d> {
 
 /// What a value says, and where.
 #[derive(Clone, Copy)]
-pub(in crate::scene) struct At<'d, T> {
+pub(in crate::scene) struct Spanned<'d, T> {
     pub(in crate::scene) place: Value<'d>,
     pub(in crate::scene) it: T,
 }
@@ -294,8 +294,8 @@ pub(in crate::scene) struct At<'d, T> {
 /// Reads a value as something, and keeps where it stands.
 pub(in crate::scene) fn at<'d, T>(
     mut read: impl FnMut(Value<'d>) -> Option<T>,
-) -> impl FnMut(Value<'d>) -> Option<At<'d, T>> {
-    move |place| read(place).map(|it| At { place, it })
+) -> impl FnMut(Value<'d>) -> Option<Spanned<'d, T>> {
+    move |place| read(place).map(|it| Spanned { place, it })
 }
 
 /// All of a list that has as many as it should; `other` tells of one that has another number of them.

@@ -171,7 +171,7 @@ pub fn glasses() -> impl Iterator<Item = Glass> {
 
 /// How much a glass bends light, and how far it spreads it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bending {
+pub struct GlassConstants {
     /// The full name of the glass.
     pub key: &'static str,
     /// See [`Glass::n_d`].
@@ -182,9 +182,9 @@ pub struct Bending {
 
 /// That of every glass, in the order of the keys. A scene may compare thousands of materials with all of them, and to
 /// read these takes 2 ms.
-pub fn bendings() -> &'static [Bending] {
-    static ALL: LazyLock<Vec<Bending>> = LazyLock::new(|| {
-        glasses().map(|glass| Bending { key: glass.key, n_d: glass.n_d(), v_d: glass.v_d() }).collect()
+pub fn glass_constants() -> &'static [GlassConstants] {
+    static ALL: LazyLock<Vec<GlassConstants>> = LazyLock::new(|| {
+        glasses().map(|glass| GlassConstants { key: glass.key, n_d: glass.n_d(), v_d: glass.v_d() }).collect()
     });
     &ALL
 }

@@ -9,6 +9,7 @@ mod tests;
 
 pub use color::{Grid, color_matching, illuminant, illuminants, reflectance, reflectances};
 pub use glass::{
-    Bending, Formula, GLASS_MAKERS, Glass, bare, bendings, glass, glass_makers, glass_names, glasses, known_as,
+    Formula, GLASS_MAKERS, Glass, GlassConstants, bare, glass, glass_constants, glass_makers, glass_names, glasses,
+    known_as,
 };
 pub use metal::{Metal, metal, metal_names, metals};

@@ -12,8 +12,8 @@ pub fn may_aim(material: &Material<Table>) -> bool {
 
 /// What share of the light a surface sends on, in the lane of which it sends most; of plastic, about.
 pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
-    let Interaction { material, arrival, flat, .. } = at;
-    let up = shading::evaluate(material, arrival, *flat, *flat);
+    let Interaction { material, context, flat, .. } = at;
+    let up = shading::evaluate(material, context, *flat, *flat);
     up.map_or(0.0, |(bsdf_cos, pdf)| bsdf_cos.0.iter().fold(0.0, |most, &lane| f64::from(lane).max(most)) / pdf)
 }
 
@@ -22,13 +22,13 @@ pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
 /// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of
 /// importance.
 pub fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
-    let Interaction { material, arrival, flat, .. } = at;
+    let Interaction { material, context, flat, .. } = at;
     let divided = aiming.divided(u[0]);
-    shading::scatter(material, arrival, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
+    shading::scatter(material, context, *flat, [divided.err().unwrap_or(0.5), u[1]], branches);
     if let Ok(aimed) = divided {
         branches.retain(|branch| branch.pdf.is_none());
         let Some((wi, known)) = aiming.draw([aimed, u[1]]).filter(|(wi, _)| wi.dot(*flat) > 0.0) else { return };
-        let Some((bsdf_cos, own)) = shading::evaluate(material, arrival, *flat, wi) else { return };
+        let Some((bsdf_cos, own)) = shading::evaluate(material, context, *flat, wi) else { return };
         let pdf = aiming.pdf_knowing(wi, own, known);
         if !(own > 0.0 && pdf.is_finite()) {
             return;

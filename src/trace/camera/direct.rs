@@ -7,16 +7,16 @@ use super::sensor::Sensor;
 use crate::light::{LightId, LightSample, SampledLight};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray, Sampler};
-use crate::scene::{Ends, MaterialId};
-use crate::shape::Crossing;
+use crate::scene::{MaterialId, RayEnds};
+use crate::shape::Intersection;
 use crate::spectrum::Lanes;
 use crate::trace::World;
-use crate::trace::arrived::Arrived;
 use crate::trace::bright::Aiming;
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::photon::LightVertices;
+use crate::trace::received_light::ReceivedLight;
 use crate::trace::walk::{
-    Excitation, Interaction, MetLight, Passage, Past, Path, Polarization, ScatterSample, shading,
+    Excitation, FoundLight, Interaction, Occluders, Path, Polarization, ScatterSample, VisibilityTest, shading,
 };
 
 /// A path at a surface that scatters widely, where lights are sampled.
@@ -129,13 +129,13 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let normal = side.normal;
         let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
         let at = self.lit_by(side, drawn.light, &sample.ray);
-        let (arrival, wi) = (&at.arrival, sample.ray.direction);
+        let (context, wi) = (&at.context, sample.ray.direction);
         let is_found = |vertices: &LightVertices<N>| vertices.carry(self.world, drawn.light, &sample.ray);
         if wi.dot(normal) <= 0.0 || self.found_at.is_some_and(is_found) {
             return None;
         }
-        let flat = if normal.dot(arrival.wo) < 0.0 { -normal } else { normal };
-        let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(at.material, arrival, flat, wi)?;
+        let flat = if normal.dot(context.wo) < 0.0 { -normal } else { normal };
+        let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(at.material, context, flat, wi)?;
         if !std::ptr::eq(at, self.at) {
             // Where photons bring what the path meets, it finds no light by itself.
             bsdf_pdf = 0.0;
@@ -156,15 +156,22 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
         let LightSample { ray, distance, object, part, .. } = sample;
         let at = self.lit_by(side, *light, ray);
-        let arrival = &at.arrival;
-        let ends = Ends { left: self.path.left, light: *object, part: *part };
+        let context = &at.context;
+        let ends = RayEnds { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
-        let passage = Passage { ray, distance, ends, inside, past: Past::Objects(self.path.among), last_occluder };
+        let passage = VisibilityTest {
+            ray,
+            distance,
+            ends,
+            inside,
+            occluders: Occluders::Objects(self.path.among),
+            last_occluder,
+        };
         let wi = ray.direction;
-        let light_of = || world.scene.lights[*light].toward(arrival.draw, wi, sample.uv);
+        let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
         let toward = || self.path.polarization.toward(at, wi, &mut bsdf_cos);
-        let arriving = passage.arriving(world, arrival.draw, toward, light_of);
+        let arriving = passage.arriving(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
         let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
         let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
@@ -175,11 +182,11 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         };
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let light = *light;
-        let arrived = Arrived { source: light, draw: arrival.draw, lanes, parted: side.parted };
-        let met = MetLight::new(world, &arrived, self.excitation);
+        let received = ReceivedLight { source: light, draw: context.draw, lanes, parted: side.parted };
+        let met = FoundLight::new(world, &received, self.excitation);
         let (rgb, dispersed) = (met.rgb, met.dispersed);
         let moved = self.path.polarization.moved(at, wi, on_its_way, &met);
-        let (light, found, bounces) = (Some(light), Found::Sampled, self.path.bounces + 1);
+        let (light, found, bounces) = (Some(light), FoundBy::Sampled, self.path.bounces + 1);
         let first = self.path.first_lobe(world, self.at, wi, side.normal != self.at.flat);
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
     }
@@ -200,20 +207,20 @@ fn finer(u: f64, more: f64) -> f64 {
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path met by itself, beside next-event estimation at the path's last surface. `crossing`
-/// is where the ray meets the light, if that is a surface.
-pub fn weight_of_meeting(
+/// The weight of a light that a path hit, beside next-event estimation at the path's last surface. `intersection` is
+/// where the ray hits the light, if that is a surface.
+pub fn weight_of_hit(
     world: &World,
     light: LightId,
     scatter: Option<&ScatterSample>,
     ray: &Ray,
-    crossing: Option<&Crossing>,
+    intersection: Option<&Intersection>,
 ) -> f64 {
     let Some(scatter) = scatter else { return 1.0 };
     // Through holes and panes that the path has passed since, the light was sampled from before them.
     let before = Ray { origin: scatter.from, direction: ray.direction };
-    let (ray, crossing) = if scatter.passed { (&before, None) } else { (ray, crossing) };
-    let pdf = world.scene.lights[light].pdf_li(ray, scatter.normal, crossing);
+    let (ray, intersection) = if scatter.passed { (&before, None) } else { (ray, intersection) };
+    let pdf = world.scene.lights[light].pdf_li(ray, scatter.normal, intersection);
     let Some(pdf) = pdf else { return 1.0 };
     let probability =
         if scatter.all_lights { 1.0 } else { world.light_sampler.probability(light, scatter.from, scatter.normal) };

@@ -6,12 +6,12 @@ use crate::material::{Branch, Straight};
 use crate::math::Sampler;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
-use crate::trace::arrived::Arrived;
 use crate::trace::contribution::Contribution;
 use crate::trace::layers::Layers;
-use crate::trace::photon::{Gathered, Part, PartSpectrum};
+use crate::trace::photon::{Gathered, PhotonShare, PhotonSpectrum};
+use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::SpectrumSample;
-use crate::trace::walk::{Among, Audit, Interaction, Meeting, Path, Polarization, shading};
+use crate::trace::walk::{Among, Audit, Interaction, Path, Polarization, SurfaceHit, shading};
 
 /// A row of numbers, filled by one camera sample after another.
 pub struct LayerSample<'a, const N: usize> {
@@ -29,16 +29,16 @@ pub struct LayerSample<'a, const N: usize> {
 }
 
 /// What a camera sample has left.
-pub struct Left<'a> {
+pub struct SampleRow<'a> {
     pub row: &'a [f64],
     /// The object that the camera ray met, if any.
     pub object: Option<u32>,
 }
 
 /// A surface that a path has met.
-pub struct Met<'a, const N: usize, P> {
+pub struct LayerHit<'a, const N: usize, P> {
     pub path: &'a Path<N, P>,
-    pub meeting: &'a Meeting,
+    pub surface_hit: &'a SurfaceHit,
     pub at: &'a Interaction<'a, N>,
     /// What goes straight on.
     pub straight: Option<&'a Straight<N>>,
@@ -73,8 +73,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// What the sample has left.
-    pub fn left(&self) -> Left<'_> {
-        Left { row: &self.row, object: self.object }
+    pub fn left(&self) -> SampleRow<'_> {
+        SampleRow { row: &self.row, object: self.object }
     }
 
     /// Keeps what an audit of the sample has left open.
@@ -100,21 +100,21 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Receives light that came to the sensor, and the lanes by which it arrived.
-    pub fn receive(&mut self, contribution: &Contribution, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) {
+    pub fn receive(&mut self, contribution: &Contribution, received: &ReceivedLight<N>, stokes: Option<[Lanes<N>; 3]>) {
         self.world.layers.add(&mut self.row, contribution);
         if let Some(stokes) = &stokes {
-            let stokes = stokes.map(|part| arrived.times(part, &self.world.responses));
+            let stokes = stokes.map(|part| received.times(part, &self.world.responses));
             self.world.layers.add_stokes(&mut self.row, stokes, 1.0);
         }
         if let Some(spectrum) = &mut self.spectrum {
-            spectrum.receive(arrived, stokes.as_ref(), 1.0);
+            spectrum.receive(received, stokes.as_ref(), 1.0);
         }
     }
 
     /// Receives light of photons that were gathered.
     pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
         let Some(parts) = &gathered.parts else { return self.world.layers.add(&mut self.row, &gathered.all) };
-        for Part { contribution, stokes, spectrum, factor } in parts {
+        for PhotonShare { contribution, stokes, spectrum, factor } in parts {
             let rgb = contribution.rgb.map(|x| factor * x);
             self.world.layers.add(&mut self.row, &Contribution { rgb, ..*contribution });
             if let Some(stokes) = stokes {
@@ -122,11 +122,11 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             }
             let (Some(sample), Some(light)) = (&mut self.spectrum, contribution.light) else { continue };
             match spectrum {
-                PartSpectrum::Lanes { source, lanes, parted, stokes } => {
-                    let arrived = Arrived { source: *source, draw, lanes, parted: *parted };
-                    sample.receive(&arrived, stokes.as_deref(), *factor);
+                PhotonSpectrum::Lanes { source, lanes, parted, stokes } => {
+                    let received = ReceivedLight { source: *source, draw, lanes, parted: *parted };
+                    sample.receive(&received, stokes.as_deref(), *factor);
                 }
-                PartSpectrum::Alone(wavelength) => {
+                PhotonSpectrum::SingleLane(wavelength) => {
                     let responses = (&self.world.responses[light], sample.response(light));
                     let others = stokes.iter().flatten().map(|part| part.map(|x| factor * x));
                     for (component, color) in std::iter::once(rgb).chain(others).enumerate() {
@@ -150,7 +150,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Remembers a surface, if it is the first one.
-    pub fn meet<P: Polarization<N>>(&mut self, met: &Met<N, P>, sampler: &Sampler) {
+    pub fn meet<P: Polarization<N>>(&mut self, met: &LayerHit<N, P>, sampler: &Sampler) {
         let layers = &self.world.layers;
         if met.path.among == Among::Plate {
             return;
@@ -161,8 +161,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         if share <= 0.0 {
             return;
         }
-        let Met { path, meeting, at, .. } = met;
-        let normal = shading::plain_normal(at.point, at.arrival.wo);
+        let LayerHit { path, surface_hit, at, .. } = met;
+        let normal = shading::plain_normal(at.point, at.context.wo);
         layers.add_to(Layer::Normal, &mut self.row, (share * normal).to_array());
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
@@ -176,7 +176,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             let position = at.point.position;
             let object = &self.world.scene.objects[at.object as usize];
             self.place(Layer::Position, &position.to_array());
-            self.place(Layer::Uv, &object.chart_uv(&meeting.hit.crossing, at.point));
+            self.place(Layer::Uv, &object.chart_uv(&surface_hit.hit.intersection, at.point));
         }
     }
 
@@ -198,11 +198,11 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         let layers = &self.world.layers;
         let (Some(white), Some(_)) = (&layers.white, layers.at(Layer::Albedo)) else { return [0.0; 3] };
         let [u, v, ..] = sampler.four_plain(path.key, ALBEDO);
-        let (arrival, draw) = (&at.arrival, at.arrival.draw);
+        let (context, draw) = (&at.context, at.context.draw);
         self.branches.clear();
-        shading::scatter(at.material, arrival, at.flat, [u, v], &mut self.branches);
+        shading::scatter(at.material, context, at.flat, [u, v], &mut self.branches);
         // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
-        let crossing = arrival.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
+        let crossing = context.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
         let through = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
         let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));
         for branch in &self.branches {
@@ -219,7 +219,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 }
 
-impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
+impl<const N: usize, P: Polarization<N>> LayerHit<'_, N, P> {
     /// The share of the camera sample for which the surface is the first: `unfiltered` of the weight along its path.
     fn share(&self, first: FirstSurface, unfiltered: f64) -> f64 {
         let Self { path, at, .. } = self;
@@ -230,12 +230,12 @@ impl<const N: usize, P: Polarization<N>> Met<'_, N, P> {
         if !path.is_seen || is_smooth {
             return 0.0;
         }
-        let draw = at.arrival.draw;
+        let draw = at.context.draw;
         let shares = draw.shares(path.parted);
         let through =
             |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
         // A surface covers what does not go through its holes, even if by chance all of the path was there.
-        let arrived = self.chance * path.weight(draw);
-        unfiltered * (arrived - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
+        let received = self.chance * path.weight(draw);
+        unfiltered * (received - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
     }
 }

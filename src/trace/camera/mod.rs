@@ -2,14 +2,14 @@
 
 mod aimed;
 mod direct;
+mod emitter_hit;
 mod layer_sample;
 mod numbers;
 mod path_tracer;
 mod resampling;
 mod sensor;
-mod shining;
 mod surface;
 
-pub use layer_sample::Left;
+pub use layer_sample::SampleRow;
 pub use path_tracer::PathTracer;
-pub use sensor::{Bounce, Finding};
+pub use sensor::{Bounce, SensorEvent};

@@ -4,26 +4,26 @@ use std::rc::Rc;
 
 use super::aimed::{albedo, may_aim, scatter_aimed};
 use super::direct::DirectLighting;
-use super::layer_sample::{LayerSample, Met};
+use super::emitter_hit::EmitterHit;
+use super::layer_sample::{LayerHit, LayerSample};
 use super::numbers;
 use super::resampling::Resampling;
-use super::sensor::{Finding, Sensor};
-use super::shining::Shining;
-use super::surface::{First, Leaving, Onwards, Surface};
+use super::sensor::{Sensor, SensorEvent};
+use super::surface::{First, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
 use crate::light::LightId;
 use crate::material::{Material, Straight};
 use crate::math::{DVec2, Sampler};
-use crate::scene::Sight;
+use crate::scene::Visibility;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
-use crate::trace::arrived::Arrived;
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::media::Media;
-use crate::trace::photon::{Gathering, LightVertices, PhotonMap, gather, holds_vertices};
+use crate::trace::photon::{GatherPoint, LightVertices, PhotonMap, gather, holds_vertices};
+use crate::trace::received_light::ReceivedLight;
 use crate::trace::walk::{
-    Among, Audit, Departure, Excitation, Exciting, Interaction, Meeting, MetLight, Onward, Path, PathKind,
-    Polarization, Polarized, ScatterSample, Walker, shading, straight,
+    Among, Audit, Excitation, Exciting, FoundLight, Interaction, OutgoingPath, PassThrough, Path, PathKind,
+    Polarization, Polarized, ScatterSample, SurfaceHit, Walker, shading, straight,
 };
 use crate::trace::{Method, Polarizing, Transport, World};
 
@@ -59,7 +59,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     }
 
     /// With somebody who is told what paths find.
-    pub fn with_observer(mut self, observer: &'a dyn Fn(Finding)) -> Self {
+    pub fn with_observer(mut self, observer: &'a dyn Fn(SensorEvent)) -> Self {
         self.sensor.observer = Some(observer);
         self
     }
@@ -123,7 +123,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Whether the camera ray has met a shadow catcher.
     fn sees_shadow_catcher(&self) -> bool {
         let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
-        object.is_some_and(|object| self.walker.world.sight(object) == Sight::ShadowCatcher)
+        object.is_some_and(|object| self.walker.world.visibility(object) == Visibility::ShadowCatcher)
     }
 
     /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
@@ -170,55 +170,54 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.sensor.is_deaf = path.unlit;
         let before = self.sensor.rgb;
-        let Some(meeting) = self.walker.meet(path, draw) else {
+        let Some(surface_hit) = self.walker.meet(path, draw) else {
             self.background(path, draw);
             self.sensor.tell(world, path, draw, f64::INFINITY, before);
             return;
         };
-        let boundary = match self.walker.boundary(path, &meeting) {
+        let boundary = match self.walker.boundary(path, &surface_hit) {
             Ok(boundary) => boundary,
             Err(hidden) => {
-                self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
-                self.sensor.tell(world, path, draw, meeting.hit.crossing.t, before);
-                return self.walker.go_on_past(path, &meeting, &hidden);
+                self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
+                self.sensor.tell(world, path, draw, surface_hit.hit.intersection.t, before);
+                return self.walker.go_on_past(path, &surface_hit, &hidden);
             }
         };
-        let mut onward = self.walker.straight(path, draw, &meeting);
+        let mut through = self.walker.straight(path, draw, &surface_hit);
         // Beyond a pane it is seen as through glass.
         let is_held_out = world.has_mattes
             && path.kind.is_from_camera()
             && first.is_none()
-            && world.sight(meeting.hit.object) == Sight::Holdout;
+            && world.visibility(surface_hit.hit.object) == Visibility::Holdout;
         if is_held_out {
             // What lies behind a pane is cut out with it, and what lies behind a hole is not.
-            onward.iter_mut().for_each(|onward| onward.straight = onward.straight.through_holes());
-            onward = onward.filter(|onward| !onward.straight.holes.is_zero());
+            through.iter_mut().for_each(|through| through.straight = through.straight.through_holes());
+            through = through.filter(|through| !through.straight.holes.is_zero());
         }
         let may_choose = world.has_mattes && path.surfaces() == 0 && first.is_none();
-        let chance = if may_choose { self.choose(path, draw, sampler, &mut onward) } else { 1.0 };
-        let Meeting { hit, point } = &meeting;
-        if let Some(straight) = &onward
-            && path.throughput.through(straight.straight.share()) == path.throughput
+        let chance = if may_choose { self.choose(path, draw, sampler, &mut through) } else { 1.0 };
+        let SurfaceHit { hit, point } = &surface_hit;
+        if let Some(PassThrough { straight, polarization }) = through
+            && path.throughput.through(straight.share()) == path.throughput
         {
-            let polarization = straight.polarization;
             *self.walker.pending.add(|| *path) = Path { polarization, ..path.passed(point) };
             return;
         }
         path.vertices += 1;
         if is_held_out {
-            self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, onward.as_ref(), draw));
-            return self.walker.go_on_in_part(path, point, onward.as_ref());
+            self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, through.as_ref(), draw));
+            return self.walker.go_on_in_part(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
-        let met = is_first.then(|| self.first_met(path, draw, sampler, &meeting, onward.as_ref(), first));
-        self.receive(path, draw, Shining::of_surface(world, draw, path, &meeting));
-        let surface = Surface { meeting: &meeting, boundary, onward: onward.as_ref(), first: met, chance };
+        let met = is_first.then(|| self.first_met(path, draw, sampler, &surface_hit, through.as_ref(), first));
+        self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
+        let surface = Surface { surface_hit: &surface_hit, boundary, through: through.as_ref(), first: met, chance };
         if path.surfaces() > world.method.max_bounces {
             return self.cut(path, draw, sampler, &surface);
         }
         self.scatter(path, draw, sampler, &surface);
-        if onward.is_none() {
-            self.sensor.tell(world, path, draw, hit.crossing.t, before);
+        if through.is_none() {
+            self.sensor.tell(world, path, draw, hit.intersection.t, before);
         }
     }
 
@@ -228,15 +227,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path: &Path<N, P>,
         draw: &Draw<N>,
         sampler: &Sampler,
-        meeting: &Meeting,
-        onward: Option<&Onward<N, P>>,
+        surface_hit: &SurfaceHit,
+        through: Option<&PassThrough<N, P>>,
         first: &mut Option<SurfacePoint>,
     ) -> First {
-        let straight::Met { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, onward);
+        let straight::Cutout { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(is_met.then_some(meeting.hit.object), weight);
+            layers.choose(is_met.then_some(surface_hit.hit.object), weight);
         }
-        *first = is_met.then_some(meeting.point);
+        *first = is_met.then_some(surface_hit.point);
         if is_met { First::Here } else { First::Beyond }
     }
 
@@ -244,13 +243,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// holdout hides all that a sample shows, and a shadow catcher takes all of it for its own. Answers by what the
     /// throughput of a path was divided that goes on from the surface.
     #[cold]
-    fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, onward: &mut Onwards<N, P>) -> f64 {
+    fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, through: &mut Through<N, P>) -> f64 {
         let Method { transport, polarization, .. } = &self.walker.world.method;
         let is_by_chance = matches!(transport, Transport::Random { .. });
         // Beyond both in part light is polarized by their mean.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
-        let Some(whole) = onward.filter(|onward| is_by_chance && !is_mean(&onward.straight)) else { return 1.0 };
-        let straight::Met { is_met, chance, .. } = straight::met(self.walker.world, draw, sampler, path, Some(&whole));
+        let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
+        let straight::Cutout { is_met, chance, .. } =
+            straight::met(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
         let (holes, panes) = if is_met { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
         if !is_met {
@@ -258,7 +258,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             path.key = path.key.child(0);
         }
         let straight = Straight { holes, panes, ..whole.straight };
-        *onward = (!straight.share().is_zero()).then_some(Onward { straight, ..whole });
+        *through = (!straight.share().is_zero()).then_some(PassThrough { straight, ..whole });
         path.throughput = path.throughput.scaled(1.0 / chance);
         self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
         if is_met { chance } else { 1.0 }
@@ -266,17 +266,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
 
     /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
     fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
-        let &Surface { meeting, boundary, onward, .. } = surface;
+        let &Surface { surface_hit, boundary, through, .. } = surface;
         if self.sensor.layers.is_some() {
-            let at = Interaction::new(self.walker.world, draw, &path.arriving(), meeting, boundary);
+            let at = Interaction::new(self.walker.world, draw, &path.arriving(), surface_hit, boundary);
             self.show(path, &at, surface, sampler);
         }
-        if !matches!(self.walker.world.scene.material_of(meeting.hit.object), Material::Emissive(_)) {
+        if !matches!(self.walker.world.scene.material_of(surface_hit.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.share(draw);
         } else if let Some(audit) = &mut self.walker.audit {
-            audit.end_beside(path, onward, draw);
+            audit.end_beside(path, through, draw);
         }
-        self.walker.go_on_in_part(path, &meeting.point, onward);
+        self.walker.go_on_in_part(path, &surface_hit.point, through);
     }
 
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
@@ -286,41 +286,41 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         for &light in &world.scene.infinite_lights {
             let is_hidden = path.kind.is_from_camera() && world.scene.hidden_lights.contains(&light);
             if !is_hidden {
-                self.receive(path, draw, Shining::of_sky(world, draw, path, light));
+                self.receive(path, draw, EmitterHit::of_sky(world, draw, path, light));
             }
         }
     }
 
     /// Hands light that a path has met to the sensor, unless it is found otherwise.
-    fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<Shining<N, P>>) {
-        let Some(Shining { light, lanes, normal, polarization }) = met else { return };
+    fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<EmitterHit<N, P>>) {
+        let Some(EmitterHit { light, lanes, normal, polarization }) = met else { return };
         if self.is_found_otherwise(path, light) {
             return;
         }
-        let arrived = Arrived { source: light, draw, lanes: &lanes, parted: path.parted };
+        let received = ReceivedLight { source: light, draw, lanes: &lanes, parted: path.parted };
         let excitation = self.excitation(path);
-        let met = MetLight::new(self.walker.world, &arrived, excitation.as_deref());
+        let met = FoundLight::new(self.walker.world, &received, excitation.as_deref());
         let (rgb, dispersed, moved) = (met.rgb, met.dispersed, polarization.moved_of_met(&met));
-        let (light, found) = (Some(light), Found::Hit { normal, scattered: path.scatter.is_some() });
+        let (light, found) = (Some(light), FoundBy::Hit { normal, scattered: path.scatter.is_some() });
         let Path { bounces, first, .. } = *path;
         self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
     }
 
     /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
     fn scatter(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
-        let &Surface { meeting, boundary, onward, first, .. } = surface;
+        let &Surface { surface_hit, boundary, through, first, .. } = surface;
         let world = self.walker.world;
-        if path.resampled && world.ends_light_paths(meeting.hit.object) {
+        if path.resampled && world.ends_light_paths(surface_hit.hit.object) {
             path.resampled = false;
         }
-        let ends = self.ends_at_light_vertices(path, draw, meeting, sampler);
+        let ends = self.ends_at_light_vertices(path, draw, surface_hit, sampler);
         let path = &*path;
         if ends && !path.resampled {
             return;
         }
-        let at = Interaction::new(world, draw, &path.arriving(), meeting, boundary);
+        let at = Interaction::new(world, draw, &path.arriving(), surface_hit, boundary);
         self.show(path, &at, surface, sampler);
-        let leaving = Leaving { onward, is_awaited: first == Some(First::Beyond), gathers: !ends };
+        let leaving = PathContinuation { through, is_awaited: first == Some(First::Beyond), gathers: !ends };
         match self.excite(path, &at, sampler, leaving.is_awaited) {
             0.0 => {}
             1.0 => self.scatter_at(path, &at, sampler, leaving),
@@ -335,9 +335,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[inline]
     fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
-            let &Surface { meeting, chance, first, onward, .. } = surface;
-            let (straight, is_met_first) = (onward.map(|onward| &onward.straight), first == Some(First::Here));
-            layers.meet(&Met { path, meeting, at, straight, is_met_first, chance }, sampler);
+            let &Surface { surface_hit, chance, first, through, .. } = surface;
+            let (straight, is_met_first) = (through.map(|through| &through.straight), first == Some(First::Here));
+            layers.meet(&LayerHit { path, surface_hit, at, straight, is_met_first, chance }, sampler);
         }
     }
 
@@ -355,14 +355,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let Some(dyes) = world.dyes.as_ref().filter(|dyes| !dyes.of(&world.scene, at.object).is_empty()) else {
             return 1.0;
         };
-        let all = is_awaited || self.walker.follows_all(path, at.arrival.draw);
+        let all = is_awaited || self.walker.follows_all(path, at.context.draw);
         let seen = self.excitation(path);
         let ways = Exciting { world, dyes, path, at, all, seen: seen.as_deref() }.ways(sampler);
         for (way, excitation) in ways.of_dyes {
             let excitation = Rc::new(excitation);
             let path = Path { excitation: Some(self.excitations.len() as u32), ..way };
             self.excitations.push(excitation.clone());
-            let leaving = Leaving { onward: None, is_awaited: false, gathers: true };
+            let leaving = PathContinuation { through: None, is_awaited: false, gathers: true };
             self.scatter_at(&path, &at.of_dye(&dyes.white, &excitation.draw), sampler, leaving);
         }
         ways.scattered
@@ -374,9 +374,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path: &Path<N, P>,
         at: &Interaction<N>,
         sampler: &Sampler,
-        Leaving { onward, is_awaited, gathers }: Leaving<N, P>,
+        PathContinuation { through, is_awaited, gathers }: PathContinuation<N, P>,
     ) {
-        let (world, draw) = (self.walker.world, at.arrival.draw);
+        let (world, draw) = (self.walker.world, at.context.draw);
         let material = at.material;
         let goes_on = !at.lobes.is_diffuse() || path.diffuse_left > 0;
         let bright = world.bright.as_ref().filter(|_| may_aim(material));
@@ -402,12 +402,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.walker.branches.clear();
         match &aiming {
             Some(aiming) => scatter_aimed(aiming, at, [u[2], u[3]], &mut self.walker.branches),
-            None => shading::scatter(material, &at.arrival, at.flat, [u[2], u[3]], &mut self.walker.branches),
+            None => shading::scatter(material, &at.context, at.flat, [u[2], u[3]], &mut self.walker.branches),
         }
         self.walker.polarize(path, at);
-        self.walker.account(path, at, onward.map(|onward| &onward.straight));
-        let departure = Departure::new(world, path, at).of_camera_path();
-        let mut departure = departure.with(scatter.as_ref(), onward).awaiting(is_awaited);
+        self.walker.account(path, at, through.map(|through| &through.straight));
+        let departure = OutgoingPath::new(world, path, at).of_camera_path();
+        let mut departure = departure.with(scatter.as_ref(), through).awaiting(is_awaited);
         if !goes_on {
             self.walker.keep_single(&departure);
         }
@@ -434,14 +434,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         &mut self,
         path: &mut Path<N, P>,
         draw: &Draw<N>,
-        meeting: &Meeting,
+        surface_hit: &SurfaceHit,
         sampler: &Sampler,
     ) -> bool {
         let (Some(vertices), Some(scatter)) = (self.light_vertices, path.scatter) else { return false };
-        if !scatter.resampled || !holds_vertices(self.walker.world, meeting.hit.object, &meeting.point) {
+        if !scatter.resampled || !holds_vertices(self.walker.world, surface_hit.hit.object, &surface_hit.point) {
             return false;
         }
-        let chance = vertices.complement((meeting.point.position - scatter.from).length_squared());
+        let chance = vertices.complement((surface_hit.point.position - scatter.from).length_squared());
         let u = sampler.four_plain(path.key, numbers::COMPLEMENT);
         let ends = u[0] >= chance;
         if !vertices.carry_all() {
@@ -471,17 +471,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let apart = is_told && (path.bounces == 0 || self.walker.world.layers.tell_photons_apart());
             let excitation = self.excitation(path);
             let excitation = excitation.as_deref();
-            let around = Gathering { world: self.walker.world, path, at, excitation };
+            let around = GatherPoint { world: self.walker.world, path, at, excitation };
             let within = |kernel, apart| gather(photons, kernel, &around, sampler, apart);
             let gathered = within(&photons.kernel, apart);
             if let Some(half) = &photons.half {
                 self.sensor.blur_by(gathered.all.rgb, within(half, false).all.rgb);
             }
-            let draw = excitation.map_or(at.arrival.draw, |dye| &dye.seen_by);
+            let draw = excitation.map_or(at.context.draw, |dye| &dye.seen_by);
             self.sensor.receive_gathered(&gathered, draw);
         }
         if let Some(observer) = self.sensor.observer {
-            observer(Finding::Place(at.point.position));
+            observer(SensorEvent::Place(at.point.position));
         }
     }
 

@@ -5,13 +5,13 @@ use std::cell::Cell;
 use super::numbers::VERTEX;
 use super::sensor::Sensor;
 use crate::math::{Ray, Sampler, gamma, unit};
-use crate::scene::Ends;
+use crate::scene::RayEnds;
 use crate::shape::prefetch;
 use crate::trace::World;
-use crate::trace::arrived::Arrived;
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::photon::{LightVertex, LightVertices};
-use crate::trace::walk::{Among, Interaction, MetLight, Passage, Past, Path, Polarization, shading};
+use crate::trace::received_light::ReceivedLight;
+use crate::trace::walk::{Among, FoundLight, Interaction, Occluders, Path, Polarization, VisibilityTest, shading};
 
 /// A path at a diffuse surface.
 pub struct Resampling<'a, const N: usize, P> {
@@ -54,33 +54,33 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         if direction.dot(at.flat) <= 0.0 || cos <= 0.0 {
             return None;
         }
-        let (mut bsdf_cos, _) = shading::evaluate(at.material, &at.arrival, at.flat, direction)?;
+        let (mut bsdf_cos, _) = shading::evaluate(at.material, &at.context, at.flat, direction)?;
         // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
         // direction is rounded, passes that within some roundings of the distance.
         let short = (vertex.error + gamma(8) * distance) / cos;
-        let ends = Ends { left: self.path.left, ..Ends::default() };
+        let ends = RayEnds { left: self.path.left, ..RayEnds::default() };
         let (distance, inside) = (distance - short, at.boundary.here);
-        let passage = Passage {
+        let passage = VisibilityTest {
             ray: &ray,
             distance,
             ends,
             inside,
-            past: Past::Objects(Among::All),
+            occluders: Occluders::Objects(Among::All),
             last_occluder: self.last_occluder,
         };
         let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
-        let (arriving, on_its_way) = passage.arriving(world, at.arrival.draw, toward, || vertex.leaving)?;
+        let (arriving, on_its_way) = passage.arriving(world, at.context.draw, toward, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
-        let arrived = Arrived { source: vertex.light, draw: at.arrival.draw, lanes, parted: self.path.parted };
-        let met = MetLight::new(world, &arrived, None);
+        let received = ReceivedLight { source: vertex.light, draw: at.context.draw, lanes, parted: self.path.parted };
+        let met = FoundLight::new(world, &received, None);
         let rgb = met.rgb;
         let moved = self.path.polarization.moved(at, direction, &on_its_way, &met);
         let (bounces, dispersed) = (self.path.bounces + 1 + vertex.surfaces, self.path.parted || vertex.parted);
         let first = self.path.first_lobe(world, at, direction, false);
         let light = Some(vertex.light);
-        let found = if vertex.is_of_photon { Found::Gathered } else { Found::Connected };
+        let found = if vertex.is_of_photon { FoundBy::Gathered } else { FoundBy::Connected };
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &on_its_way);
         Some(())
     }

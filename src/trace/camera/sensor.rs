@@ -7,7 +7,7 @@ use crate::trace::World;
 use crate::trace::contribution::{Contribution, add};
 use crate::trace::photon::Gathered;
 use crate::trace::stats::Stats;
-use crate::trace::walk::{MetLight, Path, Polarization, ScatterSample};
+use crate::trace::walk::{FoundLight, Path, Polarization, ScatterSample};
 
 /// What a path found in a direction that was drawn where lights were sampled as well.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ pub struct Bounce {
 }
 
 /// What the camera's paths find, as somebody is told who wants to know it beside the image.
-pub enum Finding<'a> {
+pub enum SensorEvent<'a> {
     /// Light reached the sensor.
     Light(&'a Contribution),
     /// A path has come, by way of other surfaces, to a place that scatters widely.
@@ -44,7 +44,7 @@ pub struct Sensor<'a, const N: usize> {
     moved: f64,
     /// By how much kernels blur what it has received.
     pub blur: [f64; 3],
-    pub observer: Option<&'a dyn Fn(Finding)>,
+    pub observer: Option<&'a dyn Fn(SensorEvent)>,
     /// What it leaves in layers, if any are asked for.
     pub layers: Option<LayerSample<'a, N>>,
 }
@@ -59,19 +59,19 @@ impl<const N: usize> Sensor<'_, N> {
     pub fn receive<P: Polarization<N>>(
         &mut self,
         contribution: Contribution,
-        light: &MetLight<N, P>,
+        light: &FoundLight<N, P>,
         polarization: &P,
     ) {
         if self.is_deaf {
             return;
         }
         if let Some(layers) = &mut self.layers {
-            let MetLight { world, arrived, excitation, .. } = *light;
+            let FoundLight { world, received, excitation, .. } = *light;
             match excitation {
-                None => layers.receive(&contribution, arrived, polarization.stokes()),
+                None => layers.receive(&contribution, received, polarization.stokes()),
                 Some(dye) => {
                     let stokes = dye.polarization.stokes();
-                    dye.seen(world, arrived, |seen| layers.receive(&contribution, seen, stokes));
+                    dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes));
                 }
             }
         }
@@ -102,7 +102,7 @@ impl<const N: usize> Sensor<'_, N> {
         add(&mut self.rgb, all.rgb);
         self.moved += all.moved;
         if let Some(observer) = self.observer {
-            observer(Finding::Light(all));
+            observer(SensorEvent::Light(all));
         }
     }
 
@@ -121,7 +121,7 @@ impl<const N: usize> Sensor<'_, N> {
             let light = world.amount(std::array::from_fn(|i| self.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
             let weight = path.weight(draw) * f64::from(path.aimed);
-            observer(Finding::Bounce(Bounce { from, normal, direction, distance, light, weight }));
+            observer(SensorEvent::Bounce(Bounce { from, normal, direction, distance, light, weight }));
         }
     }
 

@@ -5,7 +5,7 @@ use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Table};
 use crate::trace::media::Media;
-use crate::trace::walk::{Meeting, shading, straight};
+use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
@@ -19,7 +19,7 @@ const SURFACE: u32 = 7;
 
 /// Which way is followed where light may go two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Choice {
+pub enum FollowedBranch {
     /// The brighter one.
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
@@ -71,7 +71,7 @@ impl Walk {
 
     /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
     /// surface is met inside a dispersive body.
-    fn takes(&mut self, share: f64, is_inside: bool, choice: Choice) -> bool {
+    fn takes(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
         let forks = |fork: &mut f64| {
             let is_first = *fork == 0.0 && fainter >= LEAST;
@@ -82,9 +82,9 @@ impl Walk {
         };
         let (first, inside) = (forks(&mut self.fork), is_inside && forks(&mut self.fork_inside));
         let turns = match choice {
-            Choice::Brighter => false,
-            Choice::FainterFirst => first,
-            Choice::FainterInside => inside,
+            FollowedBranch::Brighter => false,
+            FollowedBranch::FainterFirst => first,
+            FollowedBranch::FainterInside => inside,
         };
         self.weight *= if turns { fainter } else { 1.0 - fainter };
         (share > 0.5) != turns
@@ -95,10 +95,10 @@ impl Walk {
 #[derive(Clone, Copy)]
 struct Surface<'a> {
     ray: &'a Ray,
-    meeting: &'a Meeting,
+    surface_hit: &'a SurfaceHit,
     u: [f64; 4],
     lane: usize,
-    choice: Choice,
+    choice: FollowedBranch,
 }
 
 /// How a walk goes on at a surface.
@@ -132,7 +132,7 @@ impl Colors<'_> {
         mut is_from_camera: bool,
         media: Media,
         sampler: &Sampler,
-        choice: Choice,
+        choice: FollowedBranch,
     ) -> Walk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
         let mut walk = Walk { legs, met, weight: 1.0, media, ..Walk::default() };
@@ -142,16 +142,17 @@ impl Colors<'_> {
                 true => self.world.scene.intersect_seen(&ray, None),
                 false => self.world.scene.intersect(&ray),
             };
-            walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.crossing.t)));
+            walk.legs.push((ray, hit.map_or(f64::INFINITY, |hit| hit.intersection.t)));
             let Some(met) = hit else { return walk };
-            let meeting = Meeting::new(self.world, &ray, met);
+            let surface_hit = SurfaceHit::new(self.world, &ray, met);
             key = key.child(0);
-            let at = Surface { ray: &ray, meeting: &meeting, u: sampler.four_plain(key, SURFACE), lane, choice };
+            let at =
+                Surface { ray: &ray, surface_hit: &surface_hit, u: sampler.four_plain(key, SURFACE), lane, choice };
             match self.next(&mut walk, &at) {
-                Next::Straight => ray = meeting.point.leave(ray.direction),
-                Next::Toward(direction) => (ray, is_from_camera) = (meeting.point.leave(direction), false),
+                Next::Straight => ray = surface_hit.point.leave(ray.direction),
+                Next::Toward(direction) => (ray, is_from_camera) = (surface_hit.point.leave(direction), false),
                 Next::End => {
-                    walk.end = Some((meeting.point, met.object));
+                    walk.end = Some((surface_hit.point, met.object));
                     return walk;
                 }
                 Next::Lost => break,
@@ -172,20 +173,20 @@ impl Colors<'_> {
             walk.surfaces += u32::from(matches!(next, Next::Toward(_)));
             return next;
         }
-        let shines = self.world.scene.objects[at.meeting.hit.object as usize].light.is_some();
+        let shines = self.world.scene.objects[at.surface_hit.hit.object as usize].light.is_some();
         if shines { Next::End } else { Next::Lost }
     }
 
     /// The way on from a surface, however many paths may have.
     fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
-        let Surface { ray, meeting, u, choice, .. } = *at;
+        let Surface { ray, surface_hit, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
-        let [_, normal] = shading::normals(&meeting.point, wo);
+        let [_, normal] = shading::normals(&surface_hit.point, wo);
         let inside = walk.media.inside(&world.scene);
-        if walk.takes(straight::holes(world, draw, ray, inside, meeting)[0].into(), false, choice) {
+        if walk.takes(straight::holes(world, draw, ray, inside, surface_hit)[0].into(), false, choice) {
             return Next::Straight;
         }
-        match world.scene.material_of(meeting.hit.object) {
+        match world.scene.material_of(surface_hit.hit.object) {
             Material::Dielectric(glass) => self.meet_glass(walk, at, glass),
             Material::Mirror(_) => Next::Toward(reflect(wo, normal)),
             Material::Thin(pane) => {
@@ -212,7 +213,7 @@ impl Colors<'_> {
 
     /// The way on from the surface of a clear body.
     fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
-        let Surface { ray, meeting: Meeting { hit, point }, u, lane, choice } = *at;
+        let Surface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         let material = world.scene.objects[hit.object as usize].material;
@@ -247,7 +248,7 @@ impl Colors<'_> {
 pub struct CameraRays<'a> {
     pub colors: &'a Colors<'a>,
     pub sampler: Sampler,
-    pub choice: Choice,
+    pub choice: FollowedBranch,
 }
 
 impl CameraRays<'_> {

@@ -4,8 +4,8 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::color_walk::{Choice, Colors, Walk};
-use super::search::Reached;
+use super::color_walk::{Colors, FollowedBranch, Walk};
+use super::search::ReachedPlace;
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::light::{Light, LightId};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, disk, unit};
@@ -29,12 +29,12 @@ const BESIDE: f64 = 1e-3;
 /// The largest angle in radians by which a ray is turned to see how the lamp's extent blurs.
 const TURN: f64 = 1e-3;
 /// The ways of light that land somewhere: through bodies, and after a reflection inside of one, as in a rainbow.
-const WAYS: [Choice; 2] = [Choice::Brighter, Choice::FainterInside];
+const WAYS: [FollowedBranch; 2] = [FollowedBranch::Brighter, FollowedBranch::FainterInside];
 /// Sets these random numbers apart.
 const SEED: u64 = 0x6c69_7420;
 
 /// How many pixels apart two colors land of the light through dispersive objects, where the camera sees it.
-pub fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[Reached]) -> f64 {
+pub fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[ReachedPlace]) -> f64 {
     let world = colors.world;
     if world.method.diffuse_bounces == 0 {
         return 0.0;
@@ -88,10 +88,10 @@ fn brightest(colors: &Colors, lights: &[LightId], ball: &Ball) -> Vec<LightId> {
 /// A light and what it shines on.
 struct Pair<'a> {
     colors: &'a Colors<'a>,
-    reached: &'a [Reached],
+    reached: &'a [ReachedPlace],
     light: LightId,
     ball: &'a Ball,
-    choice: Choice,
+    choice: FollowedBranch,
 }
 
 impl Pair<'_> {
@@ -108,7 +108,7 @@ impl Pair<'_> {
         let media = self.colors.world.media_at_light(self.light, &start);
         let walk = |lane: usize, ray: Ray| self.colors.walk(lane, ray, false, media, sampler, self.choice);
         let (first, second) = (walk(0, start), walk(1, start));
-        if self.choice == Choice::FainterInside && first.fork_inside == 0.0 {
+        if self.choice == FollowedBranch::FainterInside && first.fork_inside == 0.0 {
             return None;
         }
         if !first.dispersive || !first.diffuse || !second.diffuse || first.met != second.met || first.weight == 0.0 {
@@ -196,8 +196,8 @@ impl Pair<'_> {
         let scene = &self.colors.world.scene;
         match &scene.lights[self.light] {
             Light::Area(area) => {
-                let crossing = area.shape.intersect(back, f64::INFINITY)?;
-                Some(area.shape.point(back, &crossing).leave(-back.direction))
+                let intersection = area.shape.intersect(back, f64::INFINITY)?;
+                Some(area.shape.point(back, &intersection).leave(-back.direction))
             }
             light if light.is_infinite() => {
                 let world = ball_around_all(scene)?;
@@ -213,8 +213,8 @@ impl Pair<'_> {
     /// Pixels per length where a ray lands, if the camera sees it: straight, through clear things or by way of others.
     fn scale(&self, point: &SurfacePoint, walk: &Walk) -> Option<f64> {
         let left = self.colors.world.method.max_bounces - walk.surfaces;
-        let is_near = |place: &&Reached| (place.position - point.position).length() <= place.of_cell;
-        let by_way = |place: &&Reached| place.surfaces < left && is_near(place);
+        let is_near = |place: &&ReachedPlace| (place.position - point.position).length() <= place.of_cell;
+        let by_way = |place: &&ReachedPlace| place.surfaces < left && is_near(place);
         let straight = self.straight(point, walk);
         straight.or_else(|| self.reached.iter().find(by_way).map(|place| 1.0 / place.of_pixel))
     }

@@ -10,7 +10,7 @@ mod search;
 mod separation;
 mod targets;
 
-pub use route::{ROUTES_NM, Route, Step, Way};
+pub use route::{ROUTES_NM, Route, RouteEvent, Step};
 pub use routes::routes;
 pub use separation::{COLORS_NM, Dispersion, dispersion};
 pub use targets::SEEN_PIXELS;

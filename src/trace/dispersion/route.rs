@@ -18,12 +18,12 @@ pub struct Step {
     /// [`Material::with_parts`](crate::material::Material::with_parts).
     pub part: usize,
     /// What light does there.
-    pub way: Way,
+    pub way: RouteEvent,
 }
 
 /// What light does at a surface, or in a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Way {
+pub enum RouteEvent {
     /// It is mirrored, by a surface or a facet of it met under an angle of this cosine.
     Reflected(f64),
     /// It goes through the surface.
@@ -81,7 +81,7 @@ impl Walk {
 }
 
 /// Where a way meets a surface.
-pub struct At<'a> {
+pub struct RouteVertex<'a> {
     pub walk: &'a Walk,
     pub material: MaterialId,
     pub point: &'a SurfacePoint,
@@ -92,8 +92,8 @@ pub struct At<'a> {
     pub u: [f64; 4],
 }
 
-impl At<'_> {
-    pub fn step(&self, way: Way) -> Step {
+impl RouteVertex<'_> {
+    pub fn step(&self, way: RouteEvent) -> Step {
         Step { material: self.material, part: self.part, way }
     }
 

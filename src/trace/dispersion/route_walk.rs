@@ -1,11 +1,11 @@
 //! Follows the ways of one pixel back to the lights, the brightest first.
 
-use super::route::{At, ROUTES_NM, Route, Step, Walk, Way};
+use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, Step, Walk};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec3, Ray, Sampler, cosine_about};
 use crate::spectrum::{Draw, Lanes, Table};
-use crate::trace::walk::{Meeting, shading, straight};
+use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
 /// Surfaces that are met for one pixel.
@@ -77,12 +77,12 @@ impl<'a> Walker<'a> {
             }
             return;
         };
-        let walk = self.inside(walk, hit.crossing.t);
+        let walk = self.inside(walk, hit.intersection.t);
         let object = &world.scene.objects[hit.object as usize];
-        let meeting = Meeting::new(world, &walk.ray, hit);
-        let point = &meeting.point;
+        let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
+        let point = &surface_hit.point;
         let u = self.sampler.four_plain(walk.key, 0);
-        if self.passes(&walk, &meeting, u[3]) {
+        if self.passes(&walk, &surface_hit, u[3]) {
             let (ray, key) = (point.leave(walk.ray.direction), walk.key.child(0));
             self.pending.push(Walk { ray, key, ..walk });
             return;
@@ -95,15 +95,15 @@ impl<'a> Walker<'a> {
         }
         let material = world.scene.material_of(hit.object);
         let [flat, normal] = shading::normals(point, -walk.ray.direction);
-        let uv = object.uv(&hit.crossing, point);
+        let uv = object.uv(&hit.intersection, point);
         let part = self.part(material, uv, u[2]);
-        let at = At { walk: &walk, material: object.material, point, normal, uv, part, u };
+        let at = RouteVertex { walk: &walk, material: object.material, point, normal, uv, part, u };
         self.leave(&at, material.with_parts()[part], flat);
     }
 
     /// Goes on from a surface in all ways that light may go.
-    fn leave(&mut self, at: &At, material: &Material<Table>, flat: DVec3) {
-        let At { walk, normal, uv, .. } = *at;
+    fn leave(&mut self, at: &RouteVertex, material: &Material<Table>, flat: DVec3) {
+        let RouteVertex { walk, normal, uv, .. } = *at;
         let world = self.world;
         match material {
             Material::Mirror(mirror) => {
@@ -119,7 +119,7 @@ impl<'a> Walker<'a> {
                 let r = pane.reflectance_of_one_surface(&self.draw, 1, inside[1], at.wo().dot(normal));
                 let tint = pane.transmittance().map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
                 let through = (1.0 - r) * (1.0 - r);
-                let crossed = at.step(Way::Crossed);
+                let crossed = at.step(RouteEvent::Crossed);
                 let straight = walk.after(Some(crossed), tint, through);
                 self.go_straight(at, straight);
                 // Mirrored by the first surface, and by the second.
@@ -158,13 +158,13 @@ impl<'a> Walker<'a> {
         if transmission == Lanes::ONE {
             return walk;
         }
-        walk.after(Some(Step { material, part: 0, way: Way::Inside(distance) }), transmission, 1.0)
+        walk.after(Some(Step { material, part: 0, way: RouteEvent::Inside(distance) }), transmission, 1.0)
     }
 
     /// Whether a hole lets the way pass, by chance.
-    fn passes(&self, walk: &Walk, meeting: &Meeting, u: f64) -> bool {
+    fn passes(&self, walk: &Walk, surface_hit: &SurfaceHit, u: f64) -> bool {
         let inside = walk.media.inside(&self.world.scene);
-        u < straight::holes(self.world, &self.draw, &walk.ray, inside, meeting)[1].into()
+        u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
     /// The material that is met, by chance where there are several.
@@ -185,7 +185,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Goes on from a surface in a direction, where it is turned or scattered, or light crosses a body's surface.
-    fn go_on(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
+    fn go_on(&mut self, at: &RouteVertex, next: Walk, direction: DVec3, number: usize) {
         if let Some(surfaces) = self.one_more(at.walk) {
             self.follow(at, Walk { is_from_camera: false, surfaces, ..next }, direction, number);
         }
@@ -197,24 +197,24 @@ impl<'a> Walker<'a> {
     }
 
     /// Goes straight on as if nothing were there.
-    fn go_straight(&mut self, at: &At, next: Walk) {
+    fn go_straight(&mut self, at: &RouteVertex, next: Walk) {
         self.follow(at, next, at.walk.ray.direction, 0);
     }
 
-    fn follow(&mut self, at: &At, next: Walk, direction: DVec3, number: usize) {
+    fn follow(&mut self, at: &RouteVertex, next: Walk, direction: DVec3, number: usize) {
         if next.brightest() > 0.0 {
             let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
             self.pending.push(Walk { ray, key, ..next });
         }
     }
 
-    fn mirrored(&mut self, at: &At, facet: DVec3, tint: Lanes<4>, factor: f64) {
-        let step = at.step(Way::Reflected(at.wo().dot(facet).abs().min(1.0)));
+    fn mirrored(&mut self, at: &RouteVertex, facet: DVec3, tint: Lanes<4>, factor: f64) {
+        let step = at.step(RouteEvent::Reflected(at.wo().dot(facet).abs().min(1.0)));
         let next = at.walk.after(Some(step), tint, factor);
         self.go_on(at, next, reflect(at.wo(), facet), 0);
     }
 
-    fn glass(&mut self, at: &At, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
+    fn glass(&mut self, at: &RouteVertex, [reflectance, transmittance]: [&Table; 2], facets: Option<&Facets>) {
         let (world, walk) = (self.world, at.walk);
         let (boundary, _) = walk.media.at_surface(&world.scene, at.material, at.point, walk.ray.direction);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
@@ -223,7 +223,7 @@ impl<'a> Walker<'a> {
             return self.go_straight(at, crossed);
         }
         let tint = self.draw.read_at(transmittance, at.uv);
-        let step = Some(at.step(Way::Crossed));
+        let step = Some(at.step(RouteEvent::Crossed));
         if n1 == n2 {
             return self.go_on(at, crossed.after(step, tint, 1.0), walk.ray.direction, 0);
         }
@@ -234,7 +234,7 @@ impl<'a> Walker<'a> {
             self.go_on(at, next, interface.refract(wo, facet), 0);
         }
         let mirrored = walk.after(
-            Some(at.step(Way::Reflected(wo.dot(facet)))),
+            Some(at.step(RouteEvent::Reflected(wo.dot(facet)))),
             self.draw.read_at(reflectance, at.uv),
             interface.reflectance,
         );
@@ -242,9 +242,9 @@ impl<'a> Walker<'a> {
     }
 
     /// Light that a surface scatters: straight from the lights, and from anywhere.
-    fn scattered(&mut self, at: &At, flat: DVec3, tint: Lanes<4>, factor: f64) {
+    fn scattered(&mut self, at: &RouteVertex, flat: DVec3, tint: Lanes<4>, factor: f64) {
         let Some(surfaces) = self.one_more(at.walk) else { return };
-        let next = at.walk.after(Some(at.step(Way::Scattered)), tint, factor);
+        let next = at.walk.after(Some(at.step(RouteEvent::Scattered)), tint, factor);
         let next = Walk { scattered: next.scattered + 1, surfaces, ..next };
         for id in 0..self.world.scene.lights.len().min(LIGHTS) {
             self.aim(at, &next, flat, id);
@@ -256,7 +256,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Light that comes straight from a light, through whatever lets it through.
-    fn aim(&mut self, at: &At, walk: &Walk, normal: DVec3, id: LightId) {
+    fn aim(&mut self, at: &RouteVertex, walk: &Walk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
         let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
         let mut walk = Walk { ray: sample.ray, ..walk.clone() };
@@ -266,13 +266,13 @@ impl<'a> Walker<'a> {
                 let walk = self.inside(walk, left);
                 return self.record(&walk, id);
             };
-            walk = self.inside(walk, hit.crossing.t);
-            left -= hit.crossing.t;
+            walk = self.inside(walk, hit.intersection.t);
+            left -= hit.intersection.t;
             let object = &world.scene.objects[hit.object as usize];
-            let meeting = Meeting::new(world, &walk.ray, hit);
-            let point = &meeting.point;
-            if !self.passes(&walk, &meeting, at.u[2]) {
-                let uv = object.uv(&hit.crossing, point);
+            let surface_hit = SurfaceHit::new(world, &walk.ray, hit);
+            let point = &surface_hit.point;
+            if !self.passes(&walk, &surface_hit, at.u[2]) {
+                let uv = object.uv(&hit.intersection, point);
                 let material = world.scene.material_of(hit.object);
                 let part = self.part(material, uv, at.u[2]);
                 let transmittance = match material.with_parts()[part] {
@@ -280,7 +280,7 @@ impl<'a> Walker<'a> {
                     Material::Dielectric(glass) => Some(&glass.transmittance),
                     _ => return,
                 };
-                let step = Step { material: object.material, part, way: Way::Crossed };
+                let step = Step { material: object.material, part, way: RouteEvent::Crossed };
                 let tint = transmittance.map_or(Lanes::ONE, |table| self.draw.read_at(table, uv));
                 let (boundary, _) = walk.media.at_surface(&world.scene, object.material, point, walk.ray.direction);
                 let media = walk.media.beyond(&boundary);

@@ -6,7 +6,7 @@
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
 use super::apart::{colors_apart, is_dark, share_apart};
-use super::color_walk::{CameraRays, Choice, Colors, Walk};
+use super::color_walk::{CameraRays, Colors, FollowedBranch, Walk};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
@@ -27,7 +27,7 @@ const CLOSER: usize = 32;
 const SEEN_SHARE: f64 = 0.5 * SEEN_PIXELS;
 
 /// A place on a diffuse surface that is seen by way of others.
-pub struct Reached {
+pub struct ReachedPlace {
     pub position: DVec3,
     /// How far a pixel goes there, and how far the cell.
     pub of_pixel: f64,
@@ -37,14 +37,14 @@ pub struct Reached {
 }
 
 /// What was found.
-pub struct Found {
+pub struct SearchResult {
     /// Share of the view on dispersive surfaces.
     pub seen: f64,
     /// How many pixels colors are apart on [`PIXELS`] or more.
     pub pixels: f64,
     /// Whether no ray that went by a dispersive surface saw anything.
     pub dark: bool,
-    pub reached: Vec<Reached>,
+    pub reached: Vec<ReachedPlace>,
 }
 
 /// A part of the view, in pixels.
@@ -52,7 +52,7 @@ pub struct Found {
 struct Cell {
     corner: DVec2,
     size: DVec2,
-    choice: Choice,
+    choice: FollowedBranch,
     /// How many such cells it stands for.
     count: f64,
 }
@@ -72,13 +72,13 @@ struct Look {
 }
 
 /// Looks for dispersion in all of the view.
-pub fn search(colors: &Colors, targets: &Targets) -> Found {
+pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
     let film = colors.world.scene.film;
     let all = f64::from(film.width) * f64::from(film.height);
     let enough = PIXELS.min(SHARE * all);
     let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(SIDE);
     let corner = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) * size;
-    let cell = |i: u32| Cell { corner: corner(i), size, choice: Choice::Brighter, count: 1.0 };
+    let cell = |i: u32| Cell { corner: corner(i), size, choice: FollowedBranch::Brighter, count: 1.0 };
     let mut cells: Vec<Cell> = (0..SIDE * SIDE).map(cell).collect();
     let (mut settled, mut reached, mut left) = (Vec::new(), Vec::new(), MOST);
     loop {
@@ -99,7 +99,7 @@ pub fn search(colors: &Colors, targets: &Targets) -> Found {
             next.extend(look.cell.parts().into_iter().map(|part| (look.touched.unwrap_or(0), part)));
         }
         // Faint mirror images are kinds of their own.
-        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.choice == Choice::FainterInside);
+        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.choice == FollowedBranch::FainterInside);
         next.extend(forks.into_iter().map(|cell| (kind(&cell), cell)));
         if next.is_empty() {
             break;
@@ -109,30 +109,36 @@ pub fn search(colors: &Colors, targets: &Targets) -> Found {
         left -= cells.len();
     }
     let seen: f64 =
-        settled.iter().filter(|look| look.cell.choice == Choice::Brighter).map(|look| look.dispersive).sum();
+        settled.iter().filter(|look| look.cell.choice == FollowedBranch::Brighter).map(|look| look.dispersive).sum();
     let dark = seen > 0.0 && settled.iter().all(|look| look.dark || look.dispersive == 0.0);
-    Found { seen: (seen / all).min(1.0), pixels: pixels_apart(settled.iter(), enough), dark, reached }
+    SearchResult { seen: (seen / all).min(1.0), pixels: pixels_apart(settled.iter(), enough), dark, reached }
 }
 
-fn look(colors: &Colors, targets: &Targets, cell: Cell, reached: &mut Vec<Reached>, forks: &mut Vec<Cell>) -> Look {
+fn look(
+    colors: &Colors,
+    targets: &Targets,
+    cell: Cell,
+    reached: &mut Vec<ReachedPlace>,
+    forks: &mut Vec<Cell>,
+) -> Look {
     let rays = cell.rays(colors);
     let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
     let walks = at.map(|place| rays.walk(cell.corner + cell.size * place, 0));
     let first = &walks[0];
-    if cell.is_whole(colors) && cell.choice == Choice::Brighter {
+    if cell.is_whole(colors) && cell.choice == FollowedBranch::Brighter {
         if first.fork > 0.0 {
-            forks.push(Cell { choice: Choice::FainterFirst, ..cell });
+            forks.push(Cell { choice: FollowedBranch::FainterFirst, ..cell });
         }
         // Before a sky, or the dark, what is mirrored inside may be all there is to see.
         if first.fork_inside > 0.0 && first.is_out() {
-            forks.push(Cell { choice: Choice::FainterInside, ..cell });
+            forks.push(Cell { choice: FollowedBranch::FainterInside, ..cell });
         }
         reached.extend(place(&walks, cell.size));
     }
     let forked = match cell.choice {
-        Choice::Brighter => true,
-        Choice::FainterFirst => first.fork > 0.0,
-        Choice::FainterInside => first.fork_inside > 0.0,
+        FollowedBranch::Brighter => true,
+        FollowedBranch::FainterFirst => first.fork > 0.0,
+        FollowedBranch::FainterInside => first.fork_inside > 0.0,
     };
     let off = first.weight == 0.0 || !forked;
     let dispersive = if first.dispersive && !off { cell.size.x * cell.size.y * cell.count } else { 0.0 };
@@ -159,13 +165,13 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
 }
 
 /// The place where the first of a cell's walks ends, if that is on a diffuse surface that is seen by way of others.
-fn place(walks: &[Walk; 5], size: DVec2) -> Option<Reached> {
+fn place(walks: &[Walk; 5], size: DVec2) -> Option<ReachedPlace> {
     let of = |walk: &Walk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
     let position = of(&walks[0]).filter(|_| !walks[0].met.is_empty())?;
     let beside = walks[1..].iter().filter(|walk| walk.met == walks[0].met).filter_map(of);
     let of_cell = beside.map(|other| (other - position).length()).fold(0.0, f64::max);
     let (of_pixel, surfaces) = (of_cell / (0.5 * size.length()), walks[0].surfaces);
-    (of_cell > 0.0).then_some(Reached { position, of_pixel, of_cell, surfaces })
+    (of_cell > 0.0).then_some(ReachedPlace { position, of_pixel, of_cell, surfaces })
 }
 
 impl Cell {

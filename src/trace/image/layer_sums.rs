@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::coverage::Coverage;
 use crate::film::{Layer, LayerImage, RANKS, Sample, SampleWeights, SpectralImage, polarization, stored};
-use crate::trace::camera::Left;
+use crate::trace::camera::SampleRow;
 use crate::trace::contribution::add;
-use crate::trace::layers::{Caught, Layers, OF_A_HALF, STOKES};
+use crate::trace::layers::{CatcherLight, Layers, OF_A_HALF, STOKES};
 use crate::trace::replicates::REPLICATES;
 use crate::trace::spectrum_sample::Spectrum;
 
@@ -43,7 +43,7 @@ impl LayerSums {
 
     /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
     /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
-    pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &Left) {
+    pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &SampleRow) {
         let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.numbers..][..layers.numbers];
         if let Some(object) = left.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
             self.covered.add(pixel, object);
@@ -94,7 +94,7 @@ impl LayerSums {
     }
 
     /// The sums of luminance that shadow catchers send to a pixel, if there are any.
-    pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<Caught<f64>> {
+    pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CatcherLight<f64>> {
         let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.luminance_caught(&caught));
         layers.catches().then(|| self.rows(layers, pixel)[0]).and_then(of)
     }
@@ -107,7 +107,7 @@ impl LayerSums {
 
 /// What the sums of what photons show count in an image.
 #[derive(Clone, Copy, Debug)]
-pub struct ShownCounts {
+pub struct SplatCounts {
     /// In all layers but the halves.
     pub image: f64,
     /// In the halves, times that: 1 each where as many samples have photons in both.
@@ -117,13 +117,13 @@ pub struct ShownCounts {
 }
 
 /// What is known of a pixel once its samples are taken.
-pub struct Taken<'a> {
+pub struct PixelSums<'a> {
     /// Its row of sums, and that of samples that are subtracted.
     pub sums: [&'a [f64]; 2],
     /// The same of what photons show, which is no sum over samples; empty where they show nothing.
-    pub shown: &'a [f64],
+    pub splatted: &'a [f64],
     /// What that counts beside the samples.
-    pub counts: ShownCounts,
+    pub counts: SplatCounts,
     /// The variance of the mean, where replicates tell it.
     pub variance: Option<[f64; 3]>,
     /// The sum of the samples that were kept, of those that are added and subtracted, and what they count.
@@ -151,7 +151,7 @@ pub fn spectral_image(layers: &Layers) -> Option<SpectralImage> {
     Some(SpectralImage { bands: spectrum.bands, has_stokes: spectrum.has_stokes, values: Vec::new() })
 }
 
-impl Taken<'_> {
+impl PixelSums<'_> {
     /// Writes the pixel's values into those that its tile has of each layer.
     pub fn write(&self, layers: &Layers, images: &mut [Vec<f32>]) {
         let mut images = images.iter_mut();
@@ -172,7 +172,7 @@ impl Taken<'_> {
                 let size = layer.channels().len();
                 let values = &mut image[self.place * size..][..size];
                 if layer == Layer::Shadow {
-                    let caught = layers.caught(self.sums[0], self.shown, self.weights.added());
+                    let caught = layers.caught(self.sums[0], self.splatted, self.weights.added());
                     let shadow = caught.map_or([0.0; 3], |caught| caught.shadow());
                     values.copy_from_slice(&shadow.map(stored));
                     continue;
@@ -202,13 +202,13 @@ impl Taken<'_> {
     /// The sums of a number over samples that are added and subtracted, and what photons show of it.
     fn number(&self, at: usize) -> ([f64; 2], f64) {
         let of = |row: &[f64]| row.get(at).copied().unwrap_or_default();
-        (self.sums.map(of), of(self.shown))
+        (self.sums.map(of), of(self.splatted))
     }
 
     /// The mean of a number that is light, with what photons show.
     fn light(&self, at: usize) -> f64 {
-        let (sums, shown) = self.number(at);
-        self.weights.sum(sums) / self.weights.taken() + shown
+        let (sums, splatted) = self.number(at);
+        self.weights.sum(sums) / self.weights.taken() + splatted
     }
 
     /// The mean of a channel over so many samples that are added and subtracted, of which these are the sums: by their
@@ -225,20 +225,20 @@ impl Taken<'_> {
     }
 
     fn value(&self, layer: Layer, at: usize, channel: usize) -> f64 {
-        let (sums, shown) = self.number(at + channel);
+        let (sums, splatted) = self.number(at + channel);
         let weights = &self.weights;
         match layer {
             Layer::Samples => weights.kept().into(),
             Layer::Position | Layer::Uv => sums[0],
             // Photons land independently: the sum of their squares estimates the variance of their sum.
             Layer::Variance => self.variance.map_or_else(
-                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + self.counts.image * shown,
+                || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + self.counts.image * splatted,
                 |variance| variance[channel],
             ),
             Layer::HalfA | Layer::HalfB => {
                 let (taken, _) = self.number(at + OF_A_HALF - 1);
                 let counts = self.counts.halves[usize::from(layer == Layer::HalfB)];
-                self.half(sums, taken.map(|count| count as u32), channel) + counts * shown
+                self.half(sums, taken.map(|count| count as u32), channel) + counts * splatted
             }
             _ if layer.is_light() => self.light(at + channel),
             _ => sums[0] / weights.added(),

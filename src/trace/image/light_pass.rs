@@ -8,13 +8,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::tile::{Shown, Tile};
+use super::tile::{PhotonTile, Tile};
 use crate::film::{Layer, Shard};
 use crate::trace::World;
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, Splat, batches_of_pass, send_shown};
+use crate::trace::photon::{Batch, Splat, batches_of_pass, send_splatted};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
@@ -25,7 +25,7 @@ const AT_ONCE: usize = 64;
 const SEED: u64 = 0x7068_6f74;
 
 /// Who looks on while an image is made.
-pub struct Watch<'a> {
+pub struct Observer<'a> {
     /// Is told how many camera samples, or photons, were done since it was last told, from any thread.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Says when to stop for a while; is asked again and again, from any thread.
@@ -34,7 +34,7 @@ pub struct Watch<'a> {
 
 /// How far a light pass is. It goes on where it stopped.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct Sending {
+pub struct LightPassProgress {
     /// Batches that are done.
     batches: usize,
     /// Photons sent.
@@ -42,7 +42,7 @@ pub struct Sending {
     pub(in crate::trace) stats: Stats,
 }
 
-impl Sending {
+impl LightPassProgress {
     /// Another one follows.
     pub fn begin_anew(&mut self) {
         self.batches = 0;
@@ -65,34 +65,34 @@ impl Sending {
 pub fn show<const N: usize, P: Polarization<N>>(
     world: &World,
     pass: &Pass,
-    sending: &mut Sending,
+    sending: &mut LightPassProgress,
     shard: Shard,
     tiles: &mut [Tile],
-    watch: &Watch,
+    watch: &Observer,
 ) -> bool {
     let Some(targets) = &world.photon_targets else { return true };
     let weight = pass.weight_of_photons();
     let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
-    for tile in tiles.iter_mut().filter(|tile| tile.shown.pixels.is_empty()) {
+    for tile in tiles.iter_mut().filter(|tile| tile.splatted.pixels.is_empty()) {
         let pixels = tile.sums.len();
-        tile.shown = Shown { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
+        tile.splatted = PhotonTile { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
     }
     let add = &mut |pixel: u32, splat: Splat| {
         let splat = splat.times(weight).of_half(pass.is_of_first_half());
         let Splat { change, rgb, .. } = splat;
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
-        let Tile { shown, replicates, .. } = &mut tiles[tile];
+        let Tile { splatted, replicates, .. } = &mut tiles[tile];
         if !world.layers.is_empty() {
-            add_to_layers(world, &splat, &mut shown.layers[place * numbers..][..numbers]);
+            add_to_layers(world, &splat, &mut splatted.layers[place * numbers..][..numbers]);
         }
         if splat.caught {
             let luminance = world.layers.luminance_of(&rgb);
             pass.replicate.iter().for_each(|&replicate| replicates.show_caught(place, replicate, luminance));
             return;
         }
-        (0..3).for_each(|i| shown.pixels[place][i] += rgb[i]);
+        (0..3).for_each(|i| splatted.pixels[place][i] += rgb[i]);
         if change != 0.0 {
-            shown.moved += f64::from(change) * world.amount(rgb);
+            splatted.moved += f64::from(change) * world.amount(rgb);
         }
         pass.replicate.iter().for_each(|&replicate| replicates.show(place, replicate, rgb));
     };
@@ -106,7 +106,9 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
         return world.layers.catch_photon(row, rgb);
     }
     let light = Some(light);
-    world.layers.add(row, &Contribution { light, found: Found::Shown, rgb, moved: 0.0, first, bounces, dispersed });
+    world
+        .layers
+        .add(row, &Contribution { light, found: FoundBy::Splatted, rgb, moved: 0.0, first, bounces, dispersed });
     if let Some(stokes) = &splat.stokes {
         world.layers.add_stokes(row, **stokes, weight);
     }
@@ -119,8 +121,11 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
 }
 
 /// Sends all of them and hands over what they show, pixel by pixel, in an order that never changes; holds no image.
-pub fn splats<const N: usize, P: Polarization<N>>(world: &World, take: &mut dyn FnMut(u32, Splat)) -> Sending {
-    let (mut sending, watch) = (Sending::default(), Watch { progress: &|_| (), is_due: &|| false });
+pub fn splats<const N: usize, P: Polarization<N>>(
+    world: &World,
+    take: &mut dyn FnMut(u32, Splat),
+) -> LightPassProgress {
+    let (mut sending, watch) = (LightPassProgress::default(), Observer { progress: &|_| (), is_due: &|| false });
     if let Some(targets) = &world.photon_targets {
         send_on::<N, P>(world, targets, world.method.seed, &mut sending, &watch, take);
     }
@@ -132,13 +137,13 @@ fn send_on<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     seed: u64,
-    sending: &mut Sending,
-    watch: &Watch,
+    sending: &mut LightPassProgress,
+    watch: &Observer,
     take: &mut dyn FnMut(u32, Splat),
 ) -> bool {
     let batches = batches_of_pass(targets, 0, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
-        let send = |number: usize| (!(watch.is_due)()).then(|| send_shown::<N, P>(world, targets, group[number]));
+        let send = |number: usize| (!(watch.is_due)()).then(|| send_splatted::<N, P>(world, targets, group[number]));
         let done = in_parallel(group.len(), &send);
         for (batch, sent) in group.iter().zip(done) {
             // Splats are added in the order of the batches: what was found beyond a gap is found again.

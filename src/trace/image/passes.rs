@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::layer_sums::ShownCounts;
-use super::light_pass::Sending;
+use super::layer_sums::SplatCounts;
+use super::light_pass::LightPassProgress;
 use super::noise::Measured;
 use crate::trace::World;
 use crate::trace::pass::{Pass, Stage};
@@ -28,7 +28,7 @@ pub struct Progress {
     pub(in crate::trace) stage: Stage,
     /// What they told when they last had as many samples each.
     pub measured: Option<Measured>,
-    pub sending: Sending,
+    pub sending: LightPassProgress,
     /// Of photons that were gathered, and paths from the lights.
     pub(in crate::trace) gathered: Stats,
     pub gathered_photons: u64,
@@ -61,26 +61,26 @@ impl Progress {
 
     /// For how many samples of each pixel photons of each replicate have been shown, where every pass sends some: of
     /// the pass under way, for as large a part of its samples as of its photons.
-    fn shown_for(&self, world: &World) -> [f64; REPLICATES] {
-        let mut shown_for = std::array::from_fn(|replicate| f64::from(self.stage.samples_of(replicate as u32)));
+    fn splatted_for(&self, world: &World) -> [f64; REPLICATES] {
+        let mut splatted_for = std::array::from_fn(|replicate| f64::from(self.stage.samples_of(replicate as u32)));
         let pass = self.pass(world);
         if let Some(replicate) = pass.replicate {
-            shown_for[replicate as usize] += pass.numbers.len() as f64 * self.sending.part(world, &pass);
+            splatted_for[replicate as usize] += pass.numbers.len() as f64 * self.sending.part(world, &pass);
         }
-        shown_for
+        splatted_for
     }
 
     /// What the sums of what photons show count in the image.
-    pub fn shown_counts(&self, world: &World) -> ShownCounts {
+    pub fn shown_counts(&self, world: &World) -> SplatCounts {
         if world.method.stop.is_none() {
-            return ShownCounts { image: 1.0, halves: [1.0; 2], samples: None };
+            return SplatCounts { image: 1.0, halves: [1.0; 2], samples: None };
         }
-        let samples = self.shown_for(world);
+        let samples = self.splatted_for(world);
         let (first, second) = samples.split_at(HALF as usize);
         let [all, first, second] = [&samples[..], first, second].map(|part| part.iter().sum::<f64>());
         let over = |share: f64, samples: f64| if samples > 0.0 { share / samples } else { 0.0 };
         let halves = [first, second].map(|half| over(0.5 * all, half));
-        ShownCounts { image: over(1.0, all), halves, samples: Some(samples) }
+        SplatCounts { image: over(1.0, all), halves, samples: Some(samples) }
     }
 
     /// Camera samples of each pixel after the stage of all replicates.

@@ -8,8 +8,8 @@ use super::passes::most_at_once;
 use super::stopping::doubled;
 use crate::math::Sampler;
 use crate::trace::World;
-use crate::trace::camera::{Finding, PathTracer};
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::pass::Pass;
 use crate::trace::photon::PassLight;
 use crate::trace::walk::Polarization;
@@ -38,8 +38,8 @@ pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLig
 fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
     // The brightest light that a sample got, and how much it is.
     let of_sample: Cell<Option<(f64, Contribution)>> = Cell::new(None);
-    let observer = |found: Finding| {
-        let Finding::Light(contribution) = found else { return };
+    let observer = |found: SensorEvent| {
+        let SensorEvent::Light(contribution) = found else { return };
         let amount = world.amount(contribution.rgb);
         if amount > of_sample.get().map_or(0.0, |most| most.0) && amount.is_finite() {
             of_sample.set(Some((amount, *contribution)));
@@ -57,9 +57,10 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
         for number in rate.of(&pass.numbers) {
             tracer.light_vertices = light.vertices(rate.among_all(number) - pass.numbers.start);
             let sample = tracer.sample(&Sampler::of_pixel(pass.seed, pixel, number), pixel);
-            let shown = world.amount(sample.rgb);
-            all += shown;
-            let brighter = |found: &(f64, Contribution)| shown > 0.0 && brightest.is_none_or(|most| found.0 > most.0);
+            let splatted = world.amount(sample.rgb);
+            all += splatted;
+            let brighter =
+                |found: &(f64, Contribution)| splatted > 0.0 && brightest.is_none_or(|most| found.0 > most.0);
             brightest = of_sample.take().filter(brighter).or(brightest);
         }
     }
@@ -81,12 +82,12 @@ fn numbers_of_passes(world: &World, each: u32) -> Vec<Range<u32>> {
     passes
 }
 
-fn word(found: Found) -> &'static str {
+fn word(found: FoundBy) -> &'static str {
     match found {
-        Found::Hit { .. } => "met by chance",
-        Found::Sampled => "sampled",
-        Found::Connected => "met on its way",
-        Found::Gathered => "gathered from photons",
-        Found::Shown => "shown by photons",
+        FoundBy::Hit { .. } => "met by chance",
+        FoundBy::Sampled => "sampled",
+        FoundBy::Connected => "met on its way",
+        FoundBy::Gathered => "gathered from photons",
+        FoundBy::Splatted => "shown by photons",
     }
 }

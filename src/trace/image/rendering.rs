@@ -9,7 +9,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use super::layer_sums::{images, spectral_image};
-use super::light_pass::{self, Watch};
+use super::light_pass::{self, Observer};
 use super::noise::{Estimate, Measured, Noise, measure};
 use super::passes::Progress;
 use super::rare_light::{RareLight, rare_light};
@@ -91,14 +91,14 @@ pub enum Advance {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotonCost {
     /// One of the light pass.
-    pub shown: u64,
+    pub splatted: u64,
     /// One of a map.
-    pub kept: u64,
+    pub stored: u64,
 }
 
 impl Default for PhotonCost {
     fn default() -> Self {
-        Self { shown: 1, kept: 1 }
+        Self { splatted: 1, stored: 1 }
     }
 }
 
@@ -167,8 +167,8 @@ impl<'a> Rendering<'a> {
         let samples = pixels * u64::from(world.method.samples);
         let passes = world.method.map().map_or(0, |map| u64::from(map.count));
         let photons = |targets: &Option<PhotonTargets>| targets.as_ref().map_or(0, PhotonTargets::photons);
-        let PhotonCost { shown, kept } = self.photon_cost;
-        samples + shown * photons(&world.photon_targets) + kept * passes * photons(&world.map_targets)
+        let PhotonCost { splatted, stored } = self.photon_cost;
+        samples + splatted * photons(&world.photon_targets) + stored * passes * photons(&world.map_targets)
     }
 
     /// How many camera samples the image takes, where photons count as those that take as long; with a stop rule,
@@ -195,8 +195,8 @@ impl<'a> Rendering<'a> {
 
     /// How many of them are done.
     pub fn done(&self) -> u64 {
-        let PhotonCost { shown, kept } = self.photon_cost;
-        self.samples_taken() + shown * self.progress.sending.photons + kept * self.progress.gathered_photons
+        let PhotonCost { splatted, stored } = self.photon_cost;
+        self.samples_taken() + splatted * self.progress.sending.photons + stored * self.progress.gathered_photons
     }
 
     /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how much
@@ -213,7 +213,7 @@ impl<'a> Rendering<'a> {
             let due = stopped.load(Ordering::Relaxed) || is_due();
             stopped.fetch_or(due, Ordering::Relaxed) || due
         };
-        let watch = Watch { progress, is_due: &stops };
+        let watch = Observer { progress, is_due: &stops };
         if !self.begin_pass() {
             return Advance::Finished;
         }
@@ -383,25 +383,25 @@ impl<'a> Rendering<'a> {
     fn stats_of(&self, tile: &Tile, shown_counts: f64) -> Stats {
         let mut stats = tile.stats;
         let samples = f64::from(self.samples()) * shown_counts;
-        stats.polarization += samples * tile.shown.moved;
-        stats.light += samples * tile.shown.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
+        stats.polarization += samples * tile.splatted.moved;
+        stats.light += samples * tile.splatted.pixels.iter().map(|&rgb| self.world().amount(rgb)).sum::<f64>();
         stats
     }
 
     /// Makes the next pass, or goes on with it; answers whether it is finished.
-    fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Watch) -> bool {
+    fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Observer) -> bool {
         let world = &*self.world;
         let progress = &mut self.progress;
         let pass = progress.pass(world);
-        let PhotonCost { shown, kept } = self.photon_cost;
-        let of_shown = Watch { progress: &|photons| (watch.progress)(shown * photons), is_due: watch.is_due };
+        let PhotonCost { splatted, stored } = self.photon_cost;
+        let of_shown = Observer { progress: &|photons| (watch.progress)(splatted * photons), is_due: watch.is_due };
         if !light_pass::show::<N, P>(world, &pass, &mut progress.sending, self.shard, &mut self.tiles, &of_shown) {
             return false;
         }
         let of_stopped = self.light.take().and_then(|light| light.downcast::<PassLight<N, P>>().ok());
         let light = of_stopped.unwrap_or_else(|| {
             let light = PassLight::new(world, &pass);
-            (watch.progress)(kept * light.sent());
+            (watch.progress)(stored * light.sent());
             Box::new(light)
         });
         let (window, passes) = (world.scene.film.window(), progress.passes);

@@ -4,16 +4,16 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 
-use super::light_pass::Sending;
+use super::light_pass::LightPassProgress;
 use super::passes::Progress;
-use super::tile::{Shown, Tile};
+use super::tile::{PhotonTile, Tile};
 use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Layer};
 use crate::trace::World;
 
 /// What stands before the tiles.
 #[derive(Serialize, Deserialize)]
-struct Head {
+struct Header {
     progress: Progress,
     /// Camera samples of each pixel after the pass that was stopped, if any pixel is ahead in it.
     end_of_pass: Option<u32>,
@@ -47,7 +47,7 @@ pub fn save(world: &World, progress: &Progress, tiles: &[Tile], blocks: &mut Blo
     let is_ahead = |tile: &Tile| tile.ahead > 0 || tile.passes > progress.passes;
     let end_of_pass = tiles.iter().any(is_ahead).then(|| progress.end_of_pass(world));
     let (samples, photons) = (world.method.samples, photons(world));
-    blocks.block(&Head { progress: *progress, end_of_pass, samples, photons, tiles: tiles.len() as u64 })?;
+    blocks.block(&Header { progress: *progress, end_of_pass, samples, photons, tiles: tiles.len() as u64 })?;
     tiles.iter().try_for_each(|tile| blocks.block(tile))
 }
 
@@ -61,7 +61,7 @@ pub fn restore(
     tiles: &mut [Tile],
     mut blocks: BlockReader,
 ) -> Result<Restored> {
-    let Head { progress: found, end_of_pass, samples, photons: sent, tiles: saved } = blocks.block()?;
+    let Header { progress: found, end_of_pass, samples, photons: sent, tiles: saved } = blocks.block()?;
     *progress = found;
     let has_more = match &world.method.stop {
         None => progress.samples == samples && samples > world.method.samples,
@@ -88,13 +88,13 @@ pub fn restore(
             return Err(blocks.damaged());
         }
         if is_sent_anew {
-            restored.shown = Shown::default();
+            restored.splatted = PhotonTile::default();
         }
         *tile = restored;
     }
     blocks.end()?;
     if is_sent_anew {
-        progress.sending = Sending::default();
+        progress.sending = LightPassProgress::default();
     }
     Ok(Restored::Continues)
 }

@@ -27,7 +27,7 @@ pub struct Tile {
     /// Sums of their layers.
     pub layers: LayerSums,
     /// What photons show in its pixels.
-    pub shown: Shown,
+    pub splatted: PhotonTile,
     /// What each replicate found, where there are several.
     pub replicates: Replicates,
     pub stats: Stats,
@@ -40,7 +40,7 @@ pub struct Tile {
 /// What photons show in a tile; empty where none are sent. Where every pass sends some, each counts as much as it takes
 /// samples.
 #[derive(Clone, Default, Serialize, Deserialize)]
-pub struct Shown {
+pub struct PhotonTile {
     /// Film values of its pixels.
     pub pixels: Vec<[f64; 3]>,
     /// A row for each pixel of what they show in the layers.
@@ -57,8 +57,8 @@ pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let of_replicates = |_: &_| Replicates::bytes_of_pixel(is_signed, method.map().is_some(), catches, shows);
     let replicates = method.stop.as_ref().map_or(0, of_replicates);
     let sums = (1 + usize::from(is_signed)) * size_of::<PixelSum>();
-    let shown = if shows { size_of::<[f64; 3]>() } else { 0 };
-    scene.film.window().pixels() * (sums + replicates + shown + size_of::<Pixel>()) as u64
+    let splatted = if shows { size_of::<[f64; 3]>() } else { 0 };
+    scene.film.window().pixels() * (sums + replicates + splatted + size_of::<Pixel>()) as u64
 }
 
 impl Tile {
@@ -71,8 +71,8 @@ impl Tile {
             Some(_) => Replicates::new(sums.len(), is_signed, world.has_map(), world.layers.catches()),
             None => Replicates::default(),
         };
-        let (shown, stats) = (Shown::default(), Stats::default());
-        Self { sums, subtracted, layers, shown, replicates, stats, first_non_finite: None, passes: 0, ahead: 0 }
+        let (splatted, stats) = (PhotonTile::default(), Stats::default());
+        Self { sums, subtracted, layers, splatted, replicates, stats, first_non_finite: None, passes: 0, ahead: 0 }
     }
 
     /// Whether it has as many sums of each kind as another one of the same place.
@@ -82,8 +82,8 @@ impl Tile {
         (self.sums.len(), self.subtracted.len()) == (pixels, other.subtracted.len())
             && self.layers.is_shaped_as(&other.layers)
             && self.replicates.is_shaped_as(&other.replicates)
-            && of(pixels).any(|length| length == self.shown.pixels.len())
-            && of(pixels * layers.numbers).any(|length| length == self.shown.layers.len())
+            && of(pixels).any(|length| length == self.splatted.pixels.len())
+            && of(pixels * layers.numbers).any(|length| length == self.splatted.layers.len())
             && (self.ahead as usize) < pixels
     }
 
@@ -94,13 +94,13 @@ impl Tile {
     }
 
     /// What photons show in one of its pixels.
-    pub fn shown_at(&self, place: usize) -> [f64; 3] {
-        self.shown.pixels.get(place).copied().unwrap_or_default()
+    pub fn splatted_at(&self, place: usize) -> [f64; 3] {
+        self.splatted.pixels.get(place).copied().unwrap_or_default()
     }
 
     /// What they show in the layers of one of its pixels.
-    pub fn shown_in_layers(&self, layers: &Layers, place: usize) -> &[f64] {
-        self.shown.layers.get(place * layers.numbers..(place + 1) * layers.numbers).unwrap_or_default()
+    pub fn splatted_in_layers(&self, layers: &Layers, place: usize) -> &[f64] {
+        self.splatted.layers.get(place * layers.numbers..(place + 1) * layers.numbers).unwrap_or_default()
     }
 
     /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.

@@ -2,39 +2,39 @@
 
 use std::borrow::Cow;
 
-use super::layer_sums::{ShownCounts, Taken};
+use super::layer_sums::{PixelSums, SplatCounts};
 use super::tile::Tile;
 use crate::film::{Film, PixelSum, SampleWeights, TileValues};
 use crate::trace::World;
 
 /// The values of a tile of a film.
-pub fn values_of(world: &World, film: &Film, tile: &Tile, counts: ShownCounts) -> TileValues {
+pub fn values_of(world: &World, film: &Film, tile: &Tile, counts: SplatCounts) -> TileValues {
     let mut values = TileValues::blank(film, tile.sums.len());
     (0..tile.sums.len()).for_each(|place| write_pixel(&mut values, world, tile, counts, place));
     values
 }
 
-fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, counts: ShownCounts, place: usize) {
+fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, counts: SplatCounts, place: usize) {
     let (filter, layers) = (world.scene.film.filter, &world.layers);
     let (sum, none) = (&tile.sums[place], PixelSum::default());
     let subtracted = tile.subtracted.get(place).unwrap_or(&none);
     let weights = SampleWeights::new(filter, [sum.kept(), subtracted.kept()]);
-    let shown = tile.shown_at(place).map(|x| x * counts.image);
+    let splatted = tile.splatted_at(place).map(|x| x * counts.image);
     let pixel = &mut values.pixels[place];
-    *pixel = sum.pixel(subtracted, &weights, shown);
+    *pixel = sum.pixel(subtracted, &weights, splatted);
     if layers.is_empty() {
         return;
     }
-    let (sums, shown) = (tile.layers.rows(layers, place), tile.shown_in_layers(layers, place));
-    let shown = &*times(shown, counts.image);
+    let (sums, splatted) = (tile.layers.rows(layers, place), tile.splatted_in_layers(layers, place));
+    let splatted = &*times(splatted, counts.image);
     let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
     let variance = counts.samples.and_then(|each| tile.replicates.variance(place, filter, each));
-    let taken = Taken { sums, shown, counts, variance, rgb, weights, covered, place };
+    let taken = PixelSums { sums, splatted, counts, variance, rgb, weights, covered, place };
     taken.write(layers, &mut values.layers);
     if let Some(spectrum) = &layers.spectrum {
         taken.write_spectrum(spectrum, &mut values.spectral);
     }
-    if let Some(caught) = layers.caught(sums[0], shown, weights.added()) {
+    if let Some(caught) = layers.caught(sums[0], splatted, weights.added()) {
         let alpha = f64::from(pixel.alpha) + layers.luminance_caught(&caught).coverage();
         pixel.alpha = alpha.min(1.0) as f32;
     }

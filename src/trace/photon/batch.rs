@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::follow::{Landing, Photon, Surfaces, follow_photon};
+use super::follow::{Photon, PhotonHit, Surfaces, follow_photon};
 use crate::math::{BranchKey, Sampler};
 use crate::trace::photon_targets::{PhotonTarget, PhotonTargets};
 use crate::trace::stats::Stats;
@@ -28,7 +28,7 @@ pub struct Batch {
 }
 
 /// What became of a batch.
-pub struct Sent<T> {
+pub struct SentBatch<T> {
     pub kept: Vec<T>,
     /// Where each photon was sent and whether anything was kept of it.
     pub places: Vec<([f64; 2], bool)>,
@@ -36,7 +36,7 @@ pub struct Sent<T> {
 }
 
 /// What is kept of a photon that lands.
-type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &Landing<N, P>, &mut Vec<T>) + 'a;
+type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &PhotonHit<N, P>, &mut Vec<T>) + 'a;
 
 /// All photons of some targets, after those of so many passes, batch by batch.
 pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
@@ -62,7 +62,7 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
     batch: Batch,
     learns: bool,
     land: &Land<N, P, T>,
-) -> Sent<T> {
+) -> SentBatch<T> {
     let mut walker = Walker::<N, P>::new(world, PHOTONS);
     let (mut kept, mut places) = (Vec::new(), Vec::new());
     let target = &targets.targets[batch.target];
@@ -81,12 +81,12 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
             let (draw, sampler, over) = (&draw, &sampler, Surfaces::Smooth);
             let early = number < target.photons / 2;
             let photon = Photon { emitted: &emitted, light, draw, sampler, over, early };
-            follow_photon(&mut walker, &photon, &mut |walker, landing| land(walker, landing, &mut kept));
+            follow_photon(&mut walker, &photon, &mut |walker, photon_hit| land(walker, photon_hit, &mut kept));
         }
         if learns {
             places.push((guide_uv, kept.len() > before));
             kept.clear();
         }
     }
-    Sent { kept, places, stats: walker.stats }
+    SentBatch { kept, places, stats: walker.stats }
 }

@@ -3,11 +3,13 @@
 use std::f64::consts::PI;
 
 use crate::light::{LeSample, LightId};
-use crate::material::{Arrival, Branch, Lobes, Scatter};
+use crate::material::{Branch, Lobes, Scatter, ScatterContext};
 use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
-use crate::trace::walk::{Departure, Interaction, Onward, Path, PathKind, Polarization, Polarized, Walker, shading};
+use crate::trace::walk::{
+    Interaction, OutgoingPath, PassThrough, Path, PathKind, Polarization, Polarized, Walker, shading,
+};
 use crate::trace::{Smoothness, World};
 
 /// The branch of what passes holes, beyond those that a material may have.
@@ -34,17 +36,17 @@ pub struct Photon<'a, const N: usize> {
 }
 
 /// Where a photon lands, and the light's way there.
-pub struct Landing<'a, const N: usize, P = Polarized> {
+pub struct PhotonHit<'a, const N: usize, P = Polarized> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
     pub photon: &'a Photon<'a, N>,
 }
 
-impl<const N: usize, P> Landing<'_, N, P> {
+impl<const N: usize, P> PhotonHit<'_, N, P> {
     /// What the light shines on the photon's way, per emission.
     pub fn shone(&self, world: &World) -> Lanes<N> {
         let Photon { emitted, light, .. } = *self.photon;
-        world.scene.lights[light].toward(self.at.arrival.draw, -emitted.ray.direction, emitted.uv())
+        world.scene.lights[light].toward(self.at.context.draw, -emitted.ray.direction, emitted.uv())
     }
 
     /// What the photon brings: its flux, lane by lane.
@@ -72,7 +74,7 @@ pub enum Surfaces {
 pub fn follow_photon<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     photon: &Photon<N>,
-    land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
+    land: &mut dyn FnMut(&Walker<N, P>, &PhotonHit<N, P>),
 ) {
     let path = Path::from_light(walker.world, photon.draw, photon.emitted.ray, photon.light);
     *walker.pending.add(|| path) = path;
@@ -88,39 +90,39 @@ fn advance<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &mut Path<N, P>,
     photon: &Photon<N>,
-    land: &mut dyn FnMut(&Walker<N, P>, &Landing<N, P>),
+    land: &mut dyn FnMut(&Walker<N, P>, &PhotonHit<N, P>),
 ) {
     let &Photon { draw, sampler, over, .. } = photon;
     let world = walker.world;
     if path.vertices >= walker.transport.last_vertex() {
         return;
     }
-    let Some(meeting) = walker.meet(path, draw) else { return };
-    if let Some(onward) = walker.straight(path, draw, &meeting)
-        && passes(walker, path, photon, &meeting.point, &onward)
+    let Some(surface_hit) = walker.meet(path, draw) else { return };
+    if let Some(through) = walker.straight(path, draw, &surface_hit)
+        && passes(walker, path, photon, &surface_hit.point, &through)
     {
         return;
     }
     let is_first = path.vertices == 0;
     let is_smooth = is_first || path.kind == PathKind::Other;
-    let is_target = is_smooth && world.is_photon_target(meeting.hit.object, meeting.point.position);
+    let is_target = is_smooth && world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
     // Whether gathered photons bring what smooth lobes send on.
     let is_left = is_target && over != Surfaces::Smooth && world.has_map() && world.sends_photons(photon.light);
     match over {
         Surfaces::Smooth if is_first && !is_target => return,
-        Surfaces::AllButPhotons if is_left && leaves_all(world, meeting.hit.object) => return,
+        Surfaces::AllButPhotons if is_left && leaves_all(world, surface_hit.hit.object) => return,
         Surfaces::All | Surfaces::AllButPhotons if is_first && !is_target => path.kind = PathKind::Wide,
         _ => {}
     }
-    let boundary = match walker.boundary(path, &meeting) {
+    let boundary = match walker.boundary(path, &surface_hit) {
         Ok(boundary) => boundary,
-        Err(hidden) => return walker.go_on_past(path, &meeting, &hidden),
+        Err(hidden) => return walker.go_on_past(path, &surface_hit, &hidden),
     };
     path.vertices += 1;
-    if over != Surfaces::Smooth && world.ends_light_paths(meeting.hit.object) {
+    if over != Surfaces::Smooth && world.ends_light_paths(surface_hit.hit.object) {
         return;
     }
-    let at = Interaction::new(world, draw, &path.arriving(), &meeting, boundary);
+    let at = Interaction::new(world, draw, &path.arriving(), &surface_hit, boundary);
     if over != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden > 0 || !at.lobes.is_diffuse()) {
         // From the camera, a path has to leave the next diffuse surface to reach this one, or a light that a hidden
         // surface keeps from being sampled. It leaves none for a light.
@@ -130,7 +132,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     let allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown && !(path.is_narrow && at.lobes.is_narrow()) {
-        land(walker, &Landing { path, at: &at, photon });
+        land(walker, &PhotonHit { path, at: &at, photon });
     }
     let goes_on = path.surfaces() < world.method.max_bounces;
     let is_narrow = at.lobes.is_narrow() || (is_first && at.lobes.has_narrow_apart());
@@ -162,10 +164,10 @@ fn passes<const N: usize, P: Polarization<N>>(
     path: &mut Path<N, P>,
     Photon { draw, sampler, .. }: &Photon<N>,
     point: &SurfacePoint,
-    onward: &Onward<N, P>,
+    through: &PassThrough<N, P>,
 ) -> bool {
-    let (throughput, key) = (path.throughput.through(onward.straight.share()), path.key.child(BEYOND));
-    let beyond = Path { throughput, key, polarization: onward.polarization, ..path.passed(point) };
+    let (throughput, key) = (path.throughput.through(through.straight.share()), path.key.child(BEYOND));
+    let beyond = Path { throughput, key, polarization: through.polarization, ..path.passed(point) };
     let all = throughput == path.throughput;
     if all || walker.follows_all(path, draw) {
         *walker.pending.add(|| *path) = beyond;
@@ -189,22 +191,22 @@ fn scatter<const N: usize, P: Polarization<N>>(
     at: &Interaction<N>,
     sampler: &Sampler,
 ) {
-    let Interaction { material, point, arrival, flat, .. } = at;
+    let Interaction { material, point, context, flat, .. } = at;
     let u = sampler.four(path.key, SCATTER);
     walker.branches.clear();
     if point.shading == point.normal {
-        material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
+        material.scatter(context, [u[0], u[1]], &mut walker.branches);
         walker.polarize(path, at);
         let is_reciprocal = material.is_reciprocal();
         let is_turned = |branch: &Branch<N>| !is_reciprocal && branch.pdf.is_some();
         walker.branches.iter_mut().filter(|branch| is_turned(branch)).for_each(|branch| turn_back(at, branch));
-        send_forward(arrival, walker.branches.iter_mut().filter(|branch| !is_turned(branch)));
+        send_forward(context, walker.branches.iter_mut().filter(|branch| !is_turned(branch)));
     } else {
         // By shading normals that depend on the viewer, not every direction is drawn from which light arrives: of those
         // that the material draws, only a part.
         let by_material = if at.lobes.is_diffuse() { 0.0 } else { BY_MATERIAL };
         if u[2] < by_material {
-            shading::scatter(material, arrival, *flat, [u[0], u[1]], &mut walker.branches);
+            shading::scatter(material, context, *flat, [u[0], u[1]], &mut walker.branches);
         } else {
             let wi = unit(Frame::about(*flat).to_world(cosine_hemisphere([u[0], u[1]])));
             walker.branches.push(Branch::drawn(wi, Lanes::ZERO, 0.0));
@@ -212,34 +214,34 @@ fn scatter<const N: usize, P: Polarization<N>>(
         walker.branches.retain_mut(|branch| {
             let (is_wide, cos) = (branch.pdf.is_some() && !branch.crosses, branch.wi.dot(*flat));
             let Some(seen) = seen_from(at, branch.wi).filter(|_| is_wide && cos > 0.0) else { return false };
-            let of_material = || shading::evaluate(material, arrival, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
+            let of_material = || shading::evaluate(material, context, *flat, branch.wi).map_or(0.0, |(_, pdf)| pdf);
             let of_material = if by_material > 0.0 { of_material() } else { 0.0 };
             let pdf = by_material * of_material + (1.0 - by_material) * cos / PI;
-            branch.share = seen * (cos / (arrival.wo.dot(*flat) * pdf)) as f32;
+            branch.share = seen * (cos / (context.wo.dot(*flat) * pdf)) as f32;
             branch.pdf = Some(pdf);
             true
         });
         walker.polarize_forward(path, at);
     }
-    walker.follow(&mut Departure::new(walker.world, path, at).of_light_path(), sampler);
+    walker.follow(&mut OutgoingPath::new(walker.world, path, at).of_light_path(), sampler);
 }
 
 /// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
 fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
     let viewed = at.viewed_from(direction);
-    shading::evaluate(at.material, &viewed.arrival, viewed.flat, at.arrival.wo).map(|(bsdf_cos, _)| bsdf_cos)
+    shading::evaluate(at.material, &viewed.context, viewed.flat, at.context.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }
 
 /// Replaces the share of a branch by that of light the other way: materials need not answer alike to both.
 fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
-    let onward = shading::evaluate(at.material, &at.arrival, at.flat, branch.wi);
-    let (Some((onward, _)), Some(back)) = (onward, seen_from(at, branch.wi)) else {
+    let forward = shading::evaluate(at.material, &at.context, at.flat, branch.wi);
+    let (Some((forward, _)), Some(back)) = (forward, seen_from(at, branch.wi)) else {
         branch.share = Lanes::ZERO;
         return;
     };
     // Radiance changes between media, and flux does not.
-    let cosines = (branch.wi.dot(at.flat) / at.arrival.wo.dot(at.flat)).abs() * branch.eta_scale;
-    let ratio = |i: usize| if onward[i] == 0.0 { 0.0 } else { back[i] * cosines as f32 / onward[i] };
+    let cosines = (branch.wi.dot(at.flat) / at.context.wo.dot(at.flat)).abs() * branch.eta_scale;
+    let ratio = |i: usize| if forward[i] == 0.0 { 0.0 } else { back[i] * cosines as f32 / forward[i] };
     branch.share = branch.share * Lanes::from_fn(ratio);
 }
 
@@ -250,29 +252,29 @@ fn bounce<const N: usize, P: Polarization<N>>(
     at: Interaction<N>,
     sampler: &Sampler,
 ) {
-    let plain = shading::plain_normal(at.point, at.arrival.wo);
+    let plain = shading::plain_normal(at.point, at.context.wo);
     let at = at.by_normal(plain);
-    let Interaction { material, point, arrival, .. } = &at;
-    let goes_on = at.lobes.has_delta() && arrival.wo.dot(arrival.normal) > 0.0;
+    let Interaction { material, point, context, .. } = &at;
+    let goes_on = at.lobes.has_delta() && context.wo.dot(context.normal) > 0.0;
     if !goes_on || path.surfaces() >= walker.world.method.max_bounces {
         return;
     }
     walker.branches.clear();
     let u = sampler.four_plain(path.key, SCATTER);
-    material.scatter(arrival, [u[0], u[1]], &mut walker.branches);
-    let back = arrival.wo;
+    material.scatter(context, [u[0], u[1]], &mut walker.branches);
+    let back = context.wo;
     walker.branches.retain(|branch| branch.pdf.is_none() && shading::is_plain(point, branch.wi, back, branch.crosses));
     walker.polarize(path, &at);
     for branch in &mut walker.branches {
         branch.share = branch.share * shading::forward_factor(point, branch.wi, back) as f32;
     }
-    send_forward(arrival, walker.branches.iter_mut());
-    walker.follow(&mut Departure::new(walker.world, path, &at), sampler);
+    send_forward(context, walker.branches.iter_mut());
+    walker.follow(&mut OutgoingPath::new(walker.world, path, &at), sampler);
 }
 
 /// Makes shares of radiance that cross a smooth surface shares of flux.
-fn send_forward<'a, const N: usize>(arrival: &Arrival<N>, branches: impl Iterator<Item = &'a mut Branch<N>>) {
-    if let Some(forward) = arrival.forward() {
+fn send_forward<'a, const N: usize>(context: &ScatterContext<N>, branches: impl Iterator<Item = &'a mut Branch<N>>) {
+    if let Some(forward) = context.forward() {
         branches.filter(|branch| branch.crosses).for_each(|branch| branch.share = branch.share * forward);
     }
 }

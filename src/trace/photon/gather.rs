@@ -14,13 +14,13 @@
 use std::f64::consts::PI;
 
 use super::kernel::Kernel;
-use super::photon_map::{Alone, Landed, PhotonMap, Together};
+use super::photon_map::{JointLanes, PhotonMap, SingleLane, StoredPhoton};
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Wavelength};
-use crate::trace::arrived::{Arrived, SourceId};
 use crate::trace::contribution::{Contribution, add};
+use crate::trace::received_light::{ReceivedLight, SourceId};
 use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
 use crate::trace::{World, contribution};
 
@@ -53,10 +53,10 @@ struct Place<'a> {
 }
 
 /// What was found, and one photon of it, drawn by what it brings.
-struct Found<const N: usize> {
+struct GatheredSum<const N: usize> {
     sum: [f64; 3],
     /// What each photon brings, if that is asked for.
-    parts: Option<Vec<Part<N>>>,
+    parts: Option<Vec<PhotonShare<N>>>,
     weight: f64,
     drawn: Option<Chosen>,
     u: f64,
@@ -75,29 +75,29 @@ struct Chosen {
 /// Light that was gathered, and what each photon brings of it if that was asked for.
 pub struct Gathered<const N: usize> {
     pub all: Contribution,
-    pub parts: Option<Vec<Part<N>>>,
+    pub parts: Option<Vec<PhotonShare<N>>>,
 }
 
 /// What one photon brings, but for a factor.
-pub struct Part<const N: usize> {
+pub struct PhotonShare<const N: usize> {
     pub contribution: Contribution,
     /// S1, S2 and S3 of it, if they are asked for.
     pub stokes: Option<[[f64; 3]; 3]>,
-    pub spectrum: PartSpectrum<N>,
+    pub spectrum: PhotonSpectrum<N>,
     pub factor: f64,
 }
 
 /// The spectrum of what a photon brings.
-pub enum PartSpectrum<const N: usize> {
+pub enum PhotonSpectrum<const N: usize> {
     /// Lanes by which the light of a source arrives at the sensor, whether they parted, and the parts of them that S1,
     /// S2 and S3 are, if their spectra are asked for.
     Lanes { source: SourceId, lanes: Lanes<N>, parted: bool, stokes: Option<Box<[Lanes<N>; 3]>> },
     /// One wavelength.
-    Alone(Wavelength),
+    SingleLane(Wavelength),
 }
 
-/// A place that a path has reached, around which photons are gathered.
-pub struct Gathering<'a, const N: usize, P> {
+/// Where a camera path gathers the photons around it.
+pub struct GatherPoint<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
@@ -109,25 +109,25 @@ pub struct Gathering<'a, const N: usize, P> {
 struct Seen<const N: usize> {
     rgb: [f64; 3],
     stokes: Option<[[f64; 3]; 3]>,
-    spectrum: PartSpectrum<N>,
+    spectrum: PhotonSpectrum<N>,
 }
 
 impl<const N: usize> Seen<N> {
     /// Of lanes by which it arrives.
-    fn new(world: &World, arrived: &Arrived<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
-        let Arrived { source, lanes, parted, .. } = *arrived;
+    fn new(world: &World, received: &ReceivedLight<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
+        let ReceivedLight { source, lanes, parted, .. } = *received;
         let of_bands = stokes.filter(|_| world.layers.spectrum.is_some()).map(Box::new);
         Self {
-            rgb: arrived.rgb(&world.responses),
-            stokes: stokes.map(|stokes| stokes.map(|part| arrived.times(part, &world.responses))),
-            spectrum: PartSpectrum::Lanes { source, lanes: *lanes, parted, stokes: of_bands },
+            rgb: received.rgb(&world.responses),
+            stokes: stokes.map(|stokes| stokes.map(|part| received.times(part, &world.responses))),
+            spectrum: PhotonSpectrum::Lanes { source, lanes: *lanes, parted, stokes: of_bands },
         }
     }
 }
 
 /// Photons that are looked for around a place.
 struct Search<'a, const N: usize, P> {
-    around: &'a Gathering<'a, N, P>,
+    around: &'a GatherPoint<'a, N, P>,
     kernel: &'a Kernel<N>,
     place: Place<'a>,
 }
@@ -137,11 +137,11 @@ struct Search<'a, const N: usize, P> {
 pub fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
     kernel: &Kernel<N>,
-    around: &Gathering<N, P>,
+    around: &GatherPoint<N, P>,
     sampler: &Sampler,
     apart: bool,
 ) -> Gathered<N> {
-    let Gathering { world, path, at, .. } = around;
+    let GatherPoint { world, path, at, .. } = around;
     let (point, flat) = (at.point, at.flat);
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
     let crosses = at.lobes.is_transmissive();
@@ -153,7 +153,7 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     let front = flat.dot(point.normal) > 0.0;
     let place = Place { world, position: point.position, flat, front, crosses, radius };
     let search = Search { around, kernel, place };
-    let mut found = Found { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
+    let mut found = GatheredSum { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
     photons.together.near(point.position, radius, &mut |position, photon| {
         search.add_together(&mut found, position, photon);
     });
@@ -166,20 +166,34 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     Gathered { all: around.all(rgb, moved), parts: found.parts }
 }
 
-impl<const N: usize, P: Polarization<N>> Gathering<'_, N, P> {
+impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
     /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least,
     /// as they do wherever the path has left one.
     fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
         let (first, bounces) = (self.path.first, self.path.bounces + 2);
-        Contribution { light: None, found: contribution::Found::Gathered, rgb, moved, first, bounces, dispersed: false }
+        Contribution {
+            light: None,
+            found: contribution::FoundBy::Gathered,
+            rgb,
+            moved,
+            first,
+            bounces,
+            dispersed: false,
+        }
     }
 
     /// What one photon brings, but for a factor.
-    fn brought<T>(&self, photon: &Landed<T, P::Landed>, light: LightId, rgb: [f64; 3], parted: bool) -> Contribution {
+    fn brought<T>(
+        &self,
+        photon: &StoredPhoton<T, P::Stored>,
+        light: LightId,
+        rgb: [f64; 3],
+        parted: bool,
+    ) -> Contribution {
         let Self { world, path, at, excitation } = self;
         Contribution {
             light: Some(light),
-            found: contribution::Found::Gathered,
+            found: contribution::FoundBy::Gathered,
             rgb,
             moved: 0.0,
             first: path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0),
@@ -196,35 +210,40 @@ impl<const N: usize, P: Polarization<N>> Gathering<'_, N, P> {
 
 impl<const N: usize, P: Polarization<N>> Search<'_, N, P> {
     /// Adds a photon whose lanes have not parted.
-    fn add_together(&self, found: &mut Found<N>, position: DVec3, photon: &Landed<Together<N>, P::Landed>) {
+    fn add_together(
+        &self,
+        found: &mut GatheredSum<N>,
+        position: DVec3,
+        photon: &StoredPhoton<JointLanes<N>, P::Stored>,
+    ) {
         let Self { around, kernel, place } = self;
-        let Gathering { world, path, at, excitation } = around;
+        let GatherPoint { world, path, at, excitation } = around;
         let Some(density) = place.density(path, position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.arrival, at.flat, photon.back) else { return };
-        let (draw, parted, carries) = (at.arrival.draw, around.parted(photon.back), &photon.carries);
+        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.back) else { return };
+        let (draw, parted, carries) = (at.context.draw, around.parted(photon.back), &photon.carries);
         let by_heroes = draw.hero_factor(parted).is_some();
         let onto_heroes = |lanes: Lanes<N>| kernel.matching.onto_heroes(draw, lanes);
         let flux = if by_heroes { onto_heroes(carries.flux) } else { carries.flux };
-        let read = if by_heroes { Some(P::read_landed(&photon.polarization, onto_heroes)) } else { None };
+        let read = if by_heroes { Some(P::read_stored(&photon.polarization, onto_heroes)) } else { None };
         let light = read.as_ref().unwrap_or(&photon.polarization);
         let joined = path.polarization.join(at, photon.back, light, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos * flux);
-        let arrived = Arrived { source: carries.light, draw, lanes: &lanes, parted };
+        let received = ReceivedLight { source: carries.light, draw, lanes: &lanes, parted };
         let Seen { rgb, stokes, spectrum } = match excitation {
-            None => Seen::new(world, &arrived, joined.stokes()),
-            Some(dye) => dye.seen(world, &arrived, |seen| Seen::new(world, seen, dye.polarization.stokes())),
+            None => Seen::new(world, &received, joined.stokes()),
+            Some(dye) => dye.seen(world, &received, |seen| Seen::new(world, seen, dye.polarization.stokes())),
         };
         let contribution = around.brought(photon, carries.light, rgb, parted);
-        let part = Part { contribution, stokes, spectrum, factor: density };
+        let part = PhotonShare { contribution, stokes, spectrum, factor: density };
         found.add(world, position, part, || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes));
     }
 
     /// Adds a photon of one wavelength of lanes that have parted.
-    fn add_alone(&self, found: &mut Found<N>, position: DVec3, photon: &Landed<Alone, P::Landed>) {
+    fn add_alone(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<SingleLane, P::Stored>) {
         let Self { around, kernel, place } = self;
-        let Gathering { world, path, at, excitation } = around;
-        let Alone { wavelength, light, weight, color } = &photon.carries;
-        let (draw, parted) = (at.arrival.draw, around.parted(photon.back));
+        let GatherPoint { world, path, at, excitation } = around;
+        let SingleLane { wavelength, light, weight, color } = &photon.carries;
+        let (draw, parted) = (at.context.draw, around.parted(photon.back));
         let by_heroes = draw.hero_factor(parted).is_some();
         let read = |lanes: Lanes<N>| match by_heroes {
             true => kernel.matching.shared(draw, wavelength, lanes, parted),
@@ -235,7 +254,7 @@ impl<const N: usize, P: Polarization<N>> Search<'_, N, P> {
             return;
         }
         let Some(density) = place.density(path, position, photon) else { return };
-        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.arrival, at.flat, photon.back) else { return };
+        let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.back) else { return };
         let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos);
         let seen = read(lanes);
@@ -243,7 +262,7 @@ impl<const N: usize, P: Polarization<N>> Search<'_, N, P> {
             None => {
                 let share = |part: Lanes<N>| if seen == 0.0 { 0.0 } else { read(lanes * part) / seen };
                 let stokes = joined.stokes().map(|stokes| stokes.map(|part| color.map(|x| x * share(part))));
-                Seen { rgb: *color, stokes, spectrum: PartSpectrum::Alone(*wavelength) }
+                Seen { rgb: *color, stokes, spectrum: PhotonSpectrum::SingleLane(*wavelength) }
             }
             Some(dye) => {
                 let brightness = weight * dye.worth(world, *light, wavelength);
@@ -251,15 +270,15 @@ impl<const N: usize, P: Polarization<N>> Search<'_, N, P> {
             }
         };
         let contribution = around.brought(photon, *light, rgb, true);
-        let part = Part { contribution, stokes, spectrum, factor: density * seen };
+        let part = PhotonShare { contribution, stokes, spectrum, factor: density * seen };
         found.add(world, position, part, || {
             path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes)
         });
     }
 }
 
-impl<const N: usize> Found<N> {
-    fn add(&mut self, world: &World, position: DVec3, part: Part<N>, change: impl FnOnce() -> f64) {
+impl<const N: usize> GatheredSum<N> {
+    fn add(&mut self, world: &World, position: DVec3, part: PhotonShare<N>, change: impl FnOnce() -> f64) {
         let rgb = part.contribution.rgb.map(|x| part.factor * x);
         let weight = world.amount(rgb);
         add(&mut self.sum, rgb);
@@ -288,7 +307,7 @@ impl Place<'_> {
         &self,
         path: &Path<N, P>,
         position: DVec3,
-        photon: &Landed<T, L>,
+        photon: &StoredPhoton<T, L>,
     ) -> Option<f64> {
         let short = path.surfaces() + photon.surfaces - 1 <= self.world.method.max_bounces;
         if !short || photon.crosses != self.crosses || !self.goes_on(position, photon.flat, photon.front) {
@@ -318,18 +337,18 @@ impl Place<'_> {
     /// change.
     fn seen_of<const N: usize>(
         &self,
-        found: &mut Found<N>,
+        found: &mut GatheredSum<N>,
         point: &SurfacePoint,
         sampler: &Sampler,
         key: BranchKey,
     ) -> ([f64; 3], f64) {
-        let Found { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
+        let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
         let Some(chosen) = chosen else { return (sum, 0.0) };
         let many = weight / chosen.weight;
         let mut moved = many * chosen.change * self.world.amount(chosen.rgb);
         let up = point.leave(self.flat);
         let far = HIGH * self.radius;
-        let free = self.world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.crossing.t);
+        let free = self.world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.intersection.t);
         let (height, from) = (far.min(free), up.at(far.min(free)));
         if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
             (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
@@ -364,7 +383,8 @@ impl Place<'_> {
         let way = to - from;
         let ray = Ray { origin: from, direction: unit(way) };
         let hit = scene.nearest(&ray, way.length() * further, &|_| true)?;
-        let SurfacePoint { position, normal, .. } = scene.objects[hit.object as usize].shape.point(&ray, &hit.crossing);
+        let SurfacePoint { position, normal, .. } =
+            scene.objects[hit.object as usize].shape.point(&ray, &hit.intersection);
         let front = normal.dot(ray.direction) < 0.0;
         let flat = if front { normal } else { -normal };
         let goes_on = flat.dot(self.flat) > 0.0 && self.goes_on(position, flat, front);

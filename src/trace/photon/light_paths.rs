@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use super::batch::{PHOTONS, batches_of_pass, send};
-use super::follow::{Landing, Photon, Surfaces, follow_photon};
+use super::follow::{Photon, PhotonHit, Surfaces, follow_photon};
 use super::light_vertices::{LightVertex, LightVertices, holds_vertices};
 use super::usefulness::{Place, is_seen, places, usefulness};
 use crate::film::Layer;
@@ -167,8 +167,8 @@ impl<'a> LightPaths<'a> {
             let seed = seed_of(self.seed ^ PHOTON_SEED, set.into());
             let batches = batches_of_pass(&targets, 0, seed);
             let of_batch = |number: usize| {
-                send(self.world, &targets, batches[number], false, &|_, landing: &Landing<N, P>, vertices| {
-                    vertices.extend(kept(self.world, landing, true));
+                send(self.world, &targets, batches[number], false, &|_, photon_hit: &PhotonHit<N, P>, vertices| {
+                    vertices.extend(kept(self.world, photon_hit, true));
                 })
             };
             for sent in in_parallel(batches.len(), &of_batch) {
@@ -219,7 +219,7 @@ impl<'a> LightPaths<'a> {
             let sampler = self.sampler(set, number as u32);
             let Some((light, emitted)) = self.start(&sampler) else { continue };
             let photon = Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over, early: true };
-            follow_photon(&mut walker, &photon, &mut |_, landing| vertices.extend(kept(world, landing, false)));
+            follow_photon(&mut walker, &photon, &mut |_, photon_hit| vertices.extend(kept(world, photon_hit, false)));
         }
         (vertices, walker.stats)
     }
@@ -245,10 +245,10 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 
 /// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over
 /// those from lights that send photons is left to photons.
-fn kept<const N: usize, P>(world: &World, landing: &Landing<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
-    let Landing { path, at, photon } = landing;
+fn kept<const N: usize, P>(world: &World, photon_hit: &PhotonHit<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
+    let PhotonHit { path, at, photon } = photon_hit;
     let Material::Diffuse(diffuse) = at.material else { return None };
-    let leaving = landing.flux(world) * at.arrival.read(&diffuse.reflectance) * FRAC_1_PI as f32;
+    let leaving = photon_hit.flux(world) * at.context.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
     let is_left = !is_of_photon && world.has_map() && world.sends_photons(photon.light) && came_over_smooth;
     let usable = holds_vertices(world, at.object, at.point)

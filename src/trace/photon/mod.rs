@@ -9,13 +9,13 @@ mod light_paths;
 mod light_vertices;
 mod pass_light;
 mod photon_map;
-mod show;
+mod splat;
 mod usefulness;
 
 pub use batch::{Batch, batches, batches_of_pass, send};
-pub use gather::{Gathered, Gathering, Part, PartSpectrum, gather};
+pub use gather::{GatherPoint, Gathered, PhotonShare, PhotonSpectrum, gather};
 pub use light_paths::{LightPaths, SHARED, can_be_followed, few_vertices, light_paths_reach};
 pub use light_vertices::{LightVertex, LightVertices, holds_vertices};
 pub use pass_light::PassLight;
-pub use photon_map::{PhotonMap, photons, send_kept};
-pub use show::{Splat, send_shown, show};
+pub use photon_map::{PhotonMap, photons, send_stored};
+pub use splat::{Splat, send_splatted, splat_photon};

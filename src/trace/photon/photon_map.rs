@@ -4,8 +4,8 @@
 //! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
 //! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
-use super::batch::{Batch, Sent, batches_of_pass, send};
-use super::follow::{Landing, Photon};
+use super::batch::{Batch, SentBatch, batches_of_pass, send};
+use super::follow::{Photon, PhotonHit};
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
 use crate::light::LightId;
@@ -18,9 +18,9 @@ use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Interaction, Polarization, Polarized};
 
-/// A photon that has landed, and what it carries.
+/// A photon as the map stores it: where it landed, and what it carries.
 #[derive(Clone, Debug)]
-pub struct Landed<T, L = Polarized> {
+pub struct StoredPhoton<T, L = Polarized> {
     /// Unit vector back along its way.
     pub back: DVec3,
     /// The surface's own unit normal there, on the side it came from.
@@ -38,7 +38,7 @@ pub struct Landed<T, L = Polarized> {
 
 /// Lanes that have not parted.
 #[derive(Clone, Debug)]
-pub struct Together<const N: usize> {
+pub struct JointLanes<const N: usize> {
     /// Flux, lane by lane, over the cosine under which it arrived.
     pub flux: Lanes<N>,
     pub light: LightId,
@@ -46,7 +46,7 @@ pub struct Together<const N: usize> {
 
 /// One wavelength of lanes that have parted.
 #[derive(Clone, Debug)]
-pub struct Alone {
+pub struct SingleLane {
     pub wavelength: Wavelength,
     pub light: LightId,
     /// Its flux over the cosine under which it arrived ..
@@ -57,8 +57,8 @@ pub struct Alone {
 
 /// The photons of one pass.
 pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
-    pub together: KdTree<Landed<Together<N>, P::Landed>>,
-    pub alone: KdTree<Landed<Alone, P::Landed>>,
+    pub together: KdTree<StoredPhoton<JointLanes<N>, P::Stored>>,
+    pub alone: KdTree<StoredPhoton<SingleLane, P::Stored>>,
     /// Whether any of them landed on a surface that light crosses.
     pub crosses: bool,
     pub kernel: Kernel<N>,
@@ -72,9 +72,9 @@ pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
 const SEED: u64 = 0x6d61_7073;
 
 /// What is kept of a photon where it lands.
-pub enum Kept<const N: usize, L = Polarized> {
-    Together(Landed<Together<N>, L>),
-    Alone(Landed<Alone, L>),
+pub enum PhotonRecord<const N: usize, L = Polarized> {
+    JointLanes(StoredPhoton<JointLanes<N>, L>),
+    SingleLane(StoredPhoton<SingleLane, L>),
 }
 
 /// Sends the photons of one pass.
@@ -83,17 +83,17 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     let targets = &*pass.targets(world, targets, world.method.map()?.count);
     let (seed, before) = pass.photon_seed();
     let batches = batches_of_pass(targets, before, seed ^ SEED);
-    let done = in_parallel(batches.len(), &|number| send_kept::<N, P>(world, targets, batches[number]));
+    let done = in_parallel(batches.len(), &|number| send_stored::<N, P>(world, targets, batches[number]));
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
         stats += sent.stats;
         for (place, kept) in sent.kept {
             match kept {
-                Kept::Together(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
+                PhotonRecord::JointLanes(photon) if photon.carries.flux.0.iter().all(|x| x.is_finite()) => {
                     together.push((place, photon));
                 }
-                Kept::Alone(photon) if photon.carries.weight.is_finite() => alone.push((place, photon)),
+                PhotonRecord::SingleLane(photon) if photon.carries.weight.is_finite() => alone.push((place, photon)),
                 _ => stats.non_finite += 1,
             }
         }
@@ -106,25 +106,25 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
 }
 
 /// Sends one batch.
-pub fn send_kept<const N: usize, P: Polarization<N>>(
+pub fn send_stored<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     batch: Batch,
-) -> Sent<(DVec3, Kept<N, P::Landed>)> {
-    send(world, targets, batch, false, &|_, landing: &Landing<N, P>, kept| keep(world, landing, kept))
+) -> SentBatch<(DVec3, PhotonRecord<N, P::Stored>)> {
+    send(world, targets, batch, false, &|_, photon_hit: &PhotonHit<N, P>, kept| keep(world, photon_hit, kept))
 }
 
 /// Keeps a photon where it lands.
 fn keep<const N: usize, P: Polarization<N>>(
     world: &World,
-    landing: &Landing<N, P>,
-    kept: &mut Vec<(DVec3, Kept<N, P::Landed>)>,
+    photon_hit: &PhotonHit<N, P>,
+    kept: &mut Vec<(DVec3, PhotonRecord<N, P::Stored>)>,
 ) {
-    let Landing { path, at, photon: Photon { light, .. } } = *landing;
-    let Interaction { arrival, flat, point, .. } = at;
-    let flux = landing.flux(world) * (1.0 / arrival.wo.dot(*flat).abs()) as f32;
-    let photon = Landed {
-        back: arrival.wo,
+    let PhotonHit { path, at, photon: Photon { light, .. } } = *photon_hit;
+    let Interaction { context, flat, point, .. } = at;
+    let flux = photon_hit.flux(world) * (1.0 / context.wo.dot(*flat).abs()) as f32;
+    let photon = StoredPhoton {
+        back: context.wo,
         flat: *flat,
         front: flat.dot(point.normal) > 0.0,
         crosses: at.lobes.is_transmissive(),
@@ -133,23 +133,23 @@ fn keep<const N: usize, P: Polarization<N>>(
         carries: (),
     };
     let (light, response) = (*light, &world.responses[*light]);
-    let by_heroes = Matching::<N>::alone(arrival.draw, flux, path.parted, |lane, wavelength, weight| {
+    let by_heroes = Matching::<N>::alone(context.draw, flux, path.parted, |lane, wavelength, weight| {
         let of_lane = |lanes: Lanes<N>| Lanes([lanes[lane]; N]);
-        let polarization = P::read_landed(&photon.polarization, of_lane);
+        let polarization = P::read_stored(&photon.polarization, of_lane);
         let color = wavelength.worth(response).map(|x| weight * x);
-        let carries = Alone { wavelength, light, weight, color };
-        kept.push((point.position, Kept::Alone(photon.with(polarization, carries))));
+        let carries = SingleLane { wavelength, light, weight, color };
+        kept.push((point.position, PhotonRecord::SingleLane(photon.with(polarization, carries))));
     });
     if !by_heroes {
         let polarization = photon.polarization.clone();
-        kept.push((point.position, Kept::Together(photon.with(polarization, Together { flux, light }))));
+        kept.push((point.position, PhotonRecord::JointLanes(photon.with(polarization, JointLanes { flux, light }))));
     }
 }
 
-impl<L> Landed<(), L> {
-    fn with<T>(&self, polarization: L, carries: T) -> Landed<T, L> {
+impl<L> StoredPhoton<(), L> {
+    fn with<T>(&self, polarization: L, carries: T) -> StoredPhoton<T, L> {
         let Self { back, flat, front, crosses, surfaces, .. } = *self;
-        Landed { back, flat, front, crosses, surfaces, polarization, carries }
+        StoredPhoton { back, flat, front, crosses, surfaces, polarization, carries }
     }
 }
 

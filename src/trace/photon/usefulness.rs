@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use crate::math::{BranchKey, DVec2, DVec3, Ray, Sampler, unit};
-use crate::scene::{Ends, Primitive};
+use crate::scene::{Primitive, RayEnds};
 use crate::shape::SurfacePoint;
 use crate::trace::World;
 
@@ -69,7 +69,7 @@ pub fn places(world: &World) -> Vec<Place> {
         let [x, y] = film.whole().middle_of_cell(SIDE, number).map(|x| f64::from(x) + 0.5);
         let ray = scene.camera.ray(DVec2::new(x, y));
         let hit = scene.intersect_seen(&ray, None)?;
-        let point = scene.objects[hit.object as usize].point(&ray, &hit.crossing);
+        let point = scene.objects[hit.object as usize].point(&ray, &hit.intersection);
         let is_diffuse = world.lobes[scene.objects[hit.object as usize].material as usize].is_diffuse();
         is_diffuse.then_some(Place { point, primitive: hit.primitive() })
     };
@@ -81,7 +81,7 @@ fn sees(world: &World, place: &Place, vertex: DVec3, last_occluder: &Cell<Option
     let way = vertex - place.point.position;
     let Some(direction) = way.try_normalize() else { return true };
     let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };
-    let ends = Ends { left: Some(place.primitive), ..Ends::default() };
+    let ends = RayEnds { left: Some(place.primitive), ..RayEnds::default() };
     let counts = |object| !world.is_see_through(object);
     !world.scene.is_occluded_by(&ray, way.length() * NEARLY, ends, last_occluder, &counts)
 }

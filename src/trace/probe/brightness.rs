@@ -7,7 +7,7 @@ use super::room::Room;
 use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
-use crate::trace::camera::{Bounce, Finding};
+use crate::trace::camera::{Bounce, SensorEvent};
 use crate::trace::photon::few_vertices;
 use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
@@ -60,7 +60,7 @@ fn of_room<const N: usize>(world: &World) -> Option<RoomLight> {
 pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
     let vertices = few_vertices::<N>(world);
     found_all_over(world, side, SEED, vertices.as_ref(), |finding| match finding {
-        Finding::Bounce(bounce) => Some(bounce),
+        SensorEvent::Bounce(bounce) => Some(bounce),
         _ => None,
     })
 }
@@ -97,10 +97,10 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
         let ray = Ray { origin: bounce.from, direction: bounce.direction };
         let mut any = false;
         for place in &mut places {
-            let Some(crossing) = place.shape.intersect(&ray, f64::INFINITY) else { continue };
+            let Some(intersection) = place.shape.intersect(&ray, f64::INFINITY) else { continue };
             // What is hidden before the place is as much its own as what lies beyond it.
             place.squares.add(bounce);
-            any |= bounce.distance > NEARLY * crossing.t;
+            any |= bounce.distance > NEARLY * intersection.t;
         }
         if !any {
             elsewhere.add(bounce);

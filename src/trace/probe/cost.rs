@@ -9,7 +9,7 @@ use crate::trace::camera::PathTracer;
 use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{alone, in_parallel};
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_kept, send_shown};
+use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_splatted, send_stored};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -35,9 +35,9 @@ pub struct Probe {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhotonTimes {
     /// Of one of the light pass.
-    pub shown: Duration,
+    pub splatted: Duration,
     /// Of one of a map.
-    pub kept: Duration,
+    pub stored: Duration,
 }
 
 impl PhotonTimes {
@@ -45,7 +45,7 @@ impl PhotonTimes {
     pub fn in_samples(&self, sample: Duration) -> PhotonCost {
         let sample = sample.max(Duration::from_nanos(1)).as_secs_f64();
         let of = |photon: Duration| (photon.as_secs_f64() / sample).round().clamp(1.0, MOST_COST) as u64;
-        PhotonCost { shown: of(self.shown), kept: of(self.kept) }
+        PhotonCost { splatted: of(self.splatted), stored: of(self.stored) }
     }
 }
 
@@ -148,14 +148,14 @@ pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World,
 
 /// How many photons follow so many rays, about, by what a few follow: in a heap of glass balls, each follows hundreds.
 pub fn photons_within(world: &World, rays: f64) -> u64 {
-    let [shown, kept] = of_both(world, &|targets, follow| {
+    let [splatted, stored] = of_both(world, &|targets, follow| {
         let of_photon = |number: usize| {
             let target = targets.of_photon((2 * number as u64 + 1) * targets.photons() / (2 * FEW));
             follow(Batch { target, first: number as u64, count: 1, seed: world.method.seed }).rays
         };
         in_parallel(FEW as usize, &of_photon).into_iter().sum::<u64>()
     });
-    (rays * FEW as f64 / shown.max(kept).max(1) as f64) as u64
+    (rays * FEW as f64 / splatted.max(stored).max(1) as f64) as u64
 }
 
 /// Follows a batch of photons.
@@ -166,20 +166,20 @@ fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T
     in_lanes!(&world.method.basis, N => {
         let film = world.scene.film;
         let spread = |batch: Batch, to: &PhotonTargets| {
-            let sent = send_shown::<N, Polarized>(world, to, batch);
+            let sent = send_splatted::<N, Polarized>(world, to, batch);
             sent.kept.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
             sent.stats
         };
-        let shown = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));
-        let kept = |to: &PhotonTargets| find(to, &|batch| send_kept::<N, Polarized>(world, to, batch).stats);
-        [world.photon_targets.as_ref().map(shown), world.map_targets.as_ref().map(kept)].map(Option::unwrap_or_default)
+        let splatted = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));
+        let stored = |to: &PhotonTargets| find(to, &|batch| send_stored::<N, Polarized>(world, to, batch).stats);
+        [world.photon_targets.as_ref().map(splatted), world.map_targets.as_ref().map(stored)].map(Option::unwrap_or_default)
     })
 }
 
 /// Sends some photons of those targets that send most.
 pub fn photon_times(world: &World) -> PhotonTimes {
-    let [shown, kept] = of_both(world, &|targets, follow| photon_time(targets, world.method.seed, follow));
-    PhotonTimes { shown, kept }
+    let [splatted, stored] = of_both(world, &|targets, follow| photon_time(targets, world.method.seed, follow));
+    PhotonTimes { splatted, stored }
 }
 
 fn photon_time(targets: &PhotonTargets, seed: u64, follow: Follow) -> Duration {
@@ -205,9 +205,9 @@ mod tests {
 
     #[test]
     fn photons_count_as_the_samples_that_take_as_long_and_one_at_least() {
-        let times = PhotonTimes { shown: Duration::from_micros(11), kept: Duration::from_micros(1) };
-        assert_eq!(times.in_samples(Duration::from_micros(2)), PhotonCost { shown: 6, kept: 1 });
-        assert_eq!(PhotonTimes::default().in_samples(Duration::ZERO), PhotonCost { shown: 1, kept: 1 });
-        assert_eq!(times.in_samples(Duration::ZERO), PhotonCost { shown: 100, kept: 100 });
+        let times = PhotonTimes { splatted: Duration::from_micros(11), stored: Duration::from_micros(1) };
+        assert_eq!(times.in_samples(Duration::from_micros(2)), PhotonCost { splatted: 6, stored: 1 });
+        assert_eq!(PhotonTimes::default().in_samples(Duration::ZERO), PhotonCost { splatted: 1, stored: 1 });
+        assert_eq!(times.in_samples(Duration::ZERO), PhotonCost { splatted: 100, stored: 100 });
     }
 }

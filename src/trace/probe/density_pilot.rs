@@ -78,7 +78,7 @@ struct Pixel {
 
 /// What the pixels of a cell showed, and the rays of all their samples.
 #[derive(Clone, Copy, Debug, Default)]
-struct Found {
+struct CellSamples {
     pixels: [Pixel; PIXELS as usize],
     rays: f64,
 }
@@ -91,7 +91,10 @@ struct Cell {
 }
 
 /// Looks at as many cells as it may, by what few of them take. `cells` tells how many there are of at most so many.
-fn look<const N: usize, P: Polarization<N>>(world: &World, cells: &dyn Fn(f64) -> [u32; 2]) -> ([u32; 2], Vec<Found>) {
+fn look<const N: usize, P: Polarization<N>>(
+    world: &World,
+    cells: &dyn Fn(f64) -> [u32; 2],
+) -> ([u32; 2], Vec<CellSamples>) {
     let (few, photons) = few_photons::<N, P>(world);
     let vertices = few_vertices::<N>(world);
     let look = |most: f64| {
@@ -110,14 +113,14 @@ fn look_at_row<const N: usize, P: Polarization<N>>(
     vertices: Option<&LightVertices<N>>,
     cells: [u32; 2],
     row: u32,
-) -> Vec<Found> {
+) -> Vec<CellSamples> {
     let format = [world.scene.film.width, world.scene.film.height];
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons);
     tracer.light_vertices = vertices;
     if world.layers.catches() {
         tracer = tracer.with_layers();
     }
-    let mut found = vec![Found::default(); cells[0] as usize];
+    let mut found = vec![CellSamples::default(); cells[0] as usize];
     for (column, found) in (0..).zip(&mut found) {
         let before = tracer.walker.stats;
         for (number, pixel) in (0..).zip(&mut found.pixels) {
@@ -161,7 +164,7 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
 }
 
 /// Of each cell, the mean over the 5 x 5 cells around it.
-fn smoothed(cells: [u32; 2], found: &[Found], pixels: Range<usize>, is_absolute: bool) -> Vec<Cell> {
+fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_absolute: bool) -> Vec<Cell> {
     let means = || found.iter().flat_map(|found| found.pixels).flat_map(|pixel| pixel.mean);
     let dark =
         means().map(|x| x * x).sum::<f64>() / means().count().max(1) as f64 * if is_absolute { 1.0 } else { DARK };

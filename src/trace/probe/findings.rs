@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use crate::math::Sampler;
-use crate::trace::camera::{Finding, PathTracer};
+use crate::trace::camera::{PathTracer, SensorEvent};
 use crate::trace::photon::LightVertices;
 use crate::trace::{RAYS_OF_A_LOOK, World};
 
@@ -14,10 +14,10 @@ pub fn found_all_over<const N: usize, T>(
     side: u32,
     seed: u64,
     vertices: Option<&LightVertices<N>>,
-    wanted: impl Fn(Finding) -> Option<T>,
+    wanted: impl Fn(SensorEvent) -> Option<T>,
 ) -> Vec<T> {
     let found = RefCell::new(Vec::new());
-    let observer = |finding: Finding| found.borrow_mut().extend(wanted(finding));
+    let observer = |finding: SensorEvent| found.borrow_mut().extend(wanted(finding));
     let mut tracer = PathTracer::<N>::new(world).with_observer(&observer);
     tracer.light_vertices = vertices;
     for (place, pixel) in (0..).zip(world.scene.film.whole().middles_of_cells(side)) {

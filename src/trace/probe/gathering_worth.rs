@@ -6,8 +6,8 @@ use super::pilot::SampleWorth;
 use super::reach::{lie_among, looked_through, reaches_photons};
 use crate::math::{DVec3, Sampler};
 use crate::spectrum::apply;
-use crate::trace::camera::{Finding, PathTracer};
-use crate::trace::contribution::{Contribution, Found};
+use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::pass::Pass;
 use crate::trace::photon::{PhotonMap, photons};
 use crate::trace::walk::Polarized;
@@ -104,8 +104,8 @@ fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWo
         let photons = first.take().or_else(sent)?;
         (all_sent, rays) = (all_sent + photons.sent, rays + photons.stats.rays);
         let all_gathered = Cell::new([0.0; 3]);
-        let observer = |finding: Finding| {
-            if let Finding::Light(Contribution { found: Found::Gathered, rgb, .. }) = finding {
+        let observer = |finding: SensorEvent| {
+            if let SensorEvent::Light(Contribution { found: FoundBy::Gathered, rgb, .. }) = finding {
                 let sum: [f64; 3] = all_gathered.get();
                 all_gathered.set(std::array::from_fn(|i| sum[i] + rgb[i]));
             }

@@ -23,12 +23,12 @@ pub struct PhotonWorth {
     /// Rays that one follows.
     pub rays: f64,
     /// What they show in the pixels of each cell of the format.
-    pub(super) cells: Vec<Shown>,
+    pub(super) cells: Vec<CellStatistics>,
 }
 
 /// X + Y + Z in a pixel of a cell, on average: its mean, and its variance in an image by n photons, times n.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Shown {
+pub(super) struct CellStatistics {
     pub(super) mean: f64,
     pub(super) variance: f64,
 }
@@ -105,7 +105,7 @@ fn weigh<const N: usize>(
     let of_value = |sum: f64, squares: f64| ((squares - sum * sum / images) / (images - 1.0)).max(0.0) * each;
     let film = world.scene.film;
     let sizes = sizes_of_cells(film);
-    let (mut brings, mut variance, mut cells) = ([0.0; 3], 0.0, vec![Shown::default(); sizes.len()]);
+    let (mut brings, mut variance, mut cells) = ([0.0; 3], 0.0, vec![CellStatistics::default(); sizes.len()]);
     for ((pixel, sums), (_, squares)) in sums.iter().zip(&squares) {
         let variances: [f64; 4] = std::array::from_fn(|i| of_value(sums[i], squares[i]));
         (0..3).for_each(|i| brings[i] += sums[i] / images);

@@ -3,7 +3,7 @@
 use super::findings::found_all_over;
 use crate::math::DVec3;
 use crate::trace::World;
-use crate::trace::camera::Finding;
+use crate::trace::camera::SensorEvent;
 use crate::trace::photon::PhotonMap;
 use crate::trace::width::in_lanes;
 
@@ -17,8 +17,8 @@ const LOOKING: u64 = 0x6c6f_6f6b;
 /// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part
 /// of the image is made.
 pub fn reached_places(world: &World) -> Vec<DVec3> {
-    let place = |finding: Finding| match finding {
-        Finding::Place(place) => Some(place),
+    let place = |finding: SensorEvent| match finding {
+        SensorEvent::Place(place) => Some(place),
         _ => None,
     };
     in_lanes!(&world.method.basis, N => found_all_over::<N, _>(world, SIDE, LOOKING, None, place))

@@ -56,7 +56,7 @@ impl<'a> Room<'a> {
 
     /// Where a ray from where a bounce began ends, if that is inside.
     pub fn end_inside(&self, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
-        let met = Met::of(self.world, &leaving(bounce, direction))?;
+        let met = WallHit::of(self.world, &leaving(bounce, direction))?;
         is_inside(self.world, met.position, met.normal, sampler).then_some(met.position)
     }
 
@@ -64,27 +64,27 @@ impl<'a> Room<'a> {
     pub fn way_out(&self, walls: &Bounds, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
         let ray = leaving(bounce, direction);
         let leaves = distance_out(walls, ray.origin, direction);
-        let is_out = Met::of(self.world, &ray)
+        let is_out = WallHit::of(self.world, &ray)
             .is_none_or(|met| met.t > BEYOND * leaves && !is_inside(self.world, met.position, met.normal, sampler));
         is_out.then(|| ray.at(leaves))
     }
 }
 
 /// Where a ray meets a surface that ends it.
-struct Met {
+struct WallHit {
     t: f64,
     position: DVec3,
     /// Toward where it came from.
     normal: DVec3,
 }
 
-impl Met {
+impl WallHit {
     fn of(world: &World, ray: &Ray) -> Option<Self> {
         let hit = world.scene.nearest(ray, f64::INFINITY, &|object| !world.is_see_through(object))?;
         let shape = &world.scene.objects[hit.object as usize].shape;
-        let SurfacePoint { position, normal, .. } = shape.point(ray, &hit.crossing);
+        let SurfacePoint { position, normal, .. } = shape.point(ray, &hit.intersection);
         let normal = if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
-        Some(Self { t: hit.crossing.t, position, normal })
+        Some(Self { t: hit.intersection.t, position, normal })
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::trace::parallel::in_parallel;
-use crate::trace::photon::{batches, send, show};
+use crate::trace::photon::{batches, send, splat_photon};
 use crate::trace::photon_targets::PhotonTarget;
 use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
@@ -50,7 +50,8 @@ fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     let Some(targets) = &world.photon_targets else { return Learned::default() };
     let of_target = |target: &PhotonTarget| numbers.start..numbers.end.min(target.photons);
     let batches = batches(targets, of_target, world.method.seed ^ SEED);
-    let send = |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &show::<N, Polarized>);
+    let send =
+        |number: usize| send::<N, Polarized, _>(&world, targets, batches[number], true, &splat_photon::<N, Polarized>);
     let done = in_parallel(batches.len(), &send);
     let mut learned = Learned { found: vec![Vec::new(); targets.targets.len()], rays: 0 };
     for (batch, sent) in batches.iter().zip(done) {
@@ -99,16 +100,16 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 /// for one of few, and none where enough to learn from would follow too many rays.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let world = world.with_light_pass(Some(light_pass));
-    in_lanes!(&world.method.basis, N => taught::<N>(world))
+    in_lanes!(&world.method.basis, N => guided::<N>(world))
 }
 
-fn taught<const N: usize>(mut world: World) -> World {
+fn guided<const N: usize>(mut world: World) -> World {
     let targets = world.photon_targets.as_ref().map_or(1, |targets| targets.targets.len() as u64);
     let most = OF_A_PLAN / targets;
     if most >= TOO_FEW {
         let first = send_ahead::<N>(&world, 0..first_of_each(&world));
         if first.each_within(MOST_RAYS) >= TOO_FEW {
-            teach::<N>(&mut world, first.each_within(RAYS_OF_A_LOOK as f64).clamp(TOO_FEW, most));
+            train::<N>(&mut world, first.each_within(RAYS_OF_A_LOOK as f64).clamp(TOO_FEW, most));
         }
     }
     world
@@ -116,11 +117,11 @@ fn taught<const N: usize>(mut world: World) -> World {
 
 /// Sends photons ahead, and the others where those were seen.
 pub fn learn_where_to_send(world: &mut World) {
-    in_lanes!(&world.method.basis, N => teach::<N>(world, u64::MAX));
+    in_lanes!(&world.method.basis, N => train::<N>(world, u64::MAX));
 }
 
 /// The same by at most so many photons of a target.
-fn teach<const N: usize>(world: &mut World, most: u64) {
+fn train<const N: usize>(world: &mut World, most: u64) {
     let targets = world.photon_targets.iter().flat_map(|targets| &targets.targets);
     let Some(least) = targets.map(|target| target.photons / AHEAD).min() else { return };
     let ahead = least.min(ENOUGH).min(most);
@@ -184,7 +185,7 @@ mod tests {
         let photons = |world: &World| -> Vec<u64> {
             world.photon_targets.iter().flat_map(|targets| &targets.targets).map(|target| target.photons).collect()
         };
-        assert_eq!(photons(&taught::<4>(world.clone())), photons(&world));
+        assert_eq!(photons(&guided::<4>(world.clone())), photons(&world));
     }
 
     /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that was followed both ways at every one

@@ -8,13 +8,13 @@ use super::brightness::bounces;
 use super::clusters::bounds_of_most;
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
-use crate::scene::Ends;
+use crate::scene::RayEnds;
 use crate::shape::Ball;
 use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
 use crate::trace::photon::{LightPaths, can_be_followed};
 use crate::trace::width::in_lanes;
-use crate::trace::{Sunlit, World};
+use crate::trace::{SunlitPlaces, World};
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
@@ -36,7 +36,7 @@ pub fn with_light_vertices(world: &World) -> Option<World> {
 
 /// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some. The format
 /// counts, also where a part of it or more is made, so that all parts are made alike.
-fn sunlit_places(world: &World) -> Vec<Sunlit> {
+fn sunlit_places(world: &World) -> Vec<SunlitPlaces> {
     let lights = &world.scene.lights;
     let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();
     let suns: Vec<LightId> = (0..lights.len()).filter(is_sun).take(SUNS).collect();
@@ -52,14 +52,14 @@ fn sunlit_places(world: &World) -> Vec<Sunlit> {
 }
 
 /// Those in the light of one sun.
-fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
+fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<SunlitPlaces> {
     let light = &world.scene.lights[id];
     let (last_occluder, counts) = (Cell::new(None), |object| !world.is_see_through(object));
     let lit_along = |(number, &(origin, found)): (u32, &(DVec3, f64))| {
         let u = Sampler::new(world.method.seed ^ SEED, [0, 0], number).four_plain(BranchKey::CAMERA, 0);
         let direction = light.bright_direction([u[0], u[1]])?;
         let ray = Ray { origin, direction };
-        let is_hidden = world.scene.is_occluded_by(&ray, f64::INFINITY, Ends::default(), &last_occluder, &counts);
+        let is_hidden = world.scene.is_occluded_by(&ray, f64::INFINITY, RayEnds::default(), &last_occluder, &counts);
         (!is_hidden).then_some(((origin, found), direction))
     };
     let (lit, directions): (Vec<(DVec3, f64)>, Vec<DVec3>) = (0..).zip(ends).filter_map(lit_along).unzip();
@@ -76,5 +76,5 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<Sunlit> {
             *cells.entry(cell_of(place) as u32).or_insert(0.0) += (found / all) as f32;
         }
     }
-    Some(Sunlit { light: id, center, radius, cells: cells.into_iter().collect() })
+    Some(SunlitPlaces { light: id, center, radius, cells: cells.into_iter().collect() })
 }

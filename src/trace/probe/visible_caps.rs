@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use crate::light::{Light, LightId};
 use crate::math::{DVec3, Sampler};
 use crate::trace::World;
-use crate::trace::camera::{Finding, PathTracer};
-use crate::trace::contribution::Found;
+use crate::trace::camera::{PathTracer, SensorEvent};
+use crate::trace::contribution::FoundBy;
 use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image.
@@ -41,9 +41,9 @@ pub fn learn_visible_caps(world: &mut World) {
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
     let met = RefCell::new(Vec::new());
-    let observer = |finding: Finding| {
-        if let Finding::Light(contribution) = finding
-            && let (Some(light), Found::Hit { normal: Some(normal), scattered: true }) =
+    let observer = |finding: SensorEvent| {
+        if let SensorEvent::Light(contribution) = finding
+            && let (Some(light), FoundBy::Hit { normal: Some(normal), scattered: true }) =
                 (contribution.light, contribution.found)
         {
             met.borrow_mut().push((light, normal));

@@ -13,7 +13,7 @@
 
 use super::interaction::Interaction;
 use super::path::Path;
-use super::polarization::Onward;
+use super::polarization::PassThrough;
 use crate::material::{Branch, Straight};
 use crate::spectrum::{Draw, Lanes, Throughput};
 use crate::trace::World;
@@ -47,8 +47,8 @@ impl<'a, const N: usize> Audit<'a, N> {
     }
 
     /// A path has come to its end, but for what goes straight on.
-    pub fn end_beside<P>(&mut self, path: &Path<N, P>, onward: Option<&Onward<N, P>>, draw: &Draw<N>) {
-        let share = onward.map_or(Lanes::ZERO, |onward| onward.straight.share());
+    pub fn end_beside<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
+        let share = through.map_or(Lanes::ZERO, |through| through.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
     }
@@ -72,15 +72,15 @@ impl<'a, const N: usize> Audit<'a, N> {
         branches: &[Branch<N>],
         straight: Option<&Straight<N>>,
     ) {
-        let (arrival, draw) = (&at.arrival, at.arrival.draw);
-        let arrived = self.weight(path, path.throughput, draw);
+        let (context, draw) = (&at.context, at.context.draw);
+        let received = self.weight(path, path.throughput, draw);
         let clear = at.material.absorbs_nothing();
         let (goes_on, parting) = (straight.map_or(Lanes::ZERO, Straight::share), draw.parting());
         let mut absorbed: [f64; N] = std::array::from_fn(|i| 1.0 - f64::from(goes_on[i]));
         let mut parted = [0.0; N];
         for branch in branches {
             for lane in 0..N {
-                let ratio = arrival.beyond_of(lane) / arrival.incident_of(lane);
+                let ratio = context.beyond_of(lane) / context.incident_of(lane);
                 let share = f64::from(branch.share[lane]) * if branch.crosses { ratio * ratio } else { 1.0 };
                 absorbed[lane] -= share;
                 parted[lane] += if branch.crosses && at.parts { share } else { 0.0 };
@@ -93,8 +93,8 @@ impl<'a, const N: usize> Audit<'a, N> {
             if clear && !hands_over {
                 absorbed[lane] = 0.0;
             }
-            let moved = if hand_over { arrived[lane] * parted[lane] } else { 0.0 };
-            self.open[usize::from(path.parted)][lane] -= arrived[lane] * absorbed[lane] + moved;
+            let moved = if hand_over { received[lane] * parted[lane] } else { 0.0 };
+            self.open[usize::from(path.parted)][lane] -= received[lane] * absorbed[lane] + moved;
             self.open[1][lane] += moved;
         }
     }

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use super::turn::Turn;
+use super::rotation::Rotation;
 use crate::material::{Block, Mueller};
 use crate::math::DVec3;
 use crate::spectrum::Lanes;
@@ -18,9 +18,9 @@ pub struct Change<const N: usize> {
     /// What makes rows shares of the throughput beyond.
     pub scale: Lanes<N>,
     /// From the frame before to that of the block.
-    pub met: Turn,
+    pub met: Rotation,
     /// From the frame before to that of the base, and from there to the frame beyond.
-    pub base: [Turn; 2],
+    pub base: [Rotation; 2],
     /// The x of the frame beyond.
     pub x: DVec3,
     /// The only lane that goes this way, where it is alone: to change it alone takes a fraction of the time.
@@ -31,8 +31,8 @@ impl<const N: usize> Change<N> {
     pub const NONE: Self = Self {
         value: Lanes::ZERO,
         scale: Lanes::ZERO,
-        met: Turn::NONE,
-        base: [Turn::NONE; 2],
+        met: Rotation::NONE,
+        base: [Rotation::NONE; 2],
         x: DVec3::ZERO,
         alone: None,
     };

@@ -8,7 +8,7 @@
 use crate::light::LightId;
 use crate::spectrum::{Draw, Lanes, Wavelength};
 use crate::trace::World;
-use crate::trace::arrived::{Arrived, SourceId};
+use crate::trace::received_light::{ReceivedLight, SourceId};
 
 /// What the sensor gets of a dye that a path has seen, and how the path goes on from there.
 #[derive(Clone, Debug)]
@@ -29,8 +29,8 @@ pub struct Excitation<const N: usize, P> {
 
 impl<const N: usize, P> Excitation<N, P> {
     /// How the sensor sees light that arrives at the dye in lanes.
-    pub fn seen<T>(&self, world: &World, arrived: &Arrived<N>, look: impl FnOnce(&Arrived<N>) -> T) -> T {
-        let brightness = world.dyes.as_ref().map_or(0.0, |dyes| dyes.excited(self.dye, arrived));
+    pub fn seen<T>(&self, world: &World, received: &ReceivedLight<N>, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
+        let brightness = world.dyes.as_ref().map_or(0.0, |dyes| dyes.excited(self.dye, received));
         self.seen_of(brightness, look)
     }
 
@@ -40,8 +40,8 @@ impl<const N: usize, P> Excitation<N, P> {
     }
 
     /// How the sensor sees a brightness of the dye.
-    pub fn seen_of<T>(&self, brightness: f64, look: impl FnOnce(&Arrived<N>) -> T) -> T {
+    pub fn seen_of<T>(&self, brightness: f64, look: impl FnOnce(&ReceivedLight<N>) -> T) -> T {
         let lanes = &(self.lanes * brightness as f32);
-        look(&Arrived { source: self.source, draw: &self.seen_by, lanes, parted: self.parted })
+        look(&ReceivedLight { source: self.source, draw: &self.seen_by, lanes, parted: self.parted })
     }
 }

@@ -7,8 +7,8 @@ use super::polarization::Polarization;
 use crate::math::Sampler;
 use crate::spectrum::{Lanes, Throughput};
 use crate::trace::World;
-use crate::trace::arrived::Arrived;
 use crate::trace::dyes::Dyes;
+use crate::trace::received_light::ReceivedLight;
 
 /// The branch of the random numbers of dyes, beyond those that a path may take.
 pub const DYE: usize = 160;
@@ -28,7 +28,7 @@ pub struct Exciting<'a, const N: usize, P> {
 }
 
 /// The ways on from there.
-pub struct Ways<const N: usize, P> {
+pub struct ExcitedPaths<const N: usize, P> {
     pub of_dyes: Vec<(Path<N, P>, Excitation<N, P>)>,
     /// The factor on what the surface scatters: 0 if one of the dyes is chosen.
     pub scattered: f64,
@@ -36,12 +36,12 @@ pub struct Ways<const N: usize, P> {
 
 impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
     /// Chooses those that are followed.
-    pub fn ways(&self, sampler: &Sampler) -> Ways<N, P> {
+    pub fn ways(&self, sampler: &Sampler) -> ExcitedPaths<N, P> {
         let Self { world, dyes, path, at, all, .. } = *self;
         let [mut u, wavelength, ..] = sampler.four_plain(path.key.child(DYE), CHOICE);
-        let weight = path.throughput.weight(at.arrival.draw.shares(path.parted));
+        let weight = path.throughput.weight(at.context.draw.shares(path.parted));
         let (mut of_dyes, mut shares) = (Vec::new(), Vec::new());
-        at.material.shares_of_dyes(&at.arrival, Lanes::ONE, &mut shares);
+        at.material.shares_of_dyes(&at.context, Lanes::ONE, &mut shares);
         let of_surface = dyes.of(&world.scene, at.object);
         let chances = dyes.chances(of_surface.clone());
         for (number, (dye, share)) in of_surface.zip(shares).enumerate() {
@@ -69,13 +69,13 @@ impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
             false if u < 0.0 => 0.0,
             false => 1.0 / (1.0 - chances.total()),
         };
-        Ways { of_dyes, scattered }
+        ExcitedPaths { of_dyes, scattered }
     }
 
     /// What the sensor gets of a dye that is seen by lanes. A random number chooses what the lanes behind it stand for.
     fn excitation(&self, dye: usize, lanes: Lanes<N>, wavelength: f64) -> Excitation<N, P> {
         let Self { world, dyes, path, at, .. } = *self;
-        let (seen_by, draw) = (at.arrival.draw, world.method.basis.draw(wavelength));
+        let (seen_by, draw) = (at.context.draw, world.method.basis.draw(wavelength));
         let (source, parted) = (dyes.source(dye), path.parted);
         match self.seen {
             None => {
@@ -83,7 +83,8 @@ impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
                 Excitation { source, lanes, seen_by, parted, polarization, dye, draw }
             }
             Some(seen) => {
-                let brightness = dyes.excited(seen.dye, &Arrived { source, draw: seen_by, lanes: &lanes, parted });
+                let brightness =
+                    dyes.excited(seen.dye, &ReceivedLight { source, draw: seen_by, lanes: &lanes, parted });
                 Excitation { lanes: seen.lanes * brightness as f32, dye, draw, ..seen.clone() }
             }
         }

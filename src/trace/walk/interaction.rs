@@ -1,7 +1,7 @@
 //! A ray meets a surface.
 
 use super::shading;
-use crate::material::{Arrival, Lobes, Material};
+use crate::material::{Lobes, Material, ScatterContext};
 use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, MaterialId};
 use crate::shape::SurfacePoint;
@@ -9,21 +9,21 @@ use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::media::Boundary;
 use crate::trace::{World, media};
 
-/// The next surface along a ray.
-pub struct Meeting {
+/// Where a ray first hits a surface.
+pub struct SurfaceHit {
     pub hit: Hit,
     pub point: SurfacePoint,
 }
 
-impl Meeting {
+impl SurfaceHit {
     #[inline(always)]
     pub fn new(world: &World, ray: &Ray, hit: Hit) -> Self {
-        Self { hit, point: world.scene.objects[hit.object as usize].point(ray, &hit.crossing) }
+        Self { hit, point: world.scene.objects[hit.object as usize].point(ray, &hit.intersection) }
     }
 }
 
 /// A ray that arrives at a surface.
-pub struct Arriving<'a, const N: usize> {
+pub struct IncidentRay<'a, const N: usize> {
     pub ray: &'a Ray,
     /// The lanes on it.
     pub present: Lanes<N>,
@@ -42,7 +42,7 @@ pub struct Interaction<'a, const N: usize> {
     pub flat: DVec3,
     /// The media on both sides.
     pub boundary: Boundary,
-    pub arrival: Arrival<'a, N>,
+    pub context: ScatterContext<'a, N>,
     /// Whether lanes that cross the surface part.
     pub parts: bool,
 }
@@ -53,13 +53,13 @@ impl<'a, const N: usize> Interaction<'a, N> {
     pub fn new(
         world: &'a World,
         draw: &'a Draw<N>,
-        arriving: &Arriving<N>,
-        meeting: &'a Meeting,
+        arriving: &IncidentRay<N>,
+        surface_hit: &'a SurfaceHit,
         boundary: Boundary,
     ) -> Self {
-        let Meeting { hit, point } = meeting;
+        let SurfaceHit { hit, point } = surface_hit;
         let object = &world.scene.objects[hit.object as usize];
-        let (wo, uv, number) = (-arriving.ray.direction, object.uv(&hit.crossing, point), object.material as usize);
+        let (wo, uv, number) = (-arriving.ray.direction, object.uv(&hit.intersection, point), object.material as usize);
         let (material, lobes) = (&world.scene.materials[number].material, world.lobes[number]);
         let [flat, normal] = shading::normals_of(lobes, point, wo);
         let (sides, present) = (boundary.sides(), arriving.present);
@@ -70,54 +70,54 @@ impl<'a, const N: usize> Interaction<'a, N> {
             lobes,
             flat,
             boundary,
-            arrival: arrival(world, draw, wo, normal, uv, present, sides),
+            context: context(world, draw, wo, normal, uv, present, sides),
             parts: false,
         };
-        at.arrival.from_inside = point.normal.dot(wo) < 0.0;
-        at.arrival.is_alone = arriving.parted && present.sum() == 1.0;
-        at.parts = parts(lobes, material, &at.arrival);
+        at.context.from_inside = point.normal.dot(wo) < 0.0;
+        at.context.is_alone = arriving.parted && present.sum() == 1.0;
+        at.parts = parts(lobes, material, &at.context);
         at
     }
 
     /// With another normal by which the surface scatters.
     pub fn by_normal(self, normal: DVec3) -> Self {
-        if normal == self.arrival.normal {
+        if normal == self.context.normal {
             return self;
         }
-        let arrival = Arrival { normal, ..self.arrival };
-        let parts = parts(self.lobes, self.material, &arrival);
-        Self { arrival, parts, ..self }
+        let context = ScatterContext { normal, ..self.context };
+        let parts = parts(self.lobes, self.material, &context);
+        Self { context, parts, ..self }
     }
 
     /// The surface as it is viewed from another direction, on either side; the media are still those of this one.
     pub fn viewed_from(&self, wo: DVec3) -> Self {
         let [flat, normal] = shading::normals_of(self.lobes, self.point, wo);
-        let turned = Arrival { wo, normal, ..self.arrival };
-        let arrival = if wo.dot(self.flat) > 0.0 { turned } else { turned.turned_around() };
-        Self { flat, arrival, ..*self }
+        let turned = ScatterContext { wo, normal, ..self.context };
+        let context = if wo.dot(self.flat) > 0.0 { turned } else { turned.turned_around() };
+        Self { flat, context, ..*self }
     }
 
     /// As a surface that has some of its material's lobes alone.
     pub fn of_lobes(&self, lobes: Lobes) -> Self {
-        Self { arrival: Arrival { lobes, ..self.arrival }, ..*self }
+        Self { context: ScatterContext { lobes, ..self.context }, ..*self }
     }
 
     /// As the light sees it that excites a dye: white, in lanes that stand for what excites.
     pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
-        let arrival = Arrival { draw, present: draw.start(), ..self.arrival };
-        Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, arrival, parts: false, ..*self }
+        let context = ScatterContext { draw, present: draw.start(), ..self.context };
+        Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, context, parts: false, ..*self }
     }
 }
 
 /// Whether lanes part that cross a surface.
-pub fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, arrival: &Arrival<N>) -> bool {
-    lobes.is_transmissive() && material.parts_lanes(arrival)
+pub fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, context: &ScatterContext<N>) -> bool {
+    lobes.is_transmissive() && material.parts_lanes(context)
 }
 
 /// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to
 /// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is met.
 #[inline(always)]
-pub fn arrival<'a, const N: usize>(
+pub fn context<'a, const N: usize>(
     world: &'a World,
     draw: &'a Draw<N>,
     wo: DVec3,
@@ -125,8 +125,8 @@ pub fn arrival<'a, const N: usize>(
     uv: [f64; 2],
     present: Lanes<N>,
     sides: [Option<MaterialId>; 2],
-) -> Arrival<'a, N> {
-    Arrival {
+) -> ScatterContext<'a, N> {
+    ScatterContext {
         wo,
         normal,
         uv,

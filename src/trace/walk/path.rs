@@ -1,5 +1,5 @@
-use super::interaction::{Arriving, Interaction};
-use super::polarization::{Onward, Polarization};
+use super::interaction::{IncidentRay, Interaction};
+use super::polarization::{PassThrough, Polarization};
 use super::polarized::Polarized;
 use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray};
@@ -220,9 +220,9 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// surfaces.
     #[cold]
     #[inline(never)]
-    pub fn passed_in_part(&self, point: &SurfacePoint, onward: &Onward<N, P>) -> Self {
-        let throughput = self.throughput.through(onward.straight.share());
-        let polarization = onward.polarization;
+    pub fn passed_in_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
+        let throughput = self.throughput.through(through.straight.share());
+        let polarization = through.polarization;
         Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
     }
 
@@ -232,14 +232,14 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     pub fn first_lobe(
         &self,
         world: &World,
-        Interaction { material, lobes, arrival, .. }: &Interaction<N>,
+        Interaction { material, lobes, context, .. }: &Interaction<N>,
         wi: DVec3,
         crosses: bool,
     ) -> Option<FirstLobe> {
         if self.bounces > 0 || !world.layers.lobes_apart {
             return self.first;
         }
-        Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, arrival, wi, crosses))
+        Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, context, wi, crosses))
     }
 
     /// Whether photons bring what a narrow lobe of a surface sends on to it of the light that lights which send photons
@@ -259,8 +259,8 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
 
     /// Its ray, as it arrives at a surface.
     #[inline(always)]
-    pub fn arriving(&self) -> Arriving<'_, N> {
-        Arriving { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
+    pub fn arriving(&self) -> IncidentRay<'_, N> {
+        IncidentRay { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
     }
 
     /// How much the path can still matter: its mean throughput, without what is no measure of importance.

@@ -6,15 +6,15 @@ use super::excitation::Excitation;
 use super::interaction::Interaction;
 use super::slots::Slots;
 use crate::light::Light;
-use crate::material::{Arrival, Branch, Material, Straight};
+use crate::material::{Branch, Material, ScatterContext, Straight};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
-use crate::trace::arrived::Arrived;
+use crate::trace::received_light::ReceivedLight;
 
 /// What of a path's light goes straight on where it meets a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Onward<const N: usize, P> {
+pub struct PassThrough<const N: usize, P> {
     /// The share of each lane.
     pub straight: Straight<N>,
     /// How the path's light is polarized beyond.
@@ -22,9 +22,9 @@ pub struct Onward<const N: usize, P> {
 }
 
 /// Light that a path has found.
-pub struct MetLight<'a, const N: usize, P> {
+pub struct FoundLight<'a, const N: usize, P> {
     pub world: &'a World,
-    pub arrived: &'a Arrived<'a, N>,
+    pub received: &'a ReceivedLight<'a, N>,
     /// The dye that it excites, where the path has seen one.
     pub excitation: Option<&'a Excitation<N, P>>,
     /// What the sensor gets of it.
@@ -33,15 +33,15 @@ pub struct MetLight<'a, const N: usize, P> {
     pub dispersed: bool,
 }
 
-impl<'a, const N: usize, P> MetLight<'a, N, P> {
+impl<'a, const N: usize, P> FoundLight<'a, N, P> {
     #[inline]
-    pub fn new(world: &'a World, arrived: &'a Arrived<'a, N>, excitation: Option<&'a Excitation<N, P>>) -> Self {
+    pub fn new(world: &'a World, received: &'a ReceivedLight<'a, N>, excitation: Option<&'a Excitation<N, P>>) -> Self {
         let rgb = match excitation {
-            None => arrived.rgb(&world.responses),
-            Some(excitation) => excitation.seen(world, arrived, |seen| seen.rgb(&world.responses)),
+            None => received.rgb(&world.responses),
+            Some(excitation) => excitation.seen(world, received, |seen| seen.rgb(&world.responses)),
         };
-        let dispersed = arrived.parted || excitation.is_some_and(|excitation| excitation.parted);
-        Self { world, arrived, excitation, rgb, dispersed }
+        let dispersed = received.parted || excitation.is_some_and(|excitation| excitation.parted);
+        Self { world, received, excitation, rgb, dispersed }
     }
 }
 
@@ -61,9 +61,9 @@ pub struct SeenPhoton<const N: usize> {
 /// Densities never depend on it, nor do directions: all ways to sample light agree on them.
 pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// What is kept of it with a photon that has landed.
-    type Landed: Clone + Debug + Send + Sync;
+    type Stored: Clone + Debug + Send + Sync;
     /// What becomes of it along a branch that may be followed.
-    type Way: Debug;
+    type RowTransfer: Debug;
 
     /// Of a path that starts at the camera along a ray.
     fn of_camera(world: &World, ray: &Ray) -> Self;
@@ -72,15 +72,20 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     fn of_light(world: &World, ray: &Ray) -> Self;
 
     /// After a surface that lets some light go straight on; makes that the share that does.
-    fn after_straight(self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self;
+    fn after_straight(
+        self,
+        material: &Material<Table>,
+        context: &ScatterContext<N>,
+        straight: &mut Straight<N>,
+    ) -> Self;
 
     /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
     /// of them into `ways`. Nothing is put there where that can wait until one is chosen.
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::Way>);
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::RowTransfer>);
 
     /// Becomes what it is along a branch when it was `before`; `split` has told of those that are followed back to the
     /// lights, and none has of those that `forward` follows.
-    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::Way>);
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::RowTransfer>);
 
     /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
     /// that of the path's light.
@@ -88,10 +93,10 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
 
     /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
     /// + Z.
-    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64;
+    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
     /// The same of light that the path has met.
-    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64;
+    fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64;
 
     /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
     fn exciting(&self) -> Self;
@@ -109,18 +114,18 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     fn seen(
         &self,
         at: &Interaction<N>,
-        viewed: &Arrival<N>,
+        viewed: &ScatterContext<N>,
         on_its_way: &Self,
         world: &World,
         ray: &Ray,
     ) -> SeenPhoton<N>;
 
     /// What is kept of it where a photon has landed.
-    fn landed(&self, at: &Interaction<N>) -> Self::Landed;
+    fn landed(&self, at: &Interaction<N>) -> Self::Stored;
 
     /// Brings a path from the camera, at a surface, together with a photon that has landed near and came along `wi`;
     /// makes `bsdf_cos` that of their light.
-    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self;
+    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
 
     /// By what share polarization may change the light of a photon, which came along a unit vector, that `join` has
     /// brought together with a path in lanes.
@@ -128,13 +133,13 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
         &self,
         at: &Interaction<N>,
         wi: DVec3,
-        photon: &Self::Landed,
+        photon: &Self::Stored,
         joined: &Self,
         lanes: Lanes<N>,
     ) -> f64;
 
     /// What is kept with a photon, its lanes read as others.
-    fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed;
+    fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored;
 
     /// S1, S2 and S3 of unpolarized light that the path has met, each as a factor on S0, if they are asked for.
     fn stokes(&self) -> Option<[Lanes<N>; 3]>;

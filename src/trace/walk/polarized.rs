@@ -7,10 +7,10 @@
 //! Light leaves lamps and the sky unpolarized, and surfaces that scatter it diffusely.
 
 use super::interaction::Interaction;
-use super::polarization::{MetLight, Polarization, SeenPhoton};
+use super::polarization::{FoundLight, Polarization, SeenPhoton};
 use super::slots::Slots;
 use crate::light::Light;
-use crate::material::{Arrival, Branch, Material, Scatter, Straight};
+use crate::material::{Branch, Material, Scatter, ScatterContext, Straight};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
@@ -43,11 +43,11 @@ impl Polarized {
     }
 
     /// After light was scattered by a material in a direction that it drew from a density.
-    pub fn scattered<const N: usize>(self, material: &Material<Table>, arrival: &Arrival<N>, wi: DVec3) -> Self {
+    pub fn scattered<const N: usize>(self, material: &Material<Table>, context: &ScatterContext<N>, wi: DVec3) -> Self {
         if let Material::Diffuse(_) = material {
             return Self { degree: 0.0, ..self };
         }
-        let degree = material.degree_of_scattered(arrival, wi);
+        let degree = material.degree_of_scattered(context, wi);
         let after = self.after(degree);
         if material.lobes().is_diffuse() { Self { degree, ..after } } else { after }
     }
@@ -56,11 +56,11 @@ impl Polarized {
     pub fn brought<const N: usize>(
         self,
         material: &Material<Table>,
-        arrival: &Arrival<N>,
+        context: &ScatterContext<N>,
         wi: DVec3,
         on_its_way: Self,
     ) -> Self {
-        self.scattered(material, arrival, wi).joined(on_its_way)
+        self.scattered(material, context, wi).joined(on_its_way)
     }
 
     /// Whether there is anything that polarization may have changed or may change at the next surface.
@@ -75,8 +75,8 @@ impl Polarized {
 }
 
 impl<const N: usize> Polarization<N> for Polarized {
-    type Landed = Self;
-    type Way = ();
+    type Stored = Self;
+    type RowTransfer = ();
 
     fn of_camera(_: &World, _: &Ray) -> Self {
         Self::NOT
@@ -87,7 +87,7 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline]
-    fn after_straight(self, _: &Material<Table>, _: &Arrival<N>, straight: &mut Straight<N>) -> Self {
+    fn after_straight(self, _: &Material<Table>, _: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
         self.after(straight.polarization)
     }
 
@@ -97,7 +97,7 @@ impl<const N: usize> Polarization<N> for Polarized {
     #[inline(always)]
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, _: Option<&()>) {
         *self = match branch.pdf {
-            Some(_) => before.scattered(at.material, &at.arrival, branch.wi),
+            Some(_) => before.scattered(at.material, &at.context, branch.wi),
             None => before.after(branch.polarization),
         };
     }
@@ -107,15 +107,15 @@ impl<const N: usize> Polarization<N> for Polarized {
         Self::NOT
     }
 
-    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64 {
+    fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
         if !self.is_any() && !light.world.has_see_through() {
             return 0.0;
         }
-        let change = self.brought(at.material, &at.arrival, wi, *on_its_way).change();
+        let change = self.brought(at.material, &at.context, wi, *on_its_way).change();
         if change == 0.0 { 0.0 } else { change * light.world.amount(light.rgb) }
     }
 
-    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64 {
+    fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64 {
         if self.is_any() { self.change() * light.world.amount(light.rgb) } else { 0.0 }
     }
 
@@ -133,8 +133,15 @@ impl<const N: usize> Polarization<N> for Polarized {
         Self::NOT
     }
 
-    fn seen(&self, at: &Interaction<N>, viewed: &Arrival<N>, on_its_way: &Self, _: &World, _: &Ray) -> SeenPhoton<N> {
-        let change = on_its_way.brought(at.material, viewed, at.arrival.wo, *self).change() as f32;
+    fn seen(
+        &self,
+        at: &Interaction<N>,
+        viewed: &ScatterContext<N>,
+        on_its_way: &Self,
+        _: &World,
+        _: &Ray,
+    ) -> SeenPhoton<N> {
+        let change = on_its_way.brought(at.material, viewed, at.context.wo, *self).change() as f32;
         SeenPhoton { change: Lanes([change; N]), factor: None, stokes: None }
     }
 
@@ -148,10 +155,10 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     fn change_of_joined(&self, at: &Interaction<N>, wi: DVec3, photon: &Self, _: &Self, _: Lanes<N>) -> f64 {
-        self.brought(at.material, &at.arrival, wi, *photon).change()
+        self.brought(at.material, &at.context, wi, *photon).change()
     }
 
-    fn read_landed(photon: &Self, _: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {
+    fn read_stored(photon: &Self, _: impl Fn(Lanes<N>) -> Lanes<N>) -> Self {
         *photon
     }
 

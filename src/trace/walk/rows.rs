@@ -11,18 +11,18 @@ use std::array::from_fn;
 
 use super::change::{Change, Weights};
 use super::interaction::Interaction;
-use super::polarization::{MetLight, Polarization, SeenPhoton};
+use super::polarization::{FoundLight, Polarization, SeenPhoton};
+use super::rotation::{Rotation, across};
+use super::row_transfer::{Exitant, FoldedTransport, RowTransfer};
 use super::shading;
 use super::slots::Slots;
-use super::turn::{Turn, across};
-use super::way::{Besides, Passing, Way};
 use crate::light::Light;
-use crate::material::{Arrival, Block, Branch, Incoming, Material, Mueller, Scatter, Straight};
+use crate::material::{Block, Branch, Incoming, Material, Mueller, Scatter, ScatterContext, Straight};
 use crate::math::{DVec3, Frame, Ray};
 use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
-use crate::trace::arrived::Arrived;
 use crate::trace::method::Polarizing;
+use crate::trace::received_light::ReceivedLight;
 
 /// What the sensor takes of each Stokes component, lane by lane: the row of S0 of the image alone, or all `K` = 4.
 /// Paths are copied, and one row is all that most images need.
@@ -55,7 +55,7 @@ fn inverse(x: f32) -> f32 {
 
 /// What leaves a surface of unpolarized light from a direction, by the normal by which it scatters.
 fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
-    at.material.evaluate(&at.arrival, wi).map_or(Lanes::ZERO, |(light, _)| light)
+    at.material.evaluate(&at.context, wi).map_or(Lanes::ZERO, |(light, _)| light)
 }
 
 impl<const N: usize, const K: usize> Rows<N, K> {
@@ -67,19 +67,19 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Makes `change` how rows change beyond a surface, and `share` what leaves of the path's light.
     #[inline(always)]
-    fn find_change(&self, mueller: &Mueller<N>, passing: &Passing<N>, change: &mut Change<N>, share: &mut Lanes<N>) {
-        let Passing { value, lanes, z: [z, onward] } = passing;
-        let (z, onward, met) = (*z, *onward, Turn::new(*z, self.x, mueller.axis));
+    fn find_change(&self, mueller: &Mueller<N>, exitant: &Exitant<N>, change: &mut Change<N>, share: &mut Lanes<N>) {
+        let Exitant { value, lanes, z: [z, onward] } = exitant;
+        let (z, onward, met) = (*z, *onward, Rotation::new(*z, self.x, mueller.axis));
         let inward = mueller.base.as_ref().map(|base| across(onward, onward.cross(base.normal)));
         change.x = match (inward, met) {
             (Some(inward), None) => inward,
             (None, None) => across(onward, self.x),
             (_, Some(_)) => mueller.axis,
         };
-        change.met = met.unwrap_or(Turn::NONE);
+        change.met = met.unwrap_or(Rotation::NONE);
         if let (Some(base), Some(inward)) = (&mueller.base, inward) {
-            change.base = [Turn::new(z, self.x, z.cross(base.normal)), Turn::new(onward, inward, change.x)]
-                .map(|turn| turn.unwrap_or(Turn::NONE));
+            change.base = [Rotation::new(z, self.x, z.cross(base.normal)), Rotation::new(onward, inward, change.x)]
+                .map(|turn| turn.unwrap_or(Rotation::NONE));
         }
         change.alone = lanes.only();
         if self.compares {
@@ -158,17 +158,17 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
     /// Goes on beyond a surface; makes `share` what leaves of the path's light.
     #[inline(never)]
-    fn pass(&mut self, mueller: &Mueller<N>, passing: &Passing<N>, share: &mut Lanes<N>) {
+    fn pass(&mut self, mueller: &Mueller<N>, exitant: &Exitant<N>, share: &mut Lanes<N>) {
         let (before, mut change) = (*self, Change::NONE);
-        self.find_change(mueller, passing, &mut change, share);
+        self.find_change(mueller, exitant, &mut change, share);
         self.go(&before, mueller, &change);
     }
 
     /// Makes `mueller` what a surface does to light that leaves it by a way, and answers that way.
     #[inline(always)]
-    fn meet(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Passing<N> {
-        at.material.mueller(&at.arrival, incoming, mueller);
-        Passing { value, lanes: incoming.lanes, z: [at.arrival.wo, -incoming.wi] }
+    fn meet(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Exitant<N> {
+        at.material.mueller(&at.context, incoming, mueller);
+        Exitant { value, lanes: incoming.lanes, z: [at.context.wo, -incoming.wi] }
     }
 
     /// Becomes what rows are beyond a surface that leaves no polarization, with a frame's x.
@@ -190,24 +190,24 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     /// The direction by which a material was asked, where shading normals have folded it to `incoming`.
     #[inline(always)]
     fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
-        let is_folded = at.flat != at.arrival.normal && (incoming.wi.dot(at.arrival.normal) < 0.0) != incoming.crosses;
+        let is_folded = at.flat != at.context.normal && (incoming.wi.dot(at.context.normal) < 0.0) != incoming.crosses;
         is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
     }
 
     /// From where light arrives that a shading normal folds to a direction to which it sends light straight as well.
     #[inline(always)]
     fn folded_to(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
-        if at.flat == at.arrival.normal || incoming.single {
+        if at.flat == at.context.normal || incoming.single {
             return None;
         }
         let folded = shading::folded(incoming.wi, at.flat);
-        let comes = |wi: DVec3| (wi.dot(at.arrival.normal) < 0.0) == incoming.crosses;
+        let comes = |wi: DVec3| (wi.dot(at.context.normal) < 0.0) == incoming.crosses;
         (comes(incoming.wi) && comes(folded)).then_some(Incoming { wi: folded, ..incoming })
     }
 
     /// Takes in rows of light that comes to the same direction, which is z, by the lights of both.
     fn take_in(&mut self, other: &Self, z: DVec3, [own, others]: &[Lanes<N>; 2]) {
-        let turn = Turn::new(z, other.x, self.x).unwrap_or(Turn::NONE);
+        let turn = Rotation::new(z, other.x, self.x).unwrap_or(Rotation::NONE);
         for (i, weights) in self.weights.iter_mut().enumerate() {
             let [p0, p1, p2, p3] = other.weights[i];
             let [r1, r2] = turn.of(p1, p2);
@@ -221,28 +221,28 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     /// What becomes of the rows by light that is folded to the direction of other light, of which `straight` leaves of
     /// unpolarized light and `left` of the path's; makes `share` what leaves of the path's of both.
     #[inline(never)]
-    fn besides(
+    fn folded_light(
         &self,
         at: &Interaction<N>,
         folded: Incoming,
         [straight, left]: [Lanes<N>; 2],
         share: &mut Lanes<N>,
-    ) -> Besides<N> {
+    ) -> FoldedTransport<N> {
         let (value, mut mueller, mut change) = (evaluated(at, folded.wi), Mueller::NONE, Change::NONE);
-        let (passing, mut light) = (Self::meet(at, folded, value, &mut mueller), value);
-        self.find_change(&mueller, &passing, &mut change, &mut light);
+        let (exitant, mut light) = (Self::meet(at, folded, value, &mut mueller), value);
+        self.find_change(&mueller, &exitant, &mut change, &mut light);
         if !self.compares {
             *share = Lanes::from_fn(|i| share[i] * (left[i] + light[i]) * inverse(straight[i] + value[i]));
         }
-        Besides { mueller, change, lights: [left, light] }
+        FoldedTransport { mueller, change, lights: [left, light] }
     }
 
     /// Takes in what comes folded to the direction of the rows' light, which is z; they were `before` at the surface.
-    fn take_in_besides(&mut self, before: &Self, besides: &Besides<N>, z: DVec3, flat: DVec3) {
+    fn take_in_besides(&mut self, before: &Self, folded_light: &FoldedTransport<N>, z: DVec3, flat: DVec3) {
         let mut other = *before;
-        other.go(before, &besides.mueller, &besides.change);
+        other.go(before, &folded_light.mueller, &folded_light.change);
         other.fold(flat);
-        self.take_in(&other, z, &besides.lights);
+        self.take_in(&other, z, &folded_light.lights);
     }
 
     /// After a surface, along a direction, which shading normals may have folded; makes `bsdf_cos` that of the path's
@@ -253,20 +253,20 @@ impl<const N: usize, const K: usize> Rows<N, K> {
             after.lose(self, across(wi, self.x));
             return after;
         }
-        let lanes = at.arrival.present.not_zero();
+        let lanes = at.context.present.not_zero();
         let incoming = Incoming { wi, crosses: wi.dot(at.flat) < 0.0, single: false, lanes };
         let drawn = Self::unfolded(at, incoming);
         let (asked, mut mueller) = (drawn.unwrap_or(incoming), Mueller::NONE);
         let value = value.unwrap_or_else(|| evaluated(at, asked.wi));
-        let passing = Self::meet(at, asked, value, &mut mueller);
+        let exitant = Self::meet(at, asked, value, &mut mueller);
         if let Some(folded) = Self::folded_to(at, incoming) {
             let mut left = value;
-            after.pass(&mueller, &passing, &mut left);
-            let besides = self.besides(at, folded, [value, left], bsdf_cos);
-            after.take_in_besides(self, &besides, -wi, at.flat);
+            after.pass(&mueller, &exitant, &mut left);
+            let folded_light = self.folded_light(at, folded, [value, left], bsdf_cos);
+            after.take_in_besides(self, &folded_light, -wi, at.flat);
             return after;
         }
-        after.pass(&mueller, &passing, bsdf_cos);
+        after.pass(&mueller, &exitant, bsdf_cos);
         if drawn.is_some() {
             after.fold(at.flat);
         }
@@ -280,15 +280,15 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         if is_folded {
             after.fold(at.flat);
         }
-        let passing = Self::meet(at, incoming, *share, &mut mueller).turned_back();
+        let exitant = Self::meet(at, incoming, *share, &mut mueller).turned_back();
         mueller.turn_back();
-        after.pass(&mueller, &passing, share);
+        after.pass(&mueller, &exitant, share);
         after
     }
 
     /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
     fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
-        let turn = Turn::new(z, self.x, light.x).unwrap_or(Turn::NONE);
+        let turn = Rotation::new(z, self.x, light.x).unwrap_or(Rotation::NONE);
         for (i, weights) in self.weights.iter_mut().enumerate() {
             let ([s0, s1, s2, s3], [q0, q1, q2, q3]) = (light.stokes.map(|part| part[i]), *weights);
             let [r1, r2] = turn.of(q1, q2);
@@ -309,13 +309,13 @@ impl<const N: usize, const K: usize> Rows<N, K> {
     }
 
     /// By how much polarization changes light that is compared.
-    fn compared(&self, light: &MetLight<N, Self>) -> f64 {
+    fn compared(&self, light: &FoundLight<N, Self>) -> f64 {
         if !self.compares {
             return 0.0;
         }
-        let MetLight { world, arrived, rgb, .. } = *light;
-        let lanes = &(*arrived.lanes * self.firsts());
-        let exact = Arrived { lanes, ..*arrived };
+        let FoundLight { world, received, rgb, .. } = *light;
+        let lanes = &(*received.lanes * self.firsts());
+        let exact = ReceivedLight { lanes, ..*received };
         let exact = match light.excitation {
             None => exact.rgb(&world.responses),
             Some(dye) => dye.seen(world, &exact, |seen| seen.times(dye.polarization.firsts(), &world.responses)),
@@ -326,8 +326,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 
 impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     /// None on surfaces that leave no polarization.
-    type Landed = Option<Box<Column<N>>>;
-    type Way = Way<N>;
+    type Stored = Option<Box<Column<N>>>;
+    type RowTransfer = RowTransfer<N>;
 
     fn of_camera(world: &World, ray: &Ray) -> Self {
         let camera = &world.scene.camera;
@@ -340,7 +340,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             let axis = x * cos + z.cross(x) * sin;
             let mut mueller = Mueller::NONE;
             mueller.set_lanes(axis, lanes, |_| Block::of_polarizer(filter.extinction));
-            rows.pass(&mueller, &Passing { value, lanes, z: [z; 2] }, &mut value);
+            rows.pass(&mueller, &Exitant { value, lanes, z: [z; 2] }, &mut value);
         }
         rows
     }
@@ -350,52 +350,57 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Self::starting(x, world.method.polarization == Polarizing::Compared)
     }
 
-    fn after_straight(mut self, material: &Material<Table>, arrival: &Arrival<N>, straight: &mut Straight<N>) -> Self {
+    fn after_straight(
+        mut self,
+        material: &Material<Table>,
+        context: &ScatterContext<N>,
+        straight: &mut Straight<N>,
+    ) -> Self {
         let (mut mueller, mut share) = (Mueller::NONE, straight.share());
-        material.mueller_of_straight(arrival, &mut mueller);
-        let passing = Passing { value: share, lanes: arrival.present.not_zero(), z: [arrival.wo; 2] };
-        self.pass(&mueller, &passing, &mut share);
+        material.mueller_of_straight(context, &mut mueller);
+        let exitant = Exitant { value: share, lanes: context.present.not_zero(), z: [context.wo; 2] };
+        self.pass(&mueller, &exitant, &mut share);
         straight.panes = Lanes::from_fn(|i| (share[i] - straight.holes[i]).max(0.0));
         self
     }
 
-    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Way<N>>) {
+    fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<RowTransfer<N>>) {
         ways.clear();
         for branch in branches {
-            let way = ways.add(Way::new);
+            let way = ways.add(RowTransfer::new);
             way.is_any_left = !matches!(at.material, Material::Diffuse(_));
             if !way.is_any_left {
                 way.change.x = across(branch.wi, self.x);
                 continue;
             }
-            let incoming = branch.incoming(&at.arrival.present);
+            let incoming = branch.incoming(&at.context.present);
             let drawn = Self::unfolded(at, incoming);
             let asked = drawn.unwrap_or(incoming);
             let value = match branch.pdf {
                 None => branch.share,
                 // Where lanes part, a branch's share is of its own lanes, and its density that of all.
-                Some(pdf) if at.flat == at.arrival.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
+                Some(pdf) if at.flat == at.context.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
                 Some(_) => evaluated(at, asked.wi),
             };
-            let passing = Self::meet(at, asked, value, &mut way.mueller);
+            let exitant = Self::meet(at, asked, value, &mut way.mueller);
             way.folded_at = drawn.map(|_| at.flat);
-            way.besides = None;
+            way.folded_light = None;
             if let Some(folded) = Self::folded_to(at, incoming) {
                 let mut left = value;
-                self.find_change(&way.mueller, &passing, &mut way.change, &mut left);
-                let besides = self.besides(at, folded, [value, left], &mut branch.share);
-                way.besides = Some(Box::new(besides));
+                self.find_change(&way.mueller, &exitant, &mut way.change, &mut left);
+                let folded_light = self.folded_light(at, folded, [value, left], &mut branch.share);
+                way.folded_light = Some(Box::new(folded_light));
                 continue;
             }
-            self.find_change(&way.mueller, &passing, &mut way.change, &mut branch.share);
+            self.find_change(&way.mueller, &exitant, &mut way.change, &mut branch.share);
         }
     }
 
-    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Way<N>>) {
-        let Some(Way { is_any_left, mueller, change, folded_at, besides }) = way else {
+    fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&RowTransfer<N>>) {
+        let Some(RowTransfer { is_any_left, mueller, change, folded_at, folded_light }) = way else {
             // The branch's share is that of the path's light by now.
             let mut share = branch.share;
-            *self = before.forward(&at.viewed_from(branch.wi), at.arrival.wo, &mut share);
+            *self = before.forward(&at.viewed_from(branch.wi), at.context.wo, &mut share);
             return;
         };
         if !is_any_left {
@@ -405,21 +410,21 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         if let Some(flat) = folded_at {
             self.fold(*flat);
         }
-        if let Some(besides) = besides {
-            self.take_in_besides(before, besides, -branch.wi, at.flat);
+        if let Some(folded_light) = folded_light {
+            self.take_in_besides(before, folded_light, -branch.wi, at.flat);
         }
     }
 
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
-        let value = if at.flat == at.arrival.normal { Some(*bsdf_cos) } else { None };
+        let value = if at.flat == at.context.normal { Some(*bsdf_cos) } else { None };
         self.after(at, wi, value, bsdf_cos)
     }
 
-    fn moved(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &MetLight<N, Self>) -> f64 {
+    fn moved(&self, _: &Interaction<N>, _: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64 {
         on_its_way.compared(light)
     }
 
-    fn moved_of_met(&self, light: &MetLight<N, Self>) -> f64 {
+    fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64 {
         self.compared(light)
     }
 
@@ -435,13 +440,13 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
     }
 
     fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self {
-        let z = -viewed.arrival.wo;
+        let z = -viewed.context.wo;
         if let Material::Diffuse(_) = viewed.material {
             let mut after = *self;
             after.lose(self, across(z, self.x));
             return after;
         }
-        let lanes = viewed.arrival.present.not_zero();
+        let lanes = viewed.context.present.not_zero();
         let incoming = Incoming { wi, crosses: wi.dot(viewed.flat) < 0.0, single: false, lanes };
         let drawn = Self::unfolded(viewed, incoming);
         let asked = drawn.unwrap_or(incoming);
@@ -459,19 +464,19 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         after
     }
 
-    fn seen(&self, _: &Interaction<N>, _: &Arrival<N>, on_its_way: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
+    fn seen(&self, _: &Interaction<N>, _: &ScatterContext<N>, light: &Self, world: &World, ray: &Ray) -> SeenPhoton<N> {
         let mut after = Self::of_camera(world, ray);
-        let factor = after.receive(-ray.direction, &on_its_way.column());
+        let factor = after.receive(-ray.direction, &light.column());
         let change = if self.compares { after.firsts() + Lanes([-1.0; N]) } else { Lanes::ZERO };
         SeenPhoton { change, factor: Some(factor), stokes: after.stokes() }
     }
 
-    fn landed(&self, at: &Interaction<N>) -> Self::Landed {
+    fn landed(&self, at: &Interaction<N>) -> Self::Stored {
         let is_of_no_use = matches!(at.material, Material::Diffuse(_)) && !self.compares;
         (!is_of_no_use).then(|| Box::new(self.column()))
     }
 
-    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Landed, bsdf_cos: &mut Lanes<N>) -> Self {
+    fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self {
         let mut after = self.toward(at, wi, bsdf_cos);
         if let Some(light) = photon {
             *bsdf_cos = *bsdf_cos * after.receive(-wi, light);
@@ -479,12 +484,12 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         after
     }
 
-    fn change_of_joined(&self, _: &Interaction<N>, _: DVec3, _: &Self::Landed, joined: &Self, lanes: Lanes<N>) -> f64 {
+    fn change_of_joined(&self, _: &Interaction<N>, _: DVec3, _: &Self::Stored, joined: &Self, lanes: Lanes<N>) -> f64 {
         let all = f64::from(lanes.sum());
         if self.compares && all > 0.0 { f64::from((lanes * joined.firsts()).sum()) / all - 1.0 } else { 0.0 }
     }
 
-    fn read_landed(photon: &Self::Landed, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Landed {
+    fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored {
         photon.as_ref().map(|column| Box::new(Column { x: column.x, stokes: column.stokes.map(read) }))
     }
 

@@ -7,7 +7,7 @@
 //! triangle is folded back through its plane. Folding moves light and takes none away: what a material gives to a
 //! direction is the sum over both directions that end there, and so is the density.
 
-use crate::material::{Arrival, Branch, Lobes, Material, Scatter, reflect};
+use crate::material::{Branch, Lobes, Material, Scatter, ScatterContext, reflect};
 use crate::math::{DVec3, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Table};
@@ -69,13 +69,13 @@ pub fn folded(direction: DVec3, flat: DVec3) -> DVec3 {
 /// `Material::scatter`, with every direction on its side of the triangle of normal `flat`.
 pub fn scatter<const N: usize>(
     material: &Material<Table>,
-    arrival: &Arrival<N>,
+    context: &ScatterContext<N>,
     flat: DVec3,
     u: [f64; 2],
     branches: &mut Vec<Branch<N>>,
 ) {
-    material.scatter(arrival, u, branches);
-    if flat == arrival.normal {
+    material.scatter(context, u, branches);
+    if flat == context.normal {
         return;
     }
     for branch in branches {
@@ -83,7 +83,7 @@ pub fn scatter<const N: usize>(
             branch.wi = folded(branch.wi, flat);
         }
         if branch.pdf.is_some() {
-            branch.pdf = Some(evaluate(material, arrival, flat, branch.wi).map_or(0.0, |(_, pdf)| pdf));
+            branch.pdf = Some(evaluate(material, context, flat, branch.wi).map_or(0.0, |(_, pdf)| pdf));
         }
     }
 }
@@ -91,17 +91,17 @@ pub fn scatter<const N: usize>(
 /// `Material::evaluate`, both ways to a direction together: straight, and folded at the triangle of normal `flat`.
 pub fn evaluate<const N: usize>(
     material: &Material<Table>,
-    arrival: &Arrival<N>,
+    context: &ScatterContext<N>,
     flat: DVec3,
     wi: DVec3,
 ) -> Option<(Lanes<N>, f64)> {
-    if flat == arrival.normal {
-        return material.evaluate(arrival, wi);
+    if flat == context.normal {
+        return material.evaluate(context, wi);
     }
     // A direction is folded where the two normals put it on different sides.
     let above = wi.dot(flat) > 0.0;
-    let from = |drawn: DVec3| match (drawn.dot(arrival.normal) > 0.0) == above {
-        true => material.evaluate(arrival, drawn),
+    let from = |drawn: DVec3| match (drawn.dot(context.normal) > 0.0) == above {
+        true => material.evaluate(context, drawn),
         false => None,
     };
     match (from(wi), from(folded(wi, flat))) {

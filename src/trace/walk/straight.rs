@@ -2,14 +2,14 @@
 
 use std::cell::Cell;
 
-use super::interaction::{Meeting, arrival};
+use super::interaction::{SurfaceHit, context};
 use super::path::{Among, Path};
-use super::polarization::{Onward, Polarization};
+use super::polarization::{PassThrough, Polarization};
 use super::polarized::Polarized;
 use super::shading;
 use crate::material::Scatter;
 use crate::math::{Ray, Sampler};
-use crate::scene::{Ends, MaterialId, Sight};
+use crate::scene::{MaterialId, RayEnds, Visibility};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
 
@@ -23,12 +23,12 @@ pub fn straight_on<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     path: &Path<N, P>,
-    meeting: &Meeting,
-) -> Option<Onward<N, P>> {
+    surface_hit: &SurfaceHit,
+) -> Option<PassThrough<N, P>> {
     let present = path.throughput.present();
-    let through = Through { ray: &path.ray, meeting, present, inside: path.media.inside(&world.scene) };
-    let onward = straight_at(world, draw, &through, path.polarization)?;
-    (!(onward.straight.share() * present).is_zero()).then_some(onward)
+    let straight_ray = StraightRay { ray: &path.ray, surface_hit, present, inside: path.media.inside(&world.scene) };
+    let pass_through = straight_at(world, draw, &straight_ray, path.polarization)?;
+    (!(pass_through.straight.share() * present).is_zero()).then_some(pass_through)
 }
 
 /// The share of each lane that goes through the holes of a surface, which a ray inside of a medium has met.
@@ -37,17 +37,18 @@ pub fn holes<const N: usize>(
     draw: &Draw<N>,
     ray: &Ray,
     inside: Option<MaterialId>,
-    meeting: &Meeting,
+    surface_hit: &SurfaceHit,
 ) -> Lanes<N> {
-    if !world.is_see_through(meeting.hit.object) {
+    if !world.is_see_through(surface_hit.hit.object) {
         return Lanes::ZERO;
     }
-    let through = Through { ray, meeting, present: draw.start(), inside };
-    straight_at(world, draw, &through, Polarized::NOT).map_or(Lanes::ZERO, |onward| onward.straight.holes)
+    let straight_ray = StraightRay { ray, surface_hit, present: draw.start(), inside };
+    straight_at(world, draw, &straight_ray, Polarized::NOT)
+        .map_or(Lanes::ZERO, |pass_through| pass_through.straight.holes)
 }
 
-/// What a ray from the camera makes of a surface, which may have holes: a pane is met, a hole is not.
-pub struct Met {
+/// Whether a ray from the camera meets a surface that may be cut out: a pane is met, a hole is not.
+pub struct Cutout {
     pub is_met: bool,
     /// How likely that was.
     pub chance: f64,
@@ -62,11 +63,11 @@ pub fn met<const N: usize, P: Polarization<N>>(
     draw: &Draw<N>,
     sampler: &Sampler,
     path: &Path<N, P>,
-    onward: Option<&Onward<N, P>>,
-) -> Met {
-    let straight = onward.map(|onward| &onward.straight);
+    pass_through: Option<&PassThrough<N, P>>,
+) -> Cutout {
+    let straight = pass_through.map(|pass_through| &pass_through.straight);
     let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else {
-        return Met { is_met: true, chance: 1.0, weight: 1.0 };
+        return Cutout { is_met: true, chance: 1.0, weight: 1.0 };
     };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
@@ -76,46 +77,46 @@ pub fn met<const N: usize, P: Polarization<N>>(
     let part = |of: Lanes<N>| path.throughput.through(of).weight(shares) / path.throughput.weight(shares);
     let holes = part(straight.holes);
     match holes <= u {
-        true => Met { is_met: true, chance: 1.0 - holes, weight: 1.0 - holes },
-        false => Met { is_met: false, chance: holes, weight: part(straight.share()) },
+        true => Cutout { is_met: true, chance: 1.0 - holes, weight: 1.0 - holes },
+        false => Cutout { is_met: false, chance: holes, weight: part(straight.share()) },
     }
 }
 
-/// The straight way of light to a place, which something may occlude.
-pub struct Passage<'a> {
+/// The segment between a place and a light, which something may occlude.
+pub struct VisibilityTest<'a> {
     /// From the place toward the light.
     pub ray: &'a Ray,
     /// How far away the light is.
     pub distance: f64,
-    pub ends: Ends,
+    pub ends: RayEnds,
     /// The medium around the ray.
     pub inside: Option<MaterialId>,
     /// Which objects may occlude it.
-    pub past: Past,
+    pub occluders: Occluders,
     /// The object that occluded a light last.
     pub last_occluder: &'a Cell<Option<u32>>,
 }
 
-/// Which objects may occlude a way.
+/// Which objects may occlude a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Past {
+pub enum Occluders {
     /// Those that are there for a path.
     Objects(Among),
-    /// Those that are not hidden from the camera, to which it leads by some ways.
-    Seen(Ways),
+    /// Those that are not hidden from the camera, to which it leads.
+    Seen(SeenThrough),
 }
 
-/// By which ways the camera sees a place. Beyond a pane it sees holdouts and shadow catchers as it sees all else.
+/// Through what the camera sees a place. Beyond a pane it sees holdouts and shadow catchers as it sees all else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ways {
+pub enum SeenThrough {
     All,
-    /// Through nothing but holes.
+    /// Nothing but holes.
     Holes,
-    /// Through a pane, among others.
+    /// A pane, among others.
     Panes,
 }
 
-impl Past {
+impl Occluders {
     fn is_all(self, world: &World) -> bool {
         self == Self::Objects(Among::All) || !world.hides_objects
     }
@@ -130,7 +131,7 @@ impl Past {
     }
 }
 
-impl Passage<'_> {
+impl VisibilityTest<'_> {
     /// What arrives of light through holes, panes and the medium, and how it is polarized beyond them; none if
     /// something occludes it. `polarization` is that of the path at the place; it and `light` are asked only if nothing
     /// does.
@@ -142,10 +143,10 @@ impl Passage<'_> {
         polarization: impl FnOnce() -> P,
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, P)> {
-        let Self { ray, distance, ends, inside, past, last_occluder } = *self;
+        let Self { ray, distance, ends, inside, occluders, last_occluder } = *self;
         let (mut arriving, after);
-        if !past.is_all(world) || world.has_see_through() {
-            let closed = |object| !world.is_see_through(object) && past.has(world, object);
+        if !occluders.is_all(world) || world.has_see_through() {
+            let closed = |object| !world.is_see_through(object) && occluders.has(world, object);
             if world.scene.is_occluded_by(ray, distance, ends, last_occluder, &closed) {
                 return None;
             }
@@ -174,32 +175,33 @@ impl Passage<'_> {
     ) -> Option<(Lanes<N>, P)> {
         let (mut ray, mut left) = (*self.ray, self.distance);
         let (mut all, mut by_holes, mut by_panes) = (Lanes::ONE, Lanes::ONE, Lanes::ZERO);
-        let counts = |object: u32| world.is_see_through(object) && self.past.has(world, object);
+        let counts = |object: u32| world.is_see_through(object) && self.occluders.has(world, object);
         while let Some(hit) = world.scene.nearest(&ray, left, &counts) {
-            let meeting = Meeting::new(world, &ray, hit);
-            let through = Through { ray: &ray, meeting: &meeting, present: Lanes::ONE, inside: self.inside };
-            let onward = straight_at(world, draw, &through, polarization)?;
-            let share = onward.straight.share();
+            let surface_hit = SurfaceHit::new(world, &ray, hit);
+            let straight_ray =
+                StraightRay { ray: &ray, surface_hit: &surface_hit, present: Lanes::ONE, inside: self.inside };
+            let pass_through = straight_at(world, draw, &straight_ray, polarization)?;
+            let share = pass_through.straight.share();
             // The last surface is the camera's first: behind one that is held out it sees no more than holes show, and
             // one that lets all light through is not there for it.
-            let [holes, panes] = match world.sight(hit.object) {
-                Sight::Holdout => [onward.straight.holes, Lanes::ZERO],
+            let [holes, panes] = match world.visibility(hit.object) {
+                Visibility::Holdout => [pass_through.straight.holes, Lanes::ZERO],
                 _ if share == Lanes::ONE => [share, Lanes::ZERO],
-                _ => [onward.straight.holes, onward.straight.panes],
+                _ => [pass_through.straight.holes, pass_through.straight.panes],
             };
             by_panes = by_panes * holes + panes * all;
             by_holes = by_holes * holes;
-            (all, polarization) = (all * share, onward.polarization);
+            (all, polarization) = (all * share, pass_through.polarization);
             if all.is_zero() {
                 return None;
             }
-            left -= hit.crossing.t;
-            ray = meeting.point.leave(ray.direction);
+            left -= hit.intersection.t;
+            ray = surface_hit.point.leave(ray.direction);
         }
-        let share = match self.past {
-            Past::Seen(Ways::Holes) => by_holes,
-            Past::Seen(Ways::Panes) => by_panes,
-            Past::Seen(Ways::All) if world.has_mattes => by_holes + by_panes,
+        let share = match self.occluders {
+            Occluders::Seen(SeenThrough::Holes) => by_holes,
+            Occluders::Seen(SeenThrough::Panes) => by_panes,
+            Occluders::Seen(SeenThrough::All) if world.has_mattes => by_holes + by_panes,
             _ => all,
         };
         (!share.is_zero()).then_some((share, polarization))
@@ -207,9 +209,9 @@ impl Passage<'_> {
 }
 
 /// A ray that meets a surface which may let some of its light straight on.
-struct Through<'a, const N: usize> {
+struct StraightRay<'a, const N: usize> {
     ray: &'a Ray,
-    meeting: &'a Meeting,
+    surface_hit: &'a SurfaceHit,
     /// The lanes on it.
     present: Lanes<N>,
     /// The medium around it.
@@ -220,15 +222,15 @@ struct Through<'a, const N: usize> {
 fn straight_at<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
-    through: &Through<N>,
+    straight_ray: &StraightRay<N>,
     polarization: P,
-) -> Option<Onward<N, P>> {
-    let Through { ray, meeting: Meeting { hit, point }, present, inside } = *through;
-    let (wo, uv) = (-ray.direction, world.scene.objects[hit.object as usize].uv(&hit.crossing, point));
+) -> Option<PassThrough<N, P>> {
+    let StraightRay { ray, surface_hit: SurfaceHit { hit, point }, present, inside } = *straight_ray;
+    let (wo, uv) = (-ray.direction, world.scene.objects[hit.object as usize].uv(&hit.intersection, point));
     let [_, normal] = shading::normals(point, wo);
-    let arrival = arrival(world, draw, wo, normal, uv, present, [inside; 2]);
+    let context = context(world, draw, wo, normal, uv, present, [inside; 2]);
     let material = world.scene.material_of(hit.object);
-    let mut straight = material.straight(&arrival)?;
-    let polarization = polarization.after_straight(material, &arrival, &mut straight);
-    Some(Onward { straight, polarization })
+    let mut straight = material.straight(&context)?;
+    let polarization = polarization.after_straight(material, &context, &mut straight);
+    Some(PassThrough { straight, polarization })
 }

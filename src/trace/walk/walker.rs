@@ -3,9 +3,9 @@
 use std::cell::Cell;
 
 use super::audit::Audit;
-use super::interaction::{Interaction, Meeting};
+use super::interaction::{Interaction, SurfaceHit};
 use super::path::{Among, Path, PathKind, ScatterSample};
-use super::polarization::{Onward, Polarization};
+use super::polarization::{PassThrough, Polarization};
 use super::polarized::Polarized;
 use super::roulette::{LONG, survival};
 use super::slots::Slots;
@@ -26,7 +26,7 @@ pub struct Walker<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub pending: Slots<Path<N, P>>,
     pub branches: Vec<Branch<N>>,
     /// What becomes of polarization along each of them, where it is traced.
-    ways: Slots<P::Way>,
+    ways: Slots<P::RowTransfer>,
     /// The object that occluded the last light that was: the first to ask about the next one.
     pub last_occluder: Cell<Option<u32>>,
     pub stats: Stats,
@@ -64,7 +64,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
     #[inline(always)]
-    pub fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<Meeting> {
+    pub fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
         self.stats.rays += 1;
         let is_past_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.among == Among::All;
         let hit = match path.among {
@@ -77,7 +77,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             path.enter(self.world, draw, self.world.media_seen_at(path.ray.origin));
         }
         let before = path.throughput;
-        path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.crossing.t));
+        path.advance(self.world, draw, hit.map_or(f64::INFINITY, |hit| hit.intersection.t));
         if let Some(audit) = &mut self.audit {
             audit.absorb(path, before, draw);
         }
@@ -86,14 +86,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             path.enter(self.world, draw, path.media.and(&self.world.media_hidden_at(&path.ray, &hit)));
         }
         path.left = Some(hit.primitive());
-        Some(Meeting::new(self.world, &path.ray, hit))
+        Some(SurfaceHit::new(self.world, &path.ray, hit))
     }
 
     /// What goes straight on through the surface that a path has met; none if nothing does.
     #[inline(always)]
-    pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, meeting: &Meeting) -> Option<Onward<N, P>> {
-        let lets_through = self.world.is_see_through(meeting.hit.object);
-        if lets_through { straight::straight_on(self.world, draw, path, meeting) } else { None }
+    pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, surface_hit: &SurfaceHit) -> Option<PassThrough<N, P>> {
+        let lets_through = self.world.is_see_through(surface_hit.hit.object);
+        if lets_through { straight::straight_on(self.world, draw, path, surface_hit) } else { None }
     }
 
     /// The media at the surface that a path has met.
@@ -101,8 +101,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     /// # Errors
     /// [`Hidden`] where the surface is that of a body that is hidden inside another of higher priority.
     #[inline(always)]
-    pub fn boundary(&mut self, path: &Path<N, P>, meeting: &Meeting) -> Result<Boundary, Hidden> {
-        let Meeting { hit, point } = meeting;
+    pub fn boundary(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Result<Boundary, Hidden> {
+        let SurfaceHit { hit, point } = surface_hit;
         let number = self.world.scene.objects[hit.object as usize].material;
         let (boundary, fits) = path.media.at_surface(&self.world.scene, number, point, path.ray.direction);
         self.stats.unmatched += u64::from(!fits);
@@ -112,22 +112,22 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Makes the path pending that goes on through a hidden surface as if nothing were there.
     #[cold]
-    pub fn go_on_past(&mut self, path: &Path<N, P>, meeting: &Meeting, Hidden(boundary): &Hidden) {
+    pub fn go_on_past(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
         let kind = path.kind.past_hidden();
         let left_to_photons =
-            kind == PathKind::Smooth && self.world.is_photon_target(meeting.hit.object, meeting.point.position);
+            kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
         let next = self.pending.add(|| *path);
         // No light was sampled through this surface, so what the path meets beyond counts in full.
         let (key, media) = (path.key.child(0), path.media.beyond(boundary));
         *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
-        next.ray = meeting.point.leave(path.ray.direction);
+        next.ray = surface_hit.point.leave(path.ray.direction);
         (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
     }
 
     /// Makes the path pending that goes straight on through a surface that it has met, if any light does.
-    pub fn go_on_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, onward: Option<&Onward<N, P>>) {
-        if let Some(onward) = onward {
-            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, onward) };
+    pub fn go_on_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
+        if let Some(through) = through {
+            *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, through) };
         }
     }
 
@@ -141,12 +141,12 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     pub fn polarize_forward(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
         self.ways.clear();
         for branch in &mut self.branches {
-            path.polarization.forward(&at.viewed_from(branch.wi), at.arrival.wo, &mut branch.share);
+            path.polarization.forward(&at.viewed_from(branch.wi), at.context.wo, &mut branch.share);
         }
     }
 
     /// Leaves the branches alone that smooth surfaces have: diffuse surfaces may send light on no more.
-    pub fn keep_single(&mut self, departure: &Departure<N, P>) {
+    pub fn keep_single(&mut self, departure: &OutgoingPath<N, P>) {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
         let left_out = |branch: &Branch<N>| departure.weight(branch) * f64::from(departure.aimed(branch));
         self.stats.stopped += wide.map(left_out).sum::<f64>() / departure.siblings();
@@ -162,17 +162,17 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
-    pub fn follow(&mut self, departure: &mut Departure<N, P>, sampler: &Sampler) {
+    pub fn follow(&mut self, departure: &mut OutgoingPath<N, P>, sampler: &Sampler) {
         let path = departure.path;
-        if let Some(onward) = &departure.onward {
-            self.branches.push(Branch::onward(&path.ray, &onward.straight));
+        if let Some(through) = &departure.through {
+            self.branches.push(Branch::through(&path.ray, &through.straight));
         }
         self.stats.partings += u64::from(self.branches.iter().filter(|branch| branch.crosses).count() > 1);
         departure.branches = self.branches.len();
         if departure.is_awaited
-            && let Some(onward) = self.branches.pop()
+            && let Some(through) = self.branches.pop()
         {
-            departure.send(self.branches.len(), &onward, None, 1.0, &mut self.pending);
+            departure.send(self.branches.len(), &through, None, 1.0, &mut self.pending);
         }
         match self.rule() {
             Transport::Deterministic { cutoff, .. } => {
@@ -184,7 +184,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
                 }
             }
             Transport::Random { roulette, .. } => {
-                if self.branches.len() > 1 && !self.follows_all(path, departure.at.arrival.draw) {
+                if self.branches.len() > 1 && !self.follows_all(path, departure.at.context.draw) {
                     self.choose(departure, sampler, roulette)
                 } else {
                     self.follow_many(departure, sampler, roulette)
@@ -202,7 +202,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Follows one branch, chosen by weight.
-    fn choose(&mut self, departure: &Departure<N, P>, sampler: &Sampler, roulette: f64) {
+    fn choose(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
         let weight = |number: usize| departure.weight(&self.branches[number]);
         let u = sampler.four_plain(departure.path.key, CHOICE);
         let total: f64 = (0..self.branches.len()).map(weight).sum();
@@ -222,7 +222,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Follows all branches that roulette leaves.
-    fn follow_many(&mut self, departure: &Departure<N, P>, sampler: &Sampler, roulette: f64) {
+    fn follow_many(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
         let is_diffuse = departure.at.lobes.is_diffuse();
         let is_seen = departure.is_seen && self.world.has_soft_light;
         for (number, branch) in self.branches.iter().enumerate() {
@@ -230,7 +230,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             let (weight, wide) = (departure.weight(branch), branch.pdf.is_some() && is_diffuse);
             let roulette = if wide { roulette * SOONER } else { roulette };
             // In soft light dark surfaces make pixels as dark as paths: they may be no noisier than bright ones.
-            let counted = if wide && is_seen { departure.path.weight(departure.at.arrival.draw) } else { weight };
+            let counted = if wide && is_seen { departure.path.weight(departure.at.context.draw) } else { weight };
             if weight != 0.0
                 && let Some(factor) = survival(counted, roulette, departure.path.vertices, u)
             {
@@ -258,14 +258,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 pub struct Hidden(Boundary);
 
 /// A path that leaves a surface.
-pub struct Departure<'a, const N: usize, P = Polarized> {
+pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
     world: &'a World,
     path: &'a Path<N, P>,
     at: &'a Interaction<'a, N>,
     /// From where lights were sampled, if they were.
     scatter: Option<&'a ScatterSample>,
     /// What goes straight on: the last branch.
-    onward: Option<&'a Onward<N, P>>,
+    through: Option<&'a PassThrough<N, P>>,
     /// Whether that is followed for certain.
     is_awaited: bool,
     /// Whether the camera sees the surface.
@@ -275,15 +275,15 @@ pub struct Departure<'a, const N: usize, P = Polarized> {
     branches: usize,
 }
 
-impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
+impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
-        let (scatter, onward) = (None, None);
-        Self { world, path, at, scatter, onward, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
+        let (scatter, through) = (None, None);
+        Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
     }
 
     /// With lights sampled here, and what goes straight on.
-    pub fn with(self, scatter: Option<&'a ScatterSample>, onward: Option<&'a Onward<N, P>>) -> Self {
-        Self { scatter, onward, ..self }
+    pub fn with(self, scatter: Option<&'a ScatterSample>, through: Option<&'a PassThrough<N, P>>) -> Self {
+        Self { scatter, through, ..self }
     }
 
     /// Of a path from the camera.
@@ -304,19 +304,19 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
 
     /// Whether a branch is what goes straight on.
     fn is_onward(&self, number: usize) -> bool {
-        self.onward.is_some() && number + 1 == self.branches
+        self.through.is_some() && number + 1 == self.branches
     }
 
     /// How many paths together stand for this one.
     fn siblings(&self) -> f64 {
-        self.at.arrival.draw.siblings(self.path.parted)
+        self.at.context.draw.siblings(self.path.parted)
     }
 
     /// The weight of the path along a branch.
     #[inline]
     fn weight(&self, branch: &Branch<N>) -> f64 {
         let Self { path, at, .. } = self;
-        let shares = at.arrival.draw.shares(path.parted || (at.parts && branch.crosses));
+        let shares = at.context.draw.shares(path.parted || (at.parts && branch.crosses));
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
@@ -335,23 +335,23 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
         &self,
         number: usize,
         branch: &Branch<N>,
-        way: Option<&P::Way>,
+        way: Option<&P::RowTransfer>,
         factor: f64,
         pending: &mut Slots<Path<N, P>>,
     ) {
         let Self { world, path, at, .. } = self;
-        if let Some(onward) = self.onward.filter(|_| self.is_onward(number)) {
-            let beyond = path.passed_in_part(at.point, onward);
+        if let Some(through) = self.through.filter(|_| self.is_onward(number)) {
+            let beyond = path.passed_in_part(at.point, through);
             let (throughput, key) = (beyond.throughput.scaled(factor), path.key.child(number));
             *pending.add(|| beyond) = Path { throughput, key, ..beyond };
             return;
         }
         let (wide, crosses) = (branch.pdf.is_some(), branch.crosses);
-        let followed = || shading::is_plain(at.point, at.arrival.wo, branch.wi, crosses);
+        let followed = || shading::is_plain(at.point, at.context.wo, branch.wi, crosses);
         let left_to_photons = wide && path.leaves_narrow_to_photons(world, at);
         let goes_on_smoothly = left_to_photons && at.lobes.is_narrow();
         // A photon that leaves by the lobe that is left to photons has come over smooth surfaces alone.
-        let lands = wide && at.arrival.lobes != Lobes::NARROW;
+        let lands = wide && at.context.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
         next.left = path.left;
@@ -371,7 +371,7 @@ impl<'a, const N: usize, P: Polarization<N>> Departure<'a, N, P> {
             false => next.kind == PathKind::Smooth && world.is_photon_target(at.object, at.point.position),
         };
         next.is_narrow = match wide && !goes_on_smoothly {
-            true => at.lobes.intersection(at.arrival.lobes).is_narrow(),
+            true => at.lobes.intersection(at.context.lobes).is_narrow(),
             false => path.is_narrow,
         };
         next.diffuse_left = path.diffuse_left - u32::from((wide || self.all_count) && at.lobes.is_diffuse());

@@ -7,7 +7,7 @@ use crate::spectrum::{Draw, Lanes, Table, Waves};
 
 /// What a material may know of the light that arrives, followed backward from the viewer.
 #[derive(Clone, Copy, Debug)]
-pub struct Arrival<'a, const N: usize> {
+pub struct ScatterContext<'a, const N: usize> {
     /// Unit vector to the viewer.
     pub wo: DVec3,
     /// Unit normal by which the surface scatters, on the viewer's side: on smooth meshes not that of the triangle.
@@ -45,7 +45,7 @@ pub enum Index<'a> {
     Own(&'a Table),
 }
 
-impl<const N: usize> Arrival<'_, N> {
+impl<const N: usize> ScatterContext<'_, N> {
     /// A lane's index on the viewer's side.
     pub fn incident_of(&self, lane: usize) -> f64 {
         self.index_of(self.incident, lane)

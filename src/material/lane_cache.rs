@@ -5,11 +5,11 @@ use crate::spectrum::{Draw, MAX_LANES};
 /// What a material works out once for each lane that stands for the same light in every sample, by numbers that are
 /// mostly the same wherever it is met, such as indices.
 #[derive(Clone, Debug)]
-pub(super) struct KnownLanes<K, V>(Arc<OnceLock<OfLanes<K, V>>>);
+pub(super) struct LaneCache<K, V>(Arc<OnceLock<OfLanes<K, V>>>);
 
 type OfLanes<K, V> = Box<[OnceLock<(K, V)>; MAX_LANES]>;
 
-impl<K: Copy + PartialEq, V> KnownLanes<K, V> {
+impl<K: Copy + PartialEq, V> LaneCache<K, V> {
     /// Nothing so far.
     pub(super) fn new() -> Self {
         Self(Arc::default())

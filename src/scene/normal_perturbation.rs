@@ -3,23 +3,23 @@
 use std::sync::Arc;
 
 use crate::math::DVec3;
-use crate::shape::{Coordinates, Crossing, Shape, SurfacePoint};
+use crate::shape::{Coordinates, Intersection, Shape, SurfacePoint};
 use crate::spectrum::Texture;
 
 /// An image on an object that bends its normal; the surface itself stays where it is.
 #[derive(Clone, Debug)]
-pub struct Relief {
+pub struct NormalPerturbation {
     /// Where points of the surface lie in the image.
     pub coordinates: Arc<Coordinates>,
     /// The image and where it lies.
     pub texture: Texture,
     /// What its numbers are.
-    pub kind: ReliefKind,
+    pub kind: PerturbationKind,
 }
 
 /// What the numbers of an image on an object mean for its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ReliefKind {
+pub enum PerturbationKind {
     /// Directions: red along u, green at right angles to it on the side of v, blue out of the surface.
     Directions {
         /// Factor on red and green.
@@ -32,7 +32,7 @@ pub enum ReliefKind {
     },
 }
 
-impl Relief {
+impl NormalPerturbation {
     /// The unit normal by which a point of the surface scatters, on the front side; not a bit different where the image
     /// is flat.
     ///
@@ -40,15 +40,15 @@ impl Relief {
     /// *Simulation of Wrinkled Surfaces*, equation 3. The tangents are taken at right angles to the normal of a smooth
     /// mesh.
     #[inline(never)]
-    pub fn normal(&self, shape: &Shape, crossing: &Crossing, point: &SurfacePoint) -> DVec3 {
+    pub fn normal(&self, shape: &Shape, intersection: &Intersection, point: &SurfacePoint) -> DVec3 {
         let n = point.shading;
-        let Some(tangents) = self.coordinates.tangents(shape, crossing, point) else { return n };
+        let Some(tangents) = self.coordinates.tangents(shape, intersection, point) else { return n };
         let [along_u, along_v] = tangents.map(|tangent| tangent - n * tangent.dot(n));
-        let uv = self.coordinates.at(shape, crossing, point.position);
+        let uv = self.coordinates.at(shape, intersection, point.position);
         // In images that lie on the surface as in a mirror, u and v turn the other way around.
         let side = 1f64.copysign(along_u.cross(along_v).dot(n));
         let bent = match self.kind {
-            ReliefKind::Directions { strength } => {
+            PerturbationKind::Directions { strength } => {
                 let [x, y, z] = self.texture.color(uv).map(f64::from);
                 let [x, y] = [x, y].map(|slope| slope * strength);
                 if x == 0.0 && y == 0.0 {
@@ -57,7 +57,7 @@ impl Relief {
                 let Some(right) = along_u.try_normalize() else { return n };
                 right * x + n.cross(right) * (side * y) + n * z
             }
-            ReliefKind::Heights { depth } => {
+            PerturbationKind::Heights { depth } => {
                 let [du, dv] = self.texture.slope(uv).map(|slope| slope * depth);
                 if du == 0.0 && dv == 0.0 {
                     return n;

@@ -7,7 +7,7 @@ pub(super) type SourceId = usize;
 
 /// The lanes by which light arrives at the sensor.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Arrived<'a, const N: usize> {
+pub(super) struct ReceivedLight<'a, const N: usize> {
     pub(super) source: SourceId,
     pub(super) draw: &'a Draw<N>,
     pub(super) lanes: &'a Lanes<N>,
@@ -15,7 +15,7 @@ pub(super) struct Arrived<'a, const N: usize> {
     pub(super) parted: bool,
 }
 
-impl<const N: usize> Arrived<'_, N> {
+impl<const N: usize> ReceivedLight<'_, N> {
     /// The film's red, green and blue, by what the lanes of each light are worth.
     #[inline]
     pub(super) fn rgb(&self, responses: &[Response]) -> [f64; 3] {

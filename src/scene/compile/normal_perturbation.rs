@@ -11,7 +11,7 @@ use super::image::image;
 use super::image_numbers::Meaning;
 use super::measures::MAX_LENGTH;
 use crate::scene::text::{Fields, Value, at};
-use crate::scene::{Relief, ReliefKind};
+use crate::scene::{NormalPerturbation, PerturbationKind};
 use crate::shape::Coordinates;
 use crate::spectrum::{Encoding, Placement, TexelFilter, Texture, Wrap};
 
@@ -22,7 +22,7 @@ const MOST_STRENGTH: f64 = 1e3;
 pub(super) struct ReliefText<'d> {
     place: Value<'d>,
     texture: Texture,
-    kind: ReliefKind,
+    kind: PerturbationKind,
 }
 
 /// What bends the normals of an object, if anything does; none if that is wrong.
@@ -57,7 +57,11 @@ fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<
             return file.place.advise(message, help);
         }
         let (placement, strength) = (placement?, strength?);
-        Some(ReliefText { place, texture: Texture { image, placement }, kind: ReliefKind::Directions { strength } })
+        Some(ReliefText {
+            place,
+            texture: Texture { image, placement },
+            kind: PerturbationKind::Directions { strength },
+        })
     })
 }
 
@@ -78,7 +82,7 @@ fn bump_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d
         });
         let image = image(context, &file?, Meaning::Heights, channel?);
         let (image, placement, depth) = (image?, placement?, depth?);
-        Some(ReliefText { place, texture: Texture { image, placement }, kind: ReliefKind::Heights { depth } })
+        Some(ReliefText { place, texture: Texture { image, placement }, kind: PerturbationKind::Heights { depth } })
     })
 }
 
@@ -99,12 +103,12 @@ fn placement(map: &mut Fields, what: &str) -> Option<Placement> {
 
 impl ReliefText<'_> {
     /// On an object, if its points lie somewhere in images.
-    pub(super) fn on(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<Relief>> {
+    pub(super) fn on(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<NormalPerturbation>> {
         let Some(coordinates) = coordinates.cloned() else {
             let message = "this mesh has no texture coordinates, by which the image would lie on it";
             let help = format!("leave `{}` out, or give the mesh coordinates (`uv`)", self.place.key());
             return self.place.advise(message, help);
         };
-        Some(Arc::new(Relief { coordinates, texture: self.texture.clone(), kind: self.kind }))
+        Some(Arc::new(NormalPerturbation { coordinates, texture: self.texture.clone(), kind: self.kind }))
     }
 }

@@ -6,7 +6,7 @@ use crate::math::DVec3;
 use crate::spectrum::{LaneSet, Lanes};
 
 /// One way by which light leaves a surface.
-pub struct Passing<const N: usize> {
+pub struct Exitant<const N: usize> {
     /// What leaves of unpolarized light.
     pub value: Lanes<N>,
     /// The lanes that do.
@@ -15,7 +15,7 @@ pub struct Passing<const N: usize> {
     pub z: [DVec3; 2],
 }
 
-impl<const N: usize> Passing<N> {
+impl<const N: usize> Exitant<N> {
     /// The same followed forward: the light's source is the viewer.
     pub fn turned_back(self) -> Self {
         let [to, from] = self.z;
@@ -25,7 +25,7 @@ impl<const N: usize> Passing<N> {
 
 /// What becomes of rows along a branch.
 #[derive(Debug)]
-pub struct Way<const N: usize> {
+pub struct RowTransfer<const N: usize> {
     /// Whether any polarization is left: what there is beside `change.x` otherwise has no meaning.
     pub is_any_left: bool,
     pub mueller: Mueller<N>,
@@ -33,20 +33,20 @@ pub struct Way<const N: usize> {
     /// The unit normal of the plane at which a shading normal folds the light.
     pub folded_at: Option<DVec3>,
     /// What comes folded to a direction to which light comes straight as well.
-    pub besides: Option<Box<Besides<N>>>,
+    pub folded_light: Option<Box<FoldedTransport<N>>>,
 }
 
 /// What becomes of rows by light that is folded to the direction of other light.
 #[derive(Debug)]
-pub struct Besides<const N: usize> {
+pub struct FoldedTransport<const N: usize> {
     pub mueller: Mueller<N>,
     pub change: Change<N>,
     /// What leaves of the path's light: of the other light, and of this one.
     pub lights: [Lanes<N>; 2],
 }
 
-impl<const N: usize> Way<N> {
+impl<const N: usize> RowTransfer<N> {
     pub fn new() -> Self {
-        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None, besides: None }
+        Self { is_any_left: false, mueller: Mueller::NONE, change: Change::NONE, folded_at: None, folded_light: None }
     }
 }

@@ -4,7 +4,7 @@ use crate::math::{DVec3, Ray, offset_origin};
 
 /// Where a ray crosses one shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct Intersection {
     /// Distance along the ray, above 0.
     pub t: f64,
     /// Triangle of a mesh, face of a cube; 0 elsewhere.
@@ -13,7 +13,7 @@ pub struct Crossing {
     pub uv: [f64; 2],
 }
 
-impl Crossing {
+impl Intersection {
     pub(super) fn at(t: f64) -> Self {
         Self { t, part: 0, uv: [0.0; 2] }
     }

@@ -4,11 +4,12 @@ use std::array::from_fn;
 
 use crate::math::{DVec3, Frame};
 
-/// Cosine and sine of twice the angle from one reference direction to another, about the direction z of the light.
+/// A rotation of the frame of Stokes vectors: cosine and sine of twice the angle from one reference direction to
+/// another, about the direction z of the light.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn(f32, f32);
+pub struct Rotation(f32, f32);
 
-impl Turn {
+impl Rotation {
     pub const NONE: Self = Self(1.0, 0.0);
 
     /// From `x`, of any length; none where either direction has no part across z.

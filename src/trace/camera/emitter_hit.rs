@@ -1,14 +1,14 @@
 //! Light that a path meets by itself: of the sky, or of a surface that shines.
 
-use super::direct::weight_of_meeting;
+use super::direct::weight_of_hit;
 use crate::light::{Light, LightId};
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
-use crate::trace::walk::{Meeting, Path, Polarization};
+use crate::trace::walk::{Path, Polarization, SurfaceHit};
 
-/// Light that a path has met.
-pub struct Shining<const N: usize, P> {
+/// An emitter that a path hit.
+pub struct EmitterHit<const N: usize, P> {
     pub light: LightId,
     pub lanes: Lanes<N>,
     /// The unit normal of the surface that shines, on its front; none of a sky.
@@ -17,7 +17,7 @@ pub struct Shining<const N: usize, P> {
     pub polarization: P,
 }
 
-impl<const N: usize, P: Polarization<N>> Shining<N, P> {
+impl<const N: usize, P: Polarization<N>> EmitterHit<N, P> {
     /// Of the sky or a sun at the end of a path; none beside a sun.
     pub fn of_sky(world: &World, draw: &Draw<N>, path: &Path<N, P>, light: LightId) -> Option<Self> {
         let sky = &world.scene.lights[light];
@@ -25,7 +25,7 @@ impl<const N: usize, P: Polarization<N>> Shining<N, P> {
             Light::Sun(sun) => sun.pdf(&path.ray).map(|_| sun.radiance_factor())?,
             _ => 1.0,
         };
-        let weight = weight_of_meeting(world, light, path.scatter.as_ref(), &path.ray, None);
+        let weight = weight_of_hit(world, light, path.scatter.as_ref(), &path.ray, None);
         let mut shone = sky.toward(draw, path.ray.direction, [0.0; 2]);
         let polarization = path.polarization.lit_by(sky, path.ray.direction, &mut shone);
         let lanes = path.throughput.scaled(weight * factor).of(shone);
@@ -33,16 +33,16 @@ impl<const N: usize, P: Polarization<N>> Shining<N, P> {
     }
 
     /// Of a surface that a path has met; none of a side that is dark.
-    pub fn of_surface(world: &World, draw: &Draw<N>, path: &Path<N, P>, meeting: &Meeting) -> Option<Self> {
-        let Meeting { hit, point } = meeting;
+    pub fn of_surface(world: &World, draw: &Draw<N>, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Option<Self> {
+        let SurfaceHit { hit, point } = surface_hit;
         let object = &world.scene.objects[hit.object as usize];
         let light = object.light?;
         let Light::Area(area) = &world.scene.lights[light] else { return None };
         if !area.sides.shine(point.normal.dot(path.ray.direction) < 0.0) {
             return None;
         }
-        let weight = weight_of_meeting(world, light, path.scatter.as_ref(), &path.ray, Some(&hit.crossing));
-        let uv = object.uv(&hit.crossing, point);
+        let weight = weight_of_hit(world, light, path.scatter.as_ref(), &path.ray, Some(&hit.intersection));
+        let uv = object.uv(&hit.intersection, point);
         let lanes = path.throughput.scaled(weight).of(draw.read_at(&area.radiance, uv));
         Some(Self { light, lanes, normal: Some(point.normal), polarization: path.polarization })
     }

@@ -2,19 +2,21 @@
 
 use std::sync::Arc;
 
-use super::batch::{Batch, Sent, send};
-use super::follow::{Landing, Photon};
+use super::batch::{Batch, SentBatch, send};
+use super::follow::{Photon, PhotonHit};
 use crate::light::LightId;
-use crate::material::Arrival;
+use crate::material::ScatterContext;
 use crate::math::{DVec2, Ray};
-use crate::scene::{Ends, FilmSettings, Seen, Sight};
+use crate::scene::{FilmSettings, RayEnds, Seen, Visibility};
 use crate::spectrum::{Draw, Lanes};
-use crate::trace::arrived::Arrived;
 use crate::trace::dyes::Dyes;
 use crate::trace::first_lobe::FirstLobe;
 use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::Spectrum;
-use crate::trace::walk::{DYE, Interaction, Passage, Past, Polarization, SeenPhoton, Walker, Ways, parts, shading};
+use crate::trace::walk::{
+    DYE, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
+};
 use crate::trace::{World, media};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
@@ -95,55 +97,55 @@ impl PlacedSplat {
 }
 
 /// Sends one batch of photons that are shown.
-pub fn send_shown<const N: usize, P: Polarization<N>>(
+pub fn send_splatted<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
     batch: Batch,
-) -> Sent<PlacedSplat> {
-    send(world, targets, batch, false, &show::<N, P>)
+) -> SentBatch<PlacedSplat> {
+    send(world, targets, batch, false, &splat_photon::<N, P>)
 }
 
-/// How the camera sees the place where a photon has landed.
-struct View<'v, 'a, const N: usize, P: Polarization<N>> {
+/// The connection of a photon to the camera: how the camera sees the place where it landed.
+struct CameraConnection<'v, 'a, const N: usize, P: Polarization<N>> {
     walker: &'v Walker<'a, N, P>,
-    landing: &'v Landing<'v, N, P>,
+    photon_hit: &'v PhotonHit<'v, N, P>,
     seen: Seen,
     /// Where on the film, near enough to the window.
     places: Vec<DVec2>,
     /// Whether the camera is on the side where the photon has arrived; the surface as it sees it.
     same: bool,
     viewed: Interaction<'v, N>,
-    ways: Ways,
+    ways: SeenThrough,
 }
 
 /// Adds what the camera sees of a photon.
-pub fn show<const N: usize, P: Polarization<N>>(
+pub fn splat_photon<const N: usize, P: Polarization<N>>(
     walker: &Walker<N, P>,
-    landing: &Landing<N, P>,
+    photon_hit: &PhotonHit<N, P>,
     splats: &mut Vec<PlacedSplat>,
 ) {
     let world = walker.world;
-    let ways: &[Ways] = match world.sight(landing.at.object) {
-        Sight::Shown => &[Ways::All],
-        Sight::Hidden => &[],
-        Sight::Holdout => &[Ways::Panes],
-        Sight::ShadowCatcher => &[Ways::Holes, Ways::Panes],
+    let ways: &[SeenThrough] = match world.visibility(photon_hit.at.object) {
+        Visibility::Shown => &[SeenThrough::All],
+        Visibility::Hidden => &[],
+        Visibility::Holdout => &[SeenThrough::Panes],
+        Visibility::ShadowCatcher => &[SeenThrough::Holes, SeenThrough::Panes],
     };
     for &ways in ways {
-        let Some(view) = View::new(walker, landing, ways) else { return };
+        let Some(view) = CameraConnection::new(walker, photon_hit, ways) else { return };
         view.keep(view.scattered(), splats);
         if let Some(dyes) = &world.dyes {
-            for (number, dye) in dyes.of(&world.scene, landing.at.object).enumerate() {
+            for (number, dye) in dyes.of(&world.scene, photon_hit.at.object).enumerate() {
                 view.keep(view.shone_by(dyes, dye, number), splats);
             }
         }
     }
 }
 
-impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
+impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> {
     /// None where the camera does not see the place.
-    fn new(walker: &'v Walker<'a, N, P>, landing: &'v Landing<'v, N, P>, ways: Ways) -> Option<Self> {
-        let Landing { path, at, photon } = landing;
+    fn new(walker: &'v Walker<'a, N, P>, photon_hit: &'v PhotonHit<'v, N, P>, ways: SeenThrough) -> Option<Self> {
+        let PhotonHit { path, at, photon } = photon_hit;
         let Interaction { flat, point, .. } = at;
         let world = walker.world;
         let (camera, film) = (&world.scene.camera, world.scene.film);
@@ -159,7 +161,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         }
         let same = seen.direction.dot(*flat) > 0.0;
         let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, landing, seen, places, same, viewed, ways })
+        Some(Self { walker, photon_hit, seen, places, same, viewed, ways })
     }
 
     /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
@@ -169,7 +171,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
         start: impl FnOnce() -> P,
         light: impl FnOnce() -> Lanes<N>,
     ) -> Option<(Lanes<N>, P)> {
-        let Landing { path, at, .. } = self.landing;
+        let PhotonHit { path, at, .. } = self.photon_hit;
         let ray = at.point.leave(self.seen.direction);
         let distance = (self.seen.start - ray.origin).length();
         let world = self.walker.world;
@@ -178,9 +180,10 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
             true => world.seen_media(&ray).inside(&world.scene),
             false => there,
         };
-        let ends = Ends { left: path.left, ..Ends::default() };
+        let ends = RayEnds { left: path.left, ..RayEnds::default() };
         let last_occluder = &self.walker.last_occluder;
-        let passage = Passage { ray: &ray, distance, ends, inside, past: Past::Seen(self.ways), last_occluder };
+        let passage =
+            VisibilityTest { ray: &ray, distance, ends, inside, occluders: Occluders::Seen(self.ways), last_occluder };
         let (arriving, polarization) = passage.arriving(world, draw, start, light)?;
         if inside == there {
             return Some((arriving, polarization));
@@ -195,10 +198,10 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
 
     /// What the pixels get of light that leaves the place toward the camera.
     fn factor(&self) -> f64 {
-        let Interaction { arrival, flat, .. } = self.landing.at;
-        let cosines = self.seen.direction.dot(*flat).abs() / arrival.wo.dot(*flat).abs();
+        let Interaction { context, flat, .. } = self.photon_hit.at;
+        let cosines = self.seen.direction.dot(*flat).abs() / context.wo.dot(*flat).abs();
         let filter = self.walker.world.scene.camera.filter();
-        self.landing.photon.emitted.factor
+        self.photon_hit.photon.emitted.factor
             * cosines
             * self.seen.importance
             * filter.map_or(1.0, |filter| filter.transmittance())
@@ -206,72 +209,73 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> View<'v, 'a, N, P> {
 
     /// What the surface scatters toward the camera.
     fn scattered(&self) -> Option<Splat> {
-        let Self { landing, viewed, same, .. } = self;
-        let Landing { path, at, .. } = landing;
-        let Interaction { arrival, material, .. } = at;
+        let Self { photon_hit, viewed, same, .. } = self;
+        let PhotonHit { path, at, .. } = photon_hit;
+        let Interaction { context, material, .. } = at;
         let world = self.walker.world;
-        let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.arrival, viewed.flat, arrival.wo)?;
-        let parted = path.parted || (!same && parts(at.lobes, material, &viewed.arrival));
-        let start = || path.polarization.forward(viewed, arrival.wo, &mut bsdf_cos);
-        let (shone, on_its_way) = self.arriving(arrival.draw, start, || landing.shone(world))?;
-        let polarized = path.polarization.seen(at, &viewed.arrival, &on_its_way, world, &self.back());
+        let (mut bsdf_cos, _) = shading::evaluate(material, &viewed.context, viewed.flat, context.wo)?;
+        let parted = path.parted || (!same && parts(at.lobes, material, &viewed.context));
+        let start = || path.polarization.forward(viewed, context.wo, &mut bsdf_cos);
+        let (shone, on_its_way) = self.arriving(context.draw, start, || photon_hit.shone(world))?;
+        let polarized = path.polarization.seen(at, &viewed.context, &on_its_way, world, &self.back());
         let arriving = polarized.factor.map_or(bsdf_cos * shone, |factor| bsdf_cos * shone * factor);
         let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(arriving);
         let white = world.layers.white.as_ref();
-        let lobe = || FirstLobe::scattered(white, material, at.lobes, &viewed.arrival, arrival.wo, !same);
+        let lobe = || FirstLobe::scattered(white, material, at.lobes, &viewed.context, context.wo, !same);
         let first = world.layers.lobes_apart.then(lobe);
-        let arrived = Arrived { source: landing.photon.light, draw: arrival.draw, lanes, parted };
-        Some(self.splat(&arrived, &polarized, parted, first))
+        let received = ReceivedLight { source: photon_hit.photon.light, draw: context.draw, lanes, parted };
+        Some(self.splat(&received, &polarized, parted, first))
     }
 
     /// What a dye, one of its material by a number, shines toward the camera.
     fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
-        let Self { landing, viewed, .. } = self;
-        let Landing { path, at, photon } = landing;
+        let Self { photon_hit, viewed, .. } = self;
+        let PhotonHit { path, at, photon } = photon_hit;
         let world = self.walker.world;
         if !self.same {
             return None;
         }
-        let (bsdf_cos, _) = shading::evaluate(&dyes.white, &viewed.arrival, viewed.flat, at.arrival.wo)?;
-        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * landing.shone(world));
+        let (bsdf_cos, _) = shading::evaluate(&dyes.white, &viewed.context, viewed.flat, at.context.wo)?;
+        let lanes = &path.throughput.scaled(1.0 / path.eta_scale).of(bsdf_cos * photon_hit.shone(world));
         let parted = path.parted;
-        let brightness = dyes.excited(dye, &Arrived { source: photon.light, draw: at.arrival.draw, lanes, parted });
+        let brightness =
+            dyes.excited(dye, &ReceivedLight { source: photon.light, draw: at.context.draw, lanes, parted });
         // Its light is of other wavelengths than that of the photon, whose lanes may have parted.
         let draw = &world.method.basis.draw(photon.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
         let mut shares = Vec::new();
-        at.material.shares_of_dyes(&Arrival { draw, ..viewed.arrival }, Lanes::ONE, &mut shares);
+        at.material.shares_of_dyes(&ScatterContext { draw, ..viewed.context }, Lanes::ONE, &mut shares);
         let polarization = path.polarization.exciting();
         let mut unpolarized = Lanes::ONE;
-        let start = || polarization.forward(&viewed.of_dye(&dyes.white, draw), at.arrival.wo, &mut unpolarized);
+        let start = || polarization.forward(&viewed.of_dye(&dyes.white, draw), at.context.wo, &mut unpolarized);
         let (arriving, on_its_way) = self.arriving(draw, start, || draw.start())?;
         let polarized =
-            polarization.seen(&at.of_dye(&dyes.white, draw), &viewed.arrival, &on_its_way, world, &self.back());
+            polarization.seen(&at.of_dye(&dyes.white, draw), &viewed.context, &on_its_way, world, &self.back());
         let arriving =
             polarized.factor.map_or(arriving, |factor| arriving * factor) * shares[number] * brightness as f32;
-        let arrived = Arrived { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
+        let received = ReceivedLight { source: dyes.source(dye), draw, lanes: &arriving, parted: false };
         let first = world.layers.lobes_apart.then_some(FirstLobe::Reflected { diffuse: [1.0; 3] });
-        Some(self.splat(&arrived, &polarized, parted, first))
+        Some(self.splat(&received, &polarized, parted, first))
     }
 
     /// Of light that arrives at the camera.
     fn splat(
         &self,
-        arrived: &Arrived<N>,
+        received: &ReceivedLight<N>,
         polarized: &SeenPhoton<N>,
         dispersed: bool,
         first: Option<FirstLobe>,
     ) -> Splat {
         let (world, factor) = (self.walker.world, self.factor());
-        let rgb = arrived.rgb(&world.responses).map(|x| x * factor);
+        let rgb = received.rgb(&world.responses).map(|x| x * factor);
         let spectrum = world.layers.spectrum.as_ref();
-        let of_bands = |spectrum: &Spectrum| spectrum.of(arrived, polarized.stokes.as_ref(), factor);
+        let of_bands = |spectrum: &Spectrum| spectrum.of(received, polarized.stokes.as_ref(), factor);
         let bands = spectrum.map(|spectrum| of_bands(spectrum).into_iter().map(|x| x as f32).collect());
-        let color = |part: Lanes<N>| arrived.times(part, &world.responses).map(|x| x * factor);
+        let color = |part: Lanes<N>| received.times(part, &world.responses).map(|x| x * factor);
         let stokes = polarized.stokes.map(|stokes| Arc::new(stokes.map(color)));
-        let Photon { light, early, .. } = *self.landing.photon;
-        let changed = || arrived.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
+        let Photon { light, early, .. } = *self.photon_hit.photon;
+        let changed = || received.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
-        let (bounces, caught) = (self.landing.path.surfaces(), self.ways == Ways::Holes);
+        let (bounces, caught) = (self.photon_hit.path.surfaces(), self.ways == SeenThrough::Holes);
         Splat { change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
     }
 
