@@ -75,7 +75,7 @@ pub fn can_be_followed(world: &World) -> bool {
 /// without any would show no noise.
 pub fn light_paths_reach(world: &World) -> bool {
     let paths = LightPaths::new(world, world.method.seed);
-    paths.is_some_and(|paths| in_lanes!(&world.method.basis, N => paths.reaching::<N>()) >= REACHING)
+    paths.is_some_and(|paths| in_lanes!(&world.method.basis, N => paths.reach::<N>()))
 }
 
 /// A few vertices of the light paths that a world's method asks for, for a pilot; none where no light can be followed.
@@ -126,15 +126,19 @@ impl<'a> LightPaths<'a> {
         started().fold(1.0, f64::min) < FAINT * started().fold(0.0, f64::max)
     }
 
-    /// How many paths of a pilot leave a vertex that is seen from what the camera sees.
-    fn reaching<const N: usize>(&self) -> usize {
-        let reaches = |path: usize| {
-            let number = path as u64;
-            let (vertices, _) = self.follow::<N, Polarized>(PILOT, number..number + 1);
-            let mut keyed = (0..).zip(&vertices);
-            keyed.any(|(key, vertex)| is_seen(self.world, &self.places, vertex.position, [path as u32, key]))
-        };
-        in_parallel(OF_A_PILOT as usize, &reaches).into_iter().filter(|&reaches| reaches).count()
+    /// Whether enough paths of a pilot leave a vertex that is seen from what the camera sees.
+    fn reach<const N: usize>(&self) -> bool {
+        let mut reaching = 0;
+        (0..OF_A_PILOT).step_by(BATCH as usize).any(|first| {
+            let reaches = |place: usize| {
+                let path = first + place as u64;
+                let (vertices, _) = self.follow::<N, Polarized>(PILOT, path..path + 1);
+                let mut keyed = (0..).zip(&vertices);
+                keyed.any(|(key, vertex)| is_seen(self.world, &self.places, vertex.position, [path as u32, key]))
+            };
+            reaching += in_parallel(BATCH as usize, &reaches).into_iter().filter(|&reaches| reaches).count();
+            reaching >= REACHING
+        })
     }
 
     /// The random numbers of a path of a set.
