@@ -25,10 +25,10 @@ const TOLERANCE: f64 = 1e-5;
 pub(super) struct FilmTable {
     /// Width of a part in nm.
     width: f64,
-    parts: Box<[OnceLock<Option<Part>>]>,
+    parts: Box<[OnceLock<Option<Polynomials>>]>,
 }
 
-type Part = Box<[FilmAverages; TERMS]>;
+type Polynomials = Box<[FilmAverages; TERMS]>;
 
 impl FilmTable {
     /// Of a layer up to a thickness in nm, for light of a wavelength in nm.
@@ -47,7 +47,7 @@ impl FilmTable {
         Some(at(part, 2.0 * (place - number as f64) - 1.0))
     }
 
-    fn part(&self, number: usize, make: impl Fn(f64) -> FilmAverages) -> Option<Part> {
+    fn part(&self, number: usize, make: impl Fn(f64) -> FilmAverages) -> Option<Polynomials> {
         let film = |x: f64| make((number as f64 + 0.5 * (x + 1.0)) * self.width);
         let angle = |place: usize| (place as f64 + 0.5) * PI / TERMS as f64;
         let films: [_; TERMS] = array::from_fn(|place| film(libm::cos(angle(place))));
@@ -61,7 +61,7 @@ impl FilmTable {
 }
 
 /// The sum of the polynomials at a place from -1 to 1.
-fn at(part: &Part, x: f64) -> FilmAverages {
+fn at(part: &Polynomials, x: f64) -> FilmAverages {
     let mut terms = [1.0; TERMS];
     terms[1] = x;
     (2..TERMS).for_each(|degree| terms[degree] = 2.0 * x * terms[degree - 1] - terms[degree - 2]);

@@ -47,7 +47,7 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     for (dye, reflectance) in &survey.dyes {
         let (dye, glow) = (&dye.excitable(), &dye.shines(basis.color_space()).film_colors());
         for (curve, light) in &judged {
-            let lit = Lit { dye, glow, reflectance, curve, light };
+            let lit = LitDye { dye, glow, reflectance, curve, light };
             worst = worst.max(lit.missed(&ways, basis));
         }
     }
@@ -55,7 +55,7 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
 }
 
 /// A surface with a dye under a light.
-struct Lit<'a> {
+struct LitDye<'a> {
     dye: &'a Excitable<'a>,
     /// What it shines.
     glow: &'a FilmColors,
@@ -65,7 +65,7 @@ struct Lit<'a> {
     light: &'a Emission,
 }
 
-impl Lit<'_> {
+impl LitDye<'_> {
     fn missed(&self, ways: &PathTints, basis: &Basis) -> f64 {
         let Self { dye, glow, reflectance, curve, light } = *self;
         let colors = light.film_colors();

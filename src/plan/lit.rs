@@ -8,14 +8,14 @@ use crate::spectrum::Curve;
 use crate::trace::{LightPass, World};
 
 /// A world with all that finds its light.
-pub(super) struct Lit {
+pub(super) struct LitWorld {
     pub(super) world: World,
     pub(super) because: Vec<String>,
     /// Where photons learned to go.
     pub(super) guided: Option<World>,
 }
 
-impl Lit {
+impl LitWorld {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
         let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, unlit);
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));

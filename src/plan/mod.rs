@@ -30,7 +30,7 @@ use crate::trace::{
     FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
 };
 use caustics::left_of_points;
-use lit::Lit;
+use lit::LitWorld;
 use model::Model;
 use survey::method_of_paths;
 use words::{in_number, in_words};
@@ -77,7 +77,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let (method, reason) = before_light(scene, basis, model_error);
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
-    let Lit { world, because, guided } = Lit::new(scene, &unlit);
+    let LitWorld { world, because, guided } = LitWorld::new(scene, &unlit);
     decisions.extend(because);
     let polarization = polarization::decide(scene, &world);
     decisions.extend(polarization.why);

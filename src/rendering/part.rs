@@ -17,7 +17,7 @@ const PART: Kind = *b"AbbePrt1";
 
 /// What stands before the tiles.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Header {
+pub(super) struct PartHeader {
     /// Read by itself, and first: what is of another version may not be read further.
     #[serde(skip)]
     identity: Identity,
@@ -46,7 +46,7 @@ pub(super) fn write(
     let shared = passes.non_finite_in_all_parts();
     provenance.set_count(NON_FINITE, shared);
     let (identity, non_finite) = (identity.of_all_parts(), report.non_finite - shared);
-    let head = Header { identity, shard, film, format, view, provenance, non_finite };
+    let head = PartHeader { identity, shard, film, format, view, provenance, non_finite };
     write_blocks(path, PART, &|blocks| {
         blocks.block(&head.identity)?;
         blocks.block(&head)?;
@@ -58,7 +58,7 @@ pub(super) fn write(
 ///
 /// # Errors
 /// [`Error::Arguments`] if it is no part, or not there; [`Error::Decode`] if it is damaged.
-pub(super) fn open(path: &Path) -> Result<(Header, BlockReader)> {
+pub(super) fn open(path: &Path) -> Result<(PartHeader, BlockReader)> {
     let made = "parts are made by --shard, as in render --shard 1/4 scene.toml";
     if !path.exists() {
         return Error::refuse(format!("there is no part {}", path.display()), made);
@@ -70,13 +70,13 @@ pub(super) fn open(path: &Path) -> Result<(Header, BlockReader)> {
     if let Some(objection) = identity.objection() {
         return Error::refuse(format!("{} cannot be read: {objection}", path.display()), "merge it with that version");
     }
-    let head = Header { identity, ..blocks.block()? };
+    let head = PartHeader { identity, ..blocks.block()? };
     let Film { width, height, .. } = head.film;
     let fits = u64::from(width) * u64::from(height) <= FilmSettings::MAX_PIXELS;
     if fits { Ok((head, blocks)) } else { Err(blocks.damaged()) }
 }
 
-impl Header {
+impl PartHeader {
     /// Why another part is not of the same image, if it is not.
     pub(super) fn difference(&self, part: &Self) -> Option<String> {
         if part.shard.count() != self.shard.count() {

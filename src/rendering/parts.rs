@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::image::Image;
 use super::origin::NON_FINITE;
-use super::part::{Header, open};
+use super::part::{PartHeader, open};
 use crate::error::{Error, Result};
 use crate::film::{
     BlockReader, Film, Format, Rows, Shard, TILE, TilePlace, TileValues, Window, write_exr, write_spectral_exr,
@@ -95,7 +95,7 @@ impl Parts {
             return Error::refuse(format!("part {number} of {count} is missing{more}"), help);
         }
         non_finite += whole.shared_non_finite();
-        let Header { film, format, view, mut provenance, .. } = whole;
+        let PartHeader { film, format, view, mut provenance, .. } = whole;
         provenance.set_count(NON_FINITE, non_finite);
         let report = Report { non_finite, ..Report::default() };
         let image = Image { film, report, error: None, because: Vec::new(), view, format, provenance, dark: None };

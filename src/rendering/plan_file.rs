@@ -15,7 +15,7 @@ const PLAN: Kind = *b"AbbePln1";
 
 /// What a plan is of.
 #[derive(Serialize, Deserialize)]
-struct Header {
+struct PlanHeader {
     identity: Identity,
     /// Samples per pixel, if they were asked for.
     samples: Option<u32>,
@@ -24,7 +24,7 @@ struct Header {
     time: Option<f64>,
 }
 
-impl Header {
+impl PlanHeader {
     fn new(scene: &Scene, plan: &Plan) -> Self {
         let identity = Identity::new(scene, &plan.method, Shard::WHOLE).of_all_parts();
         let RenderText { samples, error, time, is_part, .. } = scene.render;
@@ -64,7 +64,7 @@ impl Header {
 /// # Errors
 /// If it cannot be written; a file that was there before is then untouched.
 pub fn write_plan(plan: &Plan, scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
-    let head = Header::new(scene, plan);
+    let head = PlanHeader::new(scene, plan);
     write_blocks(path.as_ref(), PLAN, &|blocks| {
         blocks.block(&head)?;
         blocks.block(plan)
@@ -82,14 +82,14 @@ pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     let Some(mut blocks) = BlockReader::open(path, PLAN)? else {
         return Error::refuse(format!("{} is no plan", path.display()), AGAIN);
     };
-    let head: Header = blocks.block()?;
+    let head: PlanHeader = blocks.block()?;
     if let Some(objection) = head.identity.objection() {
         return Error::refuse(format!("cannot follow {}: {objection}", path.display()), AGAIN);
     }
     let plan: Plan = blocks.block()?;
     blocks.end()?;
     let is_of_whole = scene.render.is_part && (head.error.is_some() || head.time.is_some());
-    match Header::new(scene, &plan).difference(&head) {
+    match PlanHeader::new(scene, &plan).difference(&head) {
         Some(difference) => {
             let help = if is_of_whole { AGAIN_FOR_PARTS } else { AGAIN };
             Error::refuse(format!("cannot follow {}: {difference}", path.display()), help)

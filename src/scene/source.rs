@@ -12,7 +12,7 @@ use super::Scene;
 use super::compile::{SECTIONS, compile};
 use super::foreign::{A_SCENE, foreign};
 use super::text::{
-    Document, Fault, Included, MOST_BYTES, Mistake, Place, Rows, Texts, fill, merged, parsed, set, utf8,
+    Document, Fault, Included, LocatedBy, MOST_BYTES, Mistake, Rows, Texts, fill, merged, parsed, set, utf8,
 };
 use crate::error::{Error, Result, nearest_file};
 
@@ -99,7 +99,7 @@ impl Source {
     /// As [`compile`](Self::compile). A mistake in a setting is told of a file called `--set`, in which each has a
     /// line.
     pub fn compile_with(&self, settings: &[String]) -> Result<Scene> {
-        self.compile_by(Place::Line, settings, Vec::new(), true)
+        self.compile_by(LocatedBy::Line, settings, Vec::new(), true)
     }
 
     /// The same of a text that a program has written, with rows of numbers beside it. Each mistake in it is told with
@@ -122,10 +122,10 @@ impl Source {
     /// # Errors
     /// As [`compile_with`](Self::compile_with).
     pub fn compile_written(&self, settings: &[String], rows: Vec<Rows>) -> Result<Scene> {
-        self.compile_by(Place::Key, settings, rows, false)
+        self.compile_by(LocatedBy::Key, settings, rows, false)
     }
 
-    fn compile_by(&self, place: Place, given: &[String], rows: Vec<Rows>, is_file: bool) -> Result<Scene> {
+    fn compile_by(&self, place: LocatedBy, given: &[String], rows: Vec<Rows>, is_file: bool) -> Result<Scene> {
         let Included { mut texts, parts, mistakes, mut files, .. } = Included::of(&self.path, &self.text, is_file);
         (texts.rows, texts.told_by) = (rows, place);
         let settings = texts.add_lines(Path::new(SETTINGS), self.folder(), given);
@@ -133,8 +133,8 @@ impl Source {
             mistakes.sort_by_key(|mistake| mistake.span.start);
             mistakes.dedup_by(|a, b| (&a.span, &a.message) == (&b.span, &b.message));
             let keys = match place {
-                Place::Line => HashMap::new(),
-                Place::Key => keys(&texts, &parts, &mistakes),
+                LocatedBy::Line => HashMap::new(),
+                LocatedBy::Key => keys(&texts, &parts, &mistakes),
             };
             let diagnostic = |mistake: Mistake| {
                 let key = keys.get(&mistake.span).cloned();
@@ -217,7 +217,7 @@ impl Scene {
     /// As [`Scene::read`]; the file is called `scene.toml` in messages.
     pub fn parse(text: &str, folder: impl AsRef<Path>) -> Result<Self> {
         let source = Source { path: folder.as_ref().join("scene.toml"), text: text.to_owned() };
-        source.compile_by(Place::Line, &[], Vec::new(), false)
+        source.compile_by(LocatedBy::Line, &[], Vec::new(), false)
     }
 
     /// Reads a scene that a program has built: a value that means what a scene file with the same keys means.

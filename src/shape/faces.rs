@@ -38,7 +38,7 @@ impl Faces {
             if fan.iter().flatten().any(|&corner| corner as usize >= vertices.count()) {
                 continue;
             }
-            let Some(polygon) = Polygon::new(fan, vertices) else { continue };
+            let Some(polygon) = FacePlane::new(fan, vertices) else { continue };
             let (overlaps, flat) = (polygon.overlaps(fan), polygon.flat(fan));
             if !overlaps && flat == 0 {
                 continue;
@@ -60,13 +60,13 @@ impl Faces {
 }
 
 /// What triangles make up.
-struct Polygon<'v> {
+struct FacePlane<'v> {
     vertices: &'v Vertices,
     normal: DVec3,
     reach: f64,
 }
 
-impl<'v> Polygon<'v> {
+impl<'v> FacePlane<'v> {
     /// None if it has no area.
     ///
     /// The normals of its triangles add up to that of Newell's method (Sutherland, Sproull & Schumacker 1974, *A

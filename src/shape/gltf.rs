@@ -18,7 +18,7 @@ struct Document {
     asset: Asset,
     scene: Option<usize>,
     scenes: Vec<SceneText>,
-    nodes: Vec<Node>,
+    nodes: Vec<GltfNode>,
     meshes: Vec<MeshText>,
     accessors: Vec<Accessor>,
     buffer_views: Vec<BufferView>,
@@ -44,7 +44,7 @@ struct SceneText {
 
 #[derive(Default, Deserialize)]
 #[serde(default)]
-struct Node {
+struct GltfNode {
     children: Vec<usize>,
     mesh: Option<usize>,
     matrix: Option<[f64; 16]>,
@@ -277,7 +277,7 @@ fn cut(corners: &[u32], mode: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
     })
 }
 
-impl Node {
+impl GltfNode {
     /// The map to the space of the node above; none if the matrix does more than an affine map.
     fn map(&self) -> Option<Transform> {
         if let Some(m) = self.matrix {

@@ -56,13 +56,13 @@ pub(super) struct Accessor {
 #[derive(Deserialize)]
 struct Sparse {
     count: usize,
-    indices: Place,
-    values: Place,
+    indices: SparsePlace,
+    values: SparsePlace,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-struct Place {
+struct SparsePlace {
     buffer_view: usize,
     #[serde(default)]
     byte_offset: usize,

@@ -63,6 +63,6 @@ pub use quad::Quad;
 pub use sample::{Density, ShapeSample};
 pub use sides::Sides;
 pub use sphere::Sphere;
-pub use textured::{Place, TexturedShape};
+pub use textured::{TexturedPoint, TexturedShape};
 pub use triangle::Triangle;
 pub use vertices::Vertices;

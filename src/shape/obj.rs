@@ -19,7 +19,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
     // Names and comments may be in any encoding.
     let text = String::from_utf8_lossy(&bytes);
-    let mut lists = Lists::default();
+    let mut lists = ObjData::default();
     for (line, statement) in statements(text.strip_prefix('\u{feff}').unwrap_or(&text)) {
         let words: SmallVec<[&str; 8]> = statement.split_whitespace().collect();
         let Some((keyword, words)) = words.split_first() else { continue };
@@ -123,7 +123,7 @@ fn no_such(kind: usize) -> String {
 
 /// What was read of a file so far.
 #[derive(Default)]
-struct Lists {
+struct ObjData {
     places: Vec<[f64; 3]>,
     coordinates: Vec<[f32; 2]>,
     normals: Vec<[f32; 3]>,
@@ -138,7 +138,7 @@ struct Lists {
     materials: BTreeSet<String>,
 }
 
-impl Lists {
+impl ObjData {
     fn face(&mut self, line: usize, words: &[&str], smooth: bool) -> Result<(), String> {
         let (mut face, mut is_bare) = (Vec::with_capacity(words.len()), false);
         for word in words {

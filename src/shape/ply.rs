@@ -124,7 +124,7 @@ fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
 
 /// What was read of a file so far.
 #[derive(Default)]
-struct Lists {
+struct PlyData {
     vertices: Vertices,
     attributes: Attributes,
     faces: Faces,
@@ -133,7 +133,7 @@ struct Lists {
     corners: Option<Numbered<(u32, Option<[u32; 2]>)>>,
 }
 
-impl Lists {
+impl PlyData {
     fn vertices(&mut self, body: &mut Body, element: &ElementDef, smooth: bool) -> Result<(), String> {
         for axis in ["x", "y", "z"] {
             match element.properties.get(axis).map(|property| &property.data_type) {
@@ -205,7 +205,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let mut body = Body::open(path)?;
     let elements: Vec<ElementDef> = body.header.elements.values().cloned().collect();
     let of_corners = body.header.elements.get("face").and_then(|faces| faces.properties.get(OF_CORNERS));
-    let mut lists = Lists { corners: of_corners.map(|_| Numbered::default()), ..Lists::default() };
+    let mut lists = PlyData { corners: of_corners.map(|_| Numbered::default()), ..PlyData::default() };
     for element in &elements {
         match element.name.as_str() {
             "vertex" => lists.vertices(&mut body, element, smooth)?,
@@ -224,7 +224,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
         }
     }
     lists.part_corners()?;
-    let Lists { vertices, attributes, faces, .. } = lists;
+    let PlyData { vertices, attributes, faces, .. } = lists;
     let faces = faces.triangles(&vertices)?;
     Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
 }

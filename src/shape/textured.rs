@@ -12,7 +12,7 @@ use crate::math::{DVec3, Ray, disk_in_square, square_around_disk, triangle_coord
 /// On quads, spheres and the squares around discs it is where the image lies, once; faces of cubes may be turned, and
 /// triangles are folded open into squares.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct TexturedPoint {
     /// In the square, 0 to 1 each way.
     pub at: [f64; 2],
     /// Area of the surface there for one of the square.
@@ -64,7 +64,7 @@ impl TexturedShape<'_> {
     }
 
     /// Where the square lies at a crossing of the shape, whose point in the world is known; none on a plane.
-    pub fn place(&self, intersection: &Intersection, position: DVec3) -> Option<Place> {
+    pub fn place(&self, intersection: &Intersection, position: DVec3) -> Option<TexturedPoint> {
         let at = match self.coordinates {
             Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => square_around_disk(intersection.uv)?,
             Coordinates::Square | Coordinates::Cube => intersection.uv.map(|x| 0.5 + 0.5 * x),
@@ -72,7 +72,7 @@ impl TexturedShape<'_> {
             Coordinates::Sphere { .. } => self.coordinates.at(self.shape, intersection, position),
             Coordinates::Plane { .. } => return None,
         };
-        Some(Place { at, area: self.area(intersection.part, at, position)? })
+        Some(TexturedPoint { at, area: self.area(intersection.part, at, position)? })
     }
 
     /// Area of a part for one of the square at a place, which is a point of the world; none of a plane.

@@ -55,7 +55,7 @@ pub struct BrightPlaces {
 
 /// A place, ready to be aimed at.
 #[derive(Clone, Debug)]
-struct Target {
+struct BrightTarget {
     shape: Shape,
     center: DVec3,
     normal: DVec3,
@@ -69,7 +69,7 @@ struct Target {
 #[derive(Clone, Debug)]
 pub(super) struct Bright {
     within: Bounds,
-    targets: Vec<Target>,
+    targets: Vec<BrightTarget>,
     elsewhere: f64,
     /// What power of a surface's albedo is left to bounces that are not aimed, at least.
     left: i32,
@@ -90,7 +90,7 @@ impl Bright {
     pub(super) fn new(found: &BrightPlaces) -> Self {
         let target = |place: &BrightPlace| {
             let BrightPlace { center, half: [u, v], radiance } = *place;
-            Target {
+            BrightTarget {
                 shape: Shape::Quad(Quad::new(center, u, v)),
                 center,
                 normal: u.cross(v).normalize(),

@@ -73,7 +73,7 @@ impl Smoothness {
 
 /// A place on a smooth surface by way of which light may come to what the camera sees.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct FocusPlace {
     pub(super) at: DVec3,
     smoothness: Smoothness,
     /// Whether the surface has no end.
@@ -98,7 +98,7 @@ fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
 
 /// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
 /// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
-pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], to: &[Smoothness]) -> Vec<Place> {
+pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], to: &[Smoothness]) -> Vec<FocusPlace> {
     let is_target = |&object: &usize| Smoothness::sent_to(scene, object, to).is_some();
     let targets = (0..scene.objects.len()).filter(is_target);
     let mut balls = targets.map(|object| scene.objects[object].shape.ball());
@@ -127,7 +127,7 @@ fn walk(
     mut ray: Ray,
     mut distance: f64,
     mut left: Option<Primitive>,
-    found: &mut Vec<Place>,
+    found: &mut Vec<FocusPlace>,
 ) -> Option<(DVec3, Primitive)> {
     let seen = left.is_none();
     for _ in 0..SURFACES {
@@ -141,7 +141,7 @@ fn walk(
         let (smoothness, material) = (Smoothness::of(scene, hit.object as usize), scene.material_of(hit.object));
         if let Some(smoothness) = smoothness.filter(|smooth| to.contains(smooth)) {
             let distance = (point.position - scene.camera.position()).length();
-            found.push(Place { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });
+            found.push(FocusPlace { at: point.position, smoothness, endless: !object.shape.is_bounded(), distance });
         }
         let lets_through = material.is_see_through() && material.lobes() == Lobes::NONE;
         if smoothness != Some(Smoothness::Whole) && !lets_through {
@@ -164,8 +164,8 @@ fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
 
 /// The ball within which photons are sent to surfaces that have no end; none where the camera sees nothing by way of
 /// them.
-pub(super) fn reach(places: &[Place]) -> Option<Ball> {
-    let places: Vec<Place> = places.iter().filter(|place| place.endless).copied().collect();
+pub(super) fn reach(places: &[FocusPlace]) -> Option<Ball> {
+    let places: Vec<FocusPlace> = places.iter().filter(|place| place.endless).copied().collect();
     (places.len() >= FEWEST).then(|| around(&places, REACH))
 }
 
@@ -173,9 +173,9 @@ pub(super) fn reach(places: &[Place]) -> Option<Ball> {
 ///
 /// A part of n places gets photons for the square root of n: by area, the near ones would get too few, and by pixels
 /// the far ones, where photons are gathered around places that look longer than wide.
-pub(super) fn parts(places: &[Place], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<FocusBall> {
-    let is_in = |place: &&Place| place.smoothness == smoothness && whole.contains(place.at);
-    let mut places: Vec<Place> = places.iter().filter(is_in).copied().collect();
+pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<FocusBall> {
+    let is_in = |place: &&FocusPlace| place.smoothness == smoothness && whole.contains(place.at);
+    let mut places: Vec<FocusPlace> = places.iter().filter(is_in).copied().collect();
     if places.len() < FEWEST {
         return Vec::new();
     }
@@ -197,7 +197,7 @@ pub(super) fn parts(places: &[Place], smoothness: Smoothness, whole: &Ball, most
 }
 
 /// A ball around some places, so many times as large as it must be.
-fn around(places: &[Place], wider: f64) -> Ball {
+fn around(places: &[FocusPlace], wider: f64) -> Ball {
     let bounds = Bounds::around(places.iter().map(|place| place.at));
     Ball { center: bounds.center(), radius: 0.5 * wider * (bounds.max - bounds.min).length() }
 }
@@ -210,13 +210,13 @@ mod tests {
     fn parts_of_a_sea_are_small_where_it_is_near() {
         // Rows of an image of a plane, from below the camera to the horizon.
         let row = |i: u32| 1.6 / (f64::from(i) / 576.0);
-        let place = |i| Place {
+        let place = |i| FocusPlace {
             at: DVec3::new(f64::from(i % 24) / 24.0, 0.0, 1.0) * row(i),
             smoothness: Smoothness::Whole,
             endless: true,
             distance: row(i),
         };
-        let places: Vec<Place> = (1..=576).map(place).collect();
+        let places: Vec<FocusPlace> = (1..=576).map(place).collect();
         let whole = reach(&places).expect("there are enough");
         let parts = parts(&places, Smoothness::Whole, &whole, 6);
         assert!((3..=6).contains(&parts.len()), "{parts:?}");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::guide::Guide;
-use super::photon_focus::{FocusBall, Place, Smoothness, parts, reach};
+use super::photon_focus::{FocusBall, FocusPlace, Smoothness, parts, reach};
 use crate::light::{Beam, LeSample, LightId};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
@@ -65,7 +65,7 @@ impl PhotonTargets {
     pub(super) fn new(
         scene: &Scene<Table>,
         lights: &[(LightId, f64)],
-        places: &[Place],
+        places: &[FocusPlace],
         to: &[Smoothness],
         photons: u64,
     ) -> Option<Self> {

@@ -16,18 +16,18 @@ pub(super) const HALF: u32 = REPLICATES as u32 / 2;
 /// them is how far they are apart.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Replicates {
-    light: Sums,
+    light: ReplicateSums,
     /// By how much gathered photons blur it; empty where none are gathered.
-    blur: Sums,
+    blur: ReplicateSums,
     /// What photons show, times the samples that they were sent beside; empty where none are sent.
     splatted: Vec<[[f32; 3]; REPLICATES]>,
     /// How much of it is covered; empty where no shadow catcher makes noise of that.
-    covered: Vec<[Covered; REPLICATES]>,
+    covered: Vec<[CoverageSums; REPLICATES]>,
 }
 
 /// How much of a pixel is covered: sums over samples.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
-struct Covered {
+struct CoverageSums {
     /// Samples that met something, of those that are added and subtracted.
     met: [u32; 2],
     /// The luminance of shadow catchers with all objects and with those of the plate alone, and samples of them.
@@ -36,7 +36,7 @@ struct Covered {
     splatted: f32,
 }
 
-impl Covered {
+impl CoverageSums {
     fn add(&mut self, samples: [&PassSum; 2], caught: CatcherLight<f64>) {
         (0..2).for_each(|lobe| self.met[lobe] += samples[lobe].met());
         let caught = [caught.with, caught.without, caught.share];
@@ -55,7 +55,7 @@ impl Covered {
 /// Of each pixel, the samples of each replicate: those that are added, and those that are subtracted, which are empty
 /// where the filter is nowhere negative.
 #[derive(Clone, Default, Serialize, Deserialize)]
-struct Sums([Vec<[Sum; REPLICATES]>; 2]);
+struct ReplicateSums([Vec<[Sum; REPLICATES]>; 2]);
 
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct Sum {
@@ -71,7 +71,7 @@ impl Sum {
     }
 }
 
-impl Sums {
+impl ReplicateSums {
     fn new(pixels: usize, is_signed: bool) -> Self {
         let sums = |wanted: bool| if wanted { vec![[Sum::default(); REPLICATES]; pixels] } else { Vec::new() };
         Self([true, is_signed].map(sums))
@@ -141,9 +141,9 @@ impl Replicates {
     /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and
     /// there are shadow catchers, or none.
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
-        let blur = if gathers { Sums::new(pixels, is_signed) } else { Sums::default() };
-        let covered = if catches { vec![[Covered::default(); REPLICATES]; pixels] } else { Vec::new() };
-        Self { light: Sums::new(pixels, is_signed), blur, splatted: Vec::new(), covered }
+        let blur = if gathers { ReplicateSums::new(pixels, is_signed) } else { ReplicateSums::default() };
+        let covered = if catches { vec![[CoverageSums::default(); REPLICATES]; pixels] } else { Vec::new() };
+        Self { light: ReplicateSums::new(pixels, is_signed), blur, splatted: Vec::new(), covered }
     }
 
     /// Bytes of memory that they take for each pixel, where photons are shown or not.
@@ -151,7 +151,7 @@ impl Replicates {
         let kinds = (1 + usize::from(is_signed)) * (1 + usize::from(gathers));
         let [catches, shows] = [catches, shows].map(usize::from);
         kinds * size_of::<[Sum; REPLICATES]>()
-            + catches * size_of::<[Covered; REPLICATES]>()
+            + catches * size_of::<[CoverageSums; REPLICATES]>()
             + shows * size_of::<[[f32; 3]; REPLICATES]>()
     }
 

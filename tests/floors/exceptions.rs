@@ -17,3 +17,6 @@ pub const ABROAD: &[&str] = &[
 
 /// Files with comments that are wider, and how many.
 pub const WIDE: &[&str] = &[];
+
+/// Names of several types of a room: what each command is asked.
+pub const SHARED: &[&str] = &["command: Query"];

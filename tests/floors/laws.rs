@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::exceptions::{ABROAD, LONG, TUPLES, WIDE};
+use super::exceptions::{ABROAD, LONG, SHARED, TUPLES, WIDE};
 use super::house::{House, exactly, here};
 use crate::support::texts::texts;
 
@@ -114,6 +114,35 @@ fn abroad(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
         found.extend(away.map(|of| format!("{}: {}", source.path, of.last().expect("a name"))));
     }
     found
+}
+
+/// Names that stand for types in several files of a room.
+fn shared_names(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let mut homes: BTreeMap<String, u32> = BTreeMap::new();
+    for source in House::new(texts).files {
+        let room = source.path.split('/').next().unwrap_or_default();
+        let is_type = |item: &&String| item.starts_with(char::is_uppercase) && item.contains(char::is_lowercase);
+        for item in source.items.iter().filter(is_type) {
+            *homes.entry(format!("{room}: {item}")).or_default() += 1;
+        }
+    }
+    homes.into_iter().filter(|(_, files)| *files > 1).map(|(name, _)| name).collect()
+}
+
+#[test]
+fn a_name_stands_for_one_type_in_a_room() {
+    exactly("SHARED", SHARED, shared_names(here()), "types of a room share a name");
+}
+
+#[test]
+fn a_name_of_two_types_is_noticed() {
+    let files = |room: &str| {
+        let texts =
+            [("a/one.rs", "struct Mirror; const B: u8 = 1; fn c() {}"), (room, "enum Mirror {} const B: u8 = 2; fn c() {}")];
+        BTreeMap::from(texts.map(|(path, text)| (path.to_owned(), text.to_owned())))
+    };
+    assert_eq!(shared_names(&files("a/b/two.rs")), BTreeSet::from(["a: Mirror".to_owned()]));
+    assert!(shared_names(&files("b/two.rs")).is_empty());
 }
 
 #[test]

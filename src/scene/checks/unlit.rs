@@ -4,7 +4,7 @@
 //! sees: one that is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks
 //! for the light.
 
-use super::view::{Place, View};
+use super::view::{SurfaceSide, View};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
 use crate::math::{BranchKey, DVec3, Ray, Sampler, ball_surface, cosine_about, unit};
@@ -104,7 +104,7 @@ enum Paths {
 }
 
 /// Whether a light reaches a place, or is there.
-fn reaches(view: &View, light: &Light<Curve>, place: &Place) -> bool {
+fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
     let digits = place.point.position.to_array().map(|x| x.to_bits() as u32);
     let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).four_plain(BranchKey::CAMERA, 0);
     let lit = || {
@@ -177,7 +177,7 @@ fn paths_of(view: &View, light: &Light<Curve>) -> Paths {
 struct Start {
     ray: Ray,
     /// The lamp's surface on the side that shines.
-    surface: Option<Place>,
+    surface: Option<SurfaceSide>,
 }
 
 fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
@@ -206,7 +206,7 @@ fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     let back = area.sides == Sides::Both && point.normal.dot(direction) > 0.0;
     let normal = if back { -point.normal } else { point.normal };
     let ray = point.leave(cosine_about(normal, [c, d]));
-    Some(Start { ray, surface: Some(Place { point, normal, object: area.object }) })
+    Some(Start { ray, surface: Some(SurfaceSide { point, normal, object: area.object }) })
 }
 
 /// What messages call a light: the object that shines, or the number of the `[[light]]`, counted from 1, and its kind.

@@ -20,7 +20,7 @@ const LONGEST: usize = 64;
 const OTHERS: u32 = 4;
 
 /// One side of an opaque surface.
-pub(super) struct Place {
+pub(super) struct SurfaceSide {
     pub(super) point: SurfacePoint,
     /// Unit normal on that side.
     pub(super) normal: DVec3,
@@ -31,7 +31,7 @@ pub(super) struct Place {
 pub(super) struct View<'a> {
     pub(super) scene: &'a Scene<Curve>,
     /// What paths from the camera meet.
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<SurfaceSide>,
     /// Rays asked for so far.
     pub(super) rays: Cell<u64>,
     occluder: Cell<Option<u32>>,
@@ -43,7 +43,7 @@ impl<'a> View<'a> {
     }
 
     /// Follows the camera's rays, far ones first, until `found` answers `true` to the places of one of them.
-    pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[Place]) -> bool) {
+    pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[SurfaceSide]) -> bool) {
         // A stride that is coprime to the number of rays visits them all.
         for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {
             let mut places = Vec::new();
@@ -61,12 +61,18 @@ impl<'a> View<'a> {
 
     /// Follows a ray over surfaces that scatter evenly or mirror; `met` is told of each, and ends the walk by `true`,
     /// which is the answer then.
-    pub(super) fn walk(&self, ray: Ray, sampler: &Sampler, met: impl FnMut(Place) -> bool) -> bool {
+    pub(super) fn walk(&self, ray: Ray, sampler: &Sampler, met: impl FnMut(SurfaceSide) -> bool) -> bool {
         self.walk_from(false, ray, sampler, met)
     }
 
     /// The same of a ray from the camera or from elsewhere: the camera's goes straight through what it does not see.
-    fn walk_from(&self, is_camera: bool, mut ray: Ray, sampler: &Sampler, mut met: impl FnMut(Place) -> bool) -> bool {
+    fn walk_from(
+        &self,
+        is_camera: bool,
+        mut ray: Ray,
+        sampler: &Sampler,
+        mut met: impl FnMut(SurfaceSide) -> bool,
+    ) -> bool {
         let (mut key, mut turns) = (BranchKey::CAMERA, 0);
         for _ in 0..LONGEST {
             self.rays.set(self.rays.get() + 1);
@@ -83,7 +89,7 @@ impl<'a> View<'a> {
             }
             let normal = if point.normal.dot(ray.direction) < 0.0 { point.normal } else { -point.normal };
             turns += 1;
-            if met(Place { point, normal, object: hit.object }) {
+            if met(SurfaceSide { point, normal, object: hit.object }) {
                 return true;
             }
             if turns == DEEP || matches!(material, Material::Emissive(_)) {
@@ -140,7 +146,7 @@ impl<'a> View<'a> {
     }
 
     /// Whether the camera, or a place on paths from it, sees a place.
-    pub(super) fn is_seen(&self, place: &Place, number: u32) -> bool {
+    pub(super) fn is_seen(&self, place: &SurfaceSide, number: u32) -> bool {
         let from = place.point.position;
         let to_camera = match self.scene.camera.projection() {
             Projection::Orthographic { .. } => self.scene.camera.see(from, [0.5; 2]).map(|seen| seen.start),
@@ -157,7 +163,7 @@ impl<'a> View<'a> {
     }
 
     /// Whether a place on a lamp is in the picture.
-    pub(super) fn is_in_view(&self, place: &Place) -> bool {
+    pub(super) fn is_in_view(&self, place: &SurfaceSide) -> bool {
         let Some(seen) = self.scene.camera.see(place.point.position, [0.5; 2]) else { return false };
         let size = DVec2::new(self.scene.film.width.into(), self.scene.film.height.into());
         let inside = seen.film.cmpge(DVec2::ZERO).all() && seen.film.cmple(size).all();
@@ -187,7 +193,7 @@ impl<'a> View<'a> {
     }
 
     /// Whether nothing opaque lies between a place and a point before it.
-    fn is_free(&self, place: &Place, to: DVec3) -> bool {
+    fn is_free(&self, place: &SurfaceSide, to: DVec3) -> bool {
         let above = to - place.point.position;
         if above.dot(place.normal) <= 0.0 {
             return false;
@@ -199,7 +205,7 @@ impl<'a> View<'a> {
     }
 }
 
-impl Place {
+impl SurfaceSide {
     /// Whether the light is this place.
     pub(super) fn shines(&self, light: &Light<Curve>) -> bool {
         let front = self.point.normal.dot(self.normal) > 0.0;

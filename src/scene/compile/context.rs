@@ -8,7 +8,7 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use super::image_numbers::Meaning;
-use crate::scene::text::{Document, Place, Value};
+use crate::scene::text::{Document, LocatedBy, Value};
 use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};
 
@@ -70,8 +70,8 @@ impl Context {
     pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
         let places = self.warnings.iter().filter_map(|warning| warning.place.clone());
         let paths = match document.texts.told_by {
-            Place::Line => document.texts.named_all(places),
-            Place::Key => document.paths(places),
+            LocatedBy::Line => document.texts.named_all(places),
+            LocatedBy::Key => document.paths(places),
         };
         let told = |Warning { place, message }: &Warning| match place {
             Some(place) => {

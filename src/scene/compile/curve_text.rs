@@ -48,10 +48,10 @@ pub(super) enum KindText<'d> {
     Checker(Box<[CurveText<'d>; 2]>),
 }
 
-type Reader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
+type SpectrumReader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
 
 /// The keys of which a table of a spectrum has one, and what reads them.
-const KINDS: [(&str, Reader); 11] = [
+const KINDS: [(&str, SpectrumReader); 11] = [
     ("rgb", |value| value.array(real).map(KindText::Rgb)),
     ("samples", |value| pairs(value, "write [wavelength in nm, value]").map(KindText::Samples)),
     ("file", |value| value.text().map(KindText::File)),

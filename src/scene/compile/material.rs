@@ -19,7 +19,7 @@ use crate::shape::Sides;
 use crate::spectrum::{Curve, Quantity};
 
 /// A material by itself: of one that is made of others it is known where they are named.
-pub(super) enum Draft<'d, S> {
+pub(super) enum MaterialDraft<'d, S> {
     Whole(Material<S>),
     Mix { parts: [Value<'d>; 2], amount: S },
     Mask { part: Value<'d>, opacity: S },
@@ -39,51 +39,53 @@ fn roughness(fields: &mut Fields) -> f64 {
 }
 
 /// What reads a kind of material, given its table as a whole and by its keys.
-type Reader = for<'d> fn(&mut Context, Value<'d>, &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>>;
+type MaterialReader = for<'d> fn(&mut Context, Value<'d>, &mut Fields<'d>) -> Option<MaterialDraft<'d, Asked<'d>>>;
 
 /// The kinds of materials, each documented where it is implemented, in `material`.
-const MATERIAL: Choice<Reader> = Choice {
+const MATERIAL: Choice<MaterialReader> = Choice {
     name: "a material",
     word: "kind of material",
     example: "diffuse = { reflectance = 0.7 }",
     apart: "give each kind its own [material.NAME]",
     beside: &[],
     kinds: &[
-        ("diffuse", |_, _, fields| Some(Draft::Whole(Material::Diffuse(diffuse(fields)?)))),
+        ("diffuse", |_, _, fields| Some(MaterialDraft::Whole(Material::Diffuse(diffuse(fields)?)))),
         ("mirror", |_, _, fields| {
-            Some(Draft::Whole(Material::Mirror(Mirror { reflectance: spectrum_or(fields, "reflectance", 1.0) })))
+            Some(MaterialDraft::Whole(Material::Mirror(Mirror {
+                reflectance: spectrum_or(fields, "reflectance", 1.0),
+            })))
         }),
         ("conductor", conductor),
         ("dielectric", |_, _, fields| dielectric(fields)),
-        ("thin", |_, _, fields| Some(Draft::Whole(Material::Thin(thin(fields)?)))),
+        ("thin", |_, _, fields| Some(MaterialDraft::Whole(Material::Thin(thin(fields)?)))),
         ("emissive", |_, _, fields| {
             let radiance = spectrum(fields, "radiance");
             let words = [("both", Sides::Both), ("front", Sides::Front)];
             let sides = fields.or("sides", Sides::Both, |value| value.word(&words)).unwrap_or_default();
-            Some(Draft::Whole(Material::Emissive(Emissive { radiance, sides })))
+            Some(MaterialDraft::Whole(Material::Emissive(Emissive { radiance, sides })))
         }),
         ("plastic", |_, _, fields| {
             let (reflectance, index) = (spectrum(fields, "reflectance"), spectrum_or(fields, "index", 1.5));
             let (coat, coating) = (Coat::new(roughness(fields)), coating(fields));
-            Some(Draft::Whole(Material::Plastic(Plastic { reflectance, index, coat, coating: coating? })))
+            Some(MaterialDraft::Whole(Material::Plastic(Plastic { reflectance, index, coat, coating: coating? })))
         }),
         ("polarizer", |_, _, fields| {
             let (axis, extinction) = (fields.need("axis", direction), fields.or("extinction", 0.0, extinction));
-            Some(Draft::Whole(Material::Polarizer(Polarizer { axis: axis?, extinction: extinction? })))
+            Some(MaterialDraft::Whole(Material::Polarizer(Polarizer { axis: axis?, extinction: extinction? })))
         }),
         ("retarder", |context, _, fields| {
             let (axis, retardance) = (fields.need("axis", direction), retardance(context, fields));
-            Some(Draft::Whole(Material::Retarder(Retarder { axis: axis?, retardance: retardance? })))
+            Some(MaterialDraft::Whole(Material::Retarder(Retarder { axis: axis?, retardance: retardance? })))
         }),
         ("mix", |_, _, fields| {
             let parts = fields.need("materials", two_names);
             let amount = spectrum(fields, "amount");
-            Some(Draft::Mix { parts: parts?, amount })
+            Some(MaterialDraft::Mix { parts: parts?, amount })
         }),
         ("mask", |_, _, fields| {
             let part = fields.need("material", name);
             let opacity = spectrum(fields, "opacity");
-            Some(Draft::Mask { part: part?, opacity })
+            Some(MaterialDraft::Mask { part: part?, opacity })
         }),
     ],
 };
@@ -128,7 +130,7 @@ const MOST_AHEAD_NM: f64 = 1e6;
 /// The shortest, at which 3 parts in 10^9 of polarized light change: less is most likely in m.
 const LEAST_AHEAD_NM: f64 = 0.01;
 
-fn conductor<'d>(_: &mut Context, value: Value<'d>, fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
+fn conductor<'d>(_: &mut Context, value: Value<'d>, fields: &mut Fields<'d>) -> Option<MaterialDraft<'d, Asked<'d>>> {
     let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));
     let (roughness, coating) = (Roughness::new(roughness(fields)), coating(fields));
     let [n, k] = match (metal, n, k) {
@@ -138,12 +140,12 @@ fn conductor<'d>(_: &mut Context, value: Value<'d>, fields: &mut Fields<'d>) -> 
         _ if fields.has_unknown() => return None,
         _ => return value.refuse("a conductor needs either `metal`, or both `n` and `k`"),
     };
-    Some(Draft::Whole(Material::Conductor(Conductor::new([n, k], roughness, coating?))))
+    Some(MaterialDraft::Whole(Material::Conductor(Conductor::new([n, k], roughness, coating?))))
 }
 
-fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<Draft<'d, Asked<'d>>> {
+fn dielectric<'d>(fields: &mut Fields<'d>) -> Option<MaterialDraft<'d, Asked<'d>>> {
     let coating = coating(fields);
-    Some(Draft::Whole(Material::Dielectric(Dielectric {
+    Some(MaterialDraft::Whole(Material::Dielectric(Dielectric {
         index: spectrum(fields, "index"),
         reflectance: spectrum_or(fields, "reflectance", 1.0),
         transmittance: spectrum_or(fields, "transmittance", 1.0),
@@ -166,7 +168,7 @@ fn name(value: Value) -> Option<Value> {
 
 /// Every material by itself; those that are wrong are known but not there.
 pub(super) struct Drafts<'d> {
-    pub(super) by_name: BTreeMap<&'d str, Option<Draft<'d, Curve>>>,
+    pub(super) by_name: BTreeMap<&'d str, Option<MaterialDraft<'d, Curve>>>,
     /// Whether there are others of which the name is not known.
     pub(super) nameless: bool,
 }
@@ -193,7 +195,7 @@ pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> 
                 resolved(context, draft)
             })
         });
-        if let Some(Draft::Whole(material)) = &mut draft {
+        if let Some(MaterialDraft::Whole(material)) = &mut draft {
             share_tables(&mut rough, material);
         }
         drafts.by_name.insert(material.key(), draft);
@@ -215,7 +217,7 @@ fn share_tables(rough: &mut BTreeMap<u64, Coat>, material: &mut Material<Curve>)
 }
 
 /// A material with the spectra that its keys mean.
-fn resolved<'d>(context: &mut Context, asking: Draft<'d, Asked<'d>>) -> Option<Draft<'d, Curve>> {
+fn resolved<'d>(context: &mut Context, asking: MaterialDraft<'d, Asked<'d>>) -> Option<MaterialDraft<'d, Curve>> {
     let mut right = true;
     let mut curve = |quantity, asked: &Asked<'d>| {
         let curve = match *asked {
@@ -229,15 +231,17 @@ fn resolved<'d>(context: &mut Context, asking: Draft<'d, Asked<'d>>) -> Option<D
         curve.unwrap_or_else(|| 0.0.into())
     };
     let dye = match &asking {
-        Draft::Whole(Material::Diffuse(diffuse)) => written(diffuse),
+        MaterialDraft::Whole(Material::Diffuse(diffuse)) => written(diffuse),
         _ => None,
     };
     let draft = match asking {
-        Draft::Whole(material) => Draft::Whole(material.map(&mut curve)),
-        Draft::Mix { parts, amount } => Draft::Mix { parts, amount: curve(Quantity::Share, &amount) },
-        Draft::Mask { part, opacity } => Draft::Mask { part, opacity: curve(Quantity::Share, &opacity) },
+        MaterialDraft::Whole(material) => MaterialDraft::Whole(material.map(&mut curve)),
+        MaterialDraft::Mix { parts, amount } => MaterialDraft::Mix { parts, amount: curve(Quantity::Share, &amount) },
+        MaterialDraft::Mask { part, opacity } => {
+            MaterialDraft::Mask { part, opacity: curve(Quantity::Share, &opacity) }
+        }
     };
-    if let (true, Some(dye), Draft::Whole(Material::Diffuse(diffuse))) = (right, dye, &draft) {
+    if let (true, Some(dye), MaterialDraft::Whole(Material::Diffuse(diffuse))) = (right, dye, &draft) {
         conserves(diffuse, dye)?;
     }
     right.then_some(draft)

@@ -42,7 +42,7 @@ use toml::de::DeValue;
 
 use self::context::Context;
 use self::material::Drafts;
-use self::object::{Draft, Names};
+use self::object::{Names, ObjectDraft};
 use self::place::Placed;
 use self::shining::surfaces_that_shine;
 use super::checks::check;
@@ -184,7 +184,7 @@ fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>
 }
 
 /// Warns of objects that have one name.
-fn namesakes(context: &mut Context, objects: &[Draft]) {
+fn namesakes(context: &mut Context, objects: &[ObjectDraft]) {
     let mut counts = BTreeMap::<&str, usize>::new();
     objects.iter().for_each(|object| *counts.entry(&object.name).or_default() += 1);
     for (name, count) in counts.into_iter().filter(|&(_, count)| count > 1) {

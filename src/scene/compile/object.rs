@@ -26,7 +26,7 @@ use crate::spectrum::Curve;
 /// # bump_map = { image = "dents.png", depth = 0.02 }
 /// # instances = [[{ translate = [1, 0, 0] }], [{ translate = [3, 0, 0] }, { scale = [-1, 1, 1] }]]
 /// ```
-pub(super) struct Draft<'d> {
+pub(super) struct ObjectDraft<'d> {
     /// Its name, or `object N` counted from 1.
     pub(super) name: String,
     pub(super) material: &'d str,
@@ -56,7 +56,7 @@ pub(super) fn object<'d>(
     names: &mut Names<'_, 'd>,
     entry: Value<'d>,
     number: usize,
-) -> Option<Draft<'d>> {
+) -> Option<ObjectDraft<'d>> {
     Fields::read(entry, |object| {
         let name = object.maybe("name", name);
         let shape = object.need("shape", Some);
@@ -103,7 +103,7 @@ pub(super) fn object<'d>(
             };
             context.warn(format!("{name}: {what} the image where u and v are 0"));
         }
-        Some(Draft { name, material: named.place.text()?, shape, map, instances, relief, group, visibility })
+        Some(ObjectDraft { name, material: named.place.text()?, shape, map, instances, relief, group, visibility })
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::material::{Draft, Drafts};
+use super::material::{Drafts, MaterialDraft};
 use crate::error::nearest;
 use crate::material::{Mask, Material, Mix, Part};
 use crate::scene::text::{Value, and_more};
@@ -13,7 +13,7 @@ pub(super) type Materials<'d> = BTreeMap<&'d str, Option<Material<Curve>>>;
 
 /// A search for the materials that others are made of.
 struct Search<'s, 'd> {
-    drafts: &'s BTreeMap<&'d str, Option<Draft<'d, Curve>>>,
+    drafts: &'s BTreeMap<&'d str, Option<MaterialDraft<'d, Curve>>>,
     /// Those that are made of the one that is looked for, the outermost first.
     within: Vec<&'d str>,
     /// Those of which it was told that they are made of themselves.
@@ -49,13 +49,13 @@ impl<'d> Search<'_, 'd> {
         let draft = self.drafts.get(name)?.as_ref().filter(|_| !self.circular.contains(name))?;
         self.within.push(name);
         let whole = match draft {
-            Draft::Whole(material) => Some(material.clone()),
-            Draft::Mix { parts, amount } => {
+            MaterialDraft::Whole(material) => Some(material.clone()),
+            MaterialDraft::Mix { parts, amount } => {
                 let [first, second] = parts.map(|part| self.part("mix", part));
                 let amount = amount.clone();
                 first.zip(second).map(|(first, second)| Material::Mix(Mix { materials: [first, second], amount }))
             }
-            Draft::Mask { part, opacity } => {
+            MaterialDraft::Mask { part, opacity } => {
                 let opacity = opacity.clone();
                 self.part("mask", *part).map(|material| Material::Mask(Mask { material, opacity }))
             }
@@ -81,13 +81,13 @@ impl<'d> Search<'_, 'd> {
             return self.refuse_size(place);
         }
         match draft {
-            Some(Draft::Whole(Material::Dielectric(_))) => place.advise(
+            Some(MaterialDraft::Whole(Material::Dielectric(_))) => place.advise(
                 format!(
                     "a {kind} is made of surfaces, and {known:?} is a dielectric, which fills the space behind its own"
                 ),
                 "a pane has no inside: thin = { index = 1.52 }",
             ),
-            Some(Draft::Whole(Material::Emissive(_))) => place.advise(
+            Some(MaterialDraft::Whole(Material::Emissive(_))) => place.advise(
                 format!("a {kind} is made of surfaces that reflect or let through, and {known:?} is emissive"),
                 "give what shines an object of its own",
             ),

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-use super::object::Draft;
+use super::object::ObjectDraft;
 use super::parts::Materials;
 use super::shape::fits;
 use crate::material::Material;
@@ -36,7 +36,7 @@ impl Placed<'_> {
 }
 
 /// All objects that are right where they are.
-pub(super) fn placed<'d>(drafts: Vec<Draft<'d>>, materials: &Materials<'d>) -> Placed<'d> {
+pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>) -> Placed<'d> {
     let (mut placed, mut numbers) = (Placed::default(), BTreeMap::<&str, u32>::new());
     // How often each mesh file is placed.
     let mut places = HashMap::<&str, usize>::new();
@@ -87,9 +87,16 @@ fn lies_across(material: &Material<Curve>, shape: &Shape) -> bool {
 const ALONG: f64 = 1e-9;
 
 /// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
-fn objects_of(draft: Draft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
-    let Draft { name, material: material_name, shape: Spanned { place, it: written }, map, instances, relief, .. } =
-        draft;
+fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
+    let ObjectDraft {
+        name,
+        material: material_name,
+        shape: Spanned { place, it: written },
+        map,
+        instances,
+        relief,
+        ..
+    } = draft;
     let (group, visibility) = (draft.group.map(str::to_owned), draft.visibility);
     let asset = name.clone();
     let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {

@@ -12,10 +12,10 @@ use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 const RESOLVED: f64 = 1e-12;
 
 /// What reads a kind of shape: of the object that has a name.
-type Reader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
+type ShapeReader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
 
 /// The shapes, each documented where it is implemented, in `shape`.
-pub(super) const SHAPE: Choice<Reader> = Choice {
+pub(super) const SHAPE: Choice<ShapeReader> = Choice {
     name: "a shape",
     word: "shape",
     example: "shape.sphere = { center = [0, 1, 0], radius = 1 }",

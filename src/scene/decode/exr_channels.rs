@@ -28,7 +28,7 @@ impl Chosen {
     /// If there are neither.
     pub(super) fn of(headers: &[Header], alpha: bool) -> Result<Self, Unreadable> {
         let flat = headers.iter().enumerate().filter(|(_, header)| !header.deep);
-        let parts: Vec<Part> = flat.map(|(number, header)| Part::of(number, header)).collect();
+        let parts: Vec<NumberPart> = flat.map(|(number, header)| NumberPart::of(number, header)).collect();
         if parts.is_empty() {
             return Err(Unreadable::Deep);
         }
@@ -56,7 +56,7 @@ impl Chosen {
 }
 
 /// A part that has one number of each kind for a pixel.
-struct Part {
+struct NumberPart {
     number: usize,
     /// Of its channels, in their order.
     names: Vec<String>,
@@ -68,7 +68,7 @@ struct Channels {
     alpha: Option<usize>,
 }
 
-impl Part {
+impl NumberPart {
     fn of(number: usize, header: &Header) -> Self {
         Self { number, names: header.channels.list.iter().map(|channel| exr_text(&channel.name)).collect() }
     }
@@ -97,7 +97,7 @@ impl Part {
 }
 
 /// The channel of a name as a gray, with the alpha of its layer.
-fn gray<'p>(parts: &'p [Part], name: &String) -> Option<(&'p Part, Channels)> {
+fn gray<'p>(parts: &'p [NumberPart], name: &String) -> Option<(&'p NumberPart, Channels)> {
     let part = parts.iter().find(|part| part.names.contains(name))?;
     let alpha = ["A", "a"].into_iter().find_map(|letter| part.find(layer_of(name), letter));
     let color = part.find(layer_of(name), letter_of(name))?;

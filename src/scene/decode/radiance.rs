@@ -18,7 +18,7 @@ const PACKED: std::ops::Range<usize> = 8..1 << 15;
 /// If it is none, is damaged, or claims a size that it cannot have.
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
     let rest = SIGNATURES.iter().find_map(|signature| bytes.strip_prefix(*signature)).ok_or(Unreadable::Signature)?;
-    let mut reader = Reader { rest, row: 0 };
+    let mut reader = RadianceReader { rest, row: 0 };
     let Header { size: [width, height], factors, to_rec709 } = reader.header()?;
     let length = 12_u64.saturating_mul(width as u64).saturating_mul(height as u64);
     fits(width, height, length, bytes)?;
@@ -49,12 +49,12 @@ struct Header {
 }
 
 /// What is not read yet, and the row that is.
-struct Reader<'b> {
+struct RadianceReader<'b> {
     rest: &'b [u8],
     row: usize,
 }
 
-impl Reader<'_> {
+impl RadianceReader<'_> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Unreadable> {
         let (first, rest) = self.rest.split_first_chunk().ok_or(Unreadable::Short)?;
         self.rest = rest;

@@ -27,7 +27,7 @@ pub(super) use mistake::Mistake;
 pub(super) use named_file::{Fault, FileKind, IMAGES, TABLES};
 pub use rows::{Numbers, Rows};
 pub(super) use settings::set;
-pub(super) use texts::{Place, Texts};
+pub(super) use texts::{LocatedBy, Texts};
 pub(super) use tree::parsed;
 pub(super) use utf8::utf8;
 pub(super) use value::{Spanned, Value, above_0_to, at, exactly};

@@ -14,16 +14,16 @@ use crate::error::{Diagnostic, Lines};
 #[derive(Default)]
 pub(in crate::scene) struct Texts {
     whole: String,
-    parts: Vec<Part>,
+    parts: Vec<TextPart>,
     /// By what their places are told.
-    pub(in crate::scene) told_by: Place,
+    pub(in crate::scene) told_by: LocatedBy,
     /// What a program has given beside them.
     pub(in crate::scene) rows: Vec<Rows>,
 }
 
 /// By what a place is told.
 #[derive(Clone, Copy, Default)]
-pub(in crate::scene) enum Place {
+pub(in crate::scene) enum LocatedBy {
     #[default]
     Line,
     /// The path of its key, in a text that a program has written.
@@ -31,7 +31,7 @@ pub(in crate::scene) enum Place {
 }
 
 /// One of the texts.
-struct Part {
+struct TextPart {
     /// As it is called in messages.
     path: PathBuf,
     /// Where the names of its files begin.
@@ -51,7 +51,7 @@ impl Texts {
         let start = self.whole.len();
         self.whole.push_str(text);
         let span = start..self.whole.len();
-        self.parts.push(Part {
+        self.parts.push(TextPart {
             path: path.to_owned(),
             folder: folder.to_owned(),
             span: span.clone(),
@@ -89,14 +89,14 @@ impl Texts {
         self.part(place).map_or(Path::new(""), |part| &part.folder)
     }
 
-    fn part(&self, place: usize) -> Option<&Part> {
+    fn part(&self, place: usize) -> Option<&TextPart> {
         self.parts.iter().rfind(|part| part.span.start <= place)
     }
 
     /// A place as people name it, such as `at scene.toml:3:7`; what a program has written is no file.
     pub(in crate::scene) fn placed(&self, span: Range<usize>) -> String {
         match self.told_by {
-            Place::Key if self.is_in_first(span.start) => "in the scene itself".into(),
+            LocatedBy::Key if self.is_in_first(span.start) => "in the scene itself".into(),
             _ => format!("at {}", self.named(span)),
         }
     }

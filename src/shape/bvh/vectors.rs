@@ -15,7 +15,14 @@ pub trait Vectors: Copy {
     ///
     /// `first` and `last` are the sides where it enters and leaves. A key has the bits of the distance at which the ray
     /// enters, and below them those of the child: keys are in the order of distances, for these are not negative.
-    fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys);
+    fn enter(
+        self,
+        first: BoxSides,
+        last: BoxSides,
+        children: &[Child; WIDTH],
+        slabs: &Slabs,
+        reach: f32,
+    ) -> (u32, Keys);
 
     /// Where a line meets four triangles with 0 < t <= `t_max`; none if its edge functions are of two signs for all.
     ///
@@ -54,7 +61,7 @@ pub trait Computation {
 }
 
 /// One side of eight boxes on each axis.
-pub type Sides<'a> = [&'a [f32; WIDTH]; 3];
+pub type BoxSides<'a> = [&'a [f32; WIDTH]; 3];
 
 /// Distances of eight boxes and their children.
 pub type Keys = [u64; WIDTH];
@@ -72,7 +79,14 @@ pub struct Plain;
 
 impl Vectors for Plain {
     #[inline(always)]
-    fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
+    fn enter(
+        self,
+        first: BoxSides,
+        last: BoxSides,
+        children: &[Child; WIDTH],
+        slabs: &Slabs,
+        reach: f32,
+    ) -> (u32, Keys) {
         let (mut near, mut far) = ([0.0; WIDTH], [reach; WIDTH]);
         for axis in 0..3 {
             for i in 0..WIDTH {
@@ -188,7 +202,7 @@ pub mod avx2 {
     use std::arch::x86_64::*;
     use std::mem::transmute;
 
-    use super::{Child, Computation, Crossings, GROUP, Keys, Line, Number, Sides, Slabs, Vectors, WIDTH};
+    use super::{BoxSides, Child, Computation, Crossings, GROUP, Keys, Line, Number, Slabs, Vectors, WIDTH};
 
     /// A proof that the machine has AVX2: 256-bit registers.
     #[derive(Clone, Copy, Debug)]
@@ -213,7 +227,14 @@ pub mod avx2 {
 
     impl Vectors for Avx2 {
         #[inline(always)]
-        fn enter(self, first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
+        fn enter(
+            self,
+            first: BoxSides,
+            last: BoxSides,
+            children: &[Child; WIDTH],
+            slabs: &Slabs,
+            reach: f32,
+        ) -> (u32, Keys) {
             // SAFETY: an `Avx2` exists only where its instructions do.
             unsafe { enter(first, last, children, slabs, reach) }
         }
@@ -227,7 +248,7 @@ pub mod avx2 {
 
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn enter(first: Sides, last: Sides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
+    fn enter(first: BoxSides, last: BoxSides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
         // SAFETY: a child is a u32, and array and vector are eight of them.
         let children = unsafe { transmute::<[Child; WIDTH], __m256i>(*children) };
         let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(reach));

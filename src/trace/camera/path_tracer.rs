@@ -9,7 +9,7 @@ use super::layer_sample::{LayerHit, LayerSample};
 use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Sensor, SensorEvent};
-use super::surface::{First, PathContinuation, Surface, Through};
+use super::surface::{FirstMet, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
 use crate::light::LightId;
 use crate::material::{Material, Straight};
@@ -230,13 +230,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         surface_hit: &SurfaceHit,
         through: Option<&PassThrough<N, P>>,
         first: &mut Option<SurfacePoint>,
-    ) -> First {
+    ) -> FirstMet {
         let straight::Cutout { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
             layers.choose(is_met.then_some(surface_hit.hit.object), weight);
         }
         *first = is_met.then_some(surface_hit.point);
-        if is_met { First::Here } else { First::Beyond }
+        if is_met { FirstMet::Here } else { FirstMet::Beyond }
     }
 
     /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
@@ -320,7 +320,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let at = Interaction::new(world, draw, &path.arriving(), surface_hit, boundary);
         self.show(path, &at, surface, sampler);
-        let leaving = PathContinuation { through, is_awaited: first == Some(First::Beyond), gathers: !ends };
+        let leaving = PathContinuation { through, is_awaited: first == Some(FirstMet::Beyond), gathers: !ends };
         match self.excite(path, &at, sampler, leaving.is_awaited) {
             0.0 => {}
             1.0 => self.scatter_at(path, &at, sampler, leaving),
@@ -336,7 +336,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
             let &Surface { surface_hit, chance, first, through, .. } = surface;
-            let (straight, is_met_first) = (through.map(|through| &through.straight), first == Some(First::Here));
+            let (straight, is_met_first) = (through.map(|through| &through.straight), first == Some(FirstMet::Here));
             layers.meet(&LayerHit { path, surface_hit, at, straight, is_met_first, chance }, sampler);
         }
     }

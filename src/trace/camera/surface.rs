@@ -13,7 +13,7 @@ pub struct Surface<'m, const N: usize, P> {
     /// What goes straight on.
     pub through: Option<&'m PassThrough<N, P>>,
     /// What the camera ray meets, unless it has met something before.
-    pub first: Option<First>,
+    pub first: Option<FirstMet>,
     /// How likely the path went on from it and not through its holes, if that was left to chance: its throughput is
     /// divided by this.
     pub chance: f64,
@@ -32,7 +32,7 @@ pub struct PathContinuation<'m, const N: usize, P> {
 
 /// Of a surface with holes and what is behind them, what the camera ray meets.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum First {
+pub enum FirstMet {
     Here,
     Beyond,
 }

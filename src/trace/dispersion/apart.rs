@@ -1,6 +1,6 @@
 //! How far apart two colors show what lies behind.
 
-use super::color_walk::{CameraRays, Walk};
+use super::color_walk::{CameraRays, ColorWalk};
 use super::targets::SEEN_PIXELS;
 use crate::light::Light;
 use crate::math::{DVec2, DVec3};
@@ -14,7 +14,7 @@ const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
 const PLACES: u32 = 6;
 
 /// How many pixels apart both colors show what lies behind; none so close to an edge that it cannot be told.
-pub fn colors_apart(rays: &CameraRays, at: DVec2, first: &Walk) -> Option<f64> {
+pub fn colors_apart(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Option<f64> {
     let second = rays.walk(at, 1);
     let far = apart_by(rays, STEPS[0], at, [first, &second]);
     (far >= SEEN_PIXELS || apart_by(rays, STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)
@@ -39,7 +39,7 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
 }
 
 /// Whether no walk is lost, and what they show may differ.
-fn see_something(rays: &CameraRays, walks: [&Walk; 2]) -> bool {
+fn see_something(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
     let out = walks.iter().all(|walk| walk.is_out());
     !(lost || out && shows_nothing(rays.colors.world))
@@ -49,12 +49,12 @@ fn see_something(rays: &CameraRays, walks: [&Walk; 2]) -> bool {
 ///
 /// The ways of a ray's neighbors, a step aside, show how far a pixel goes. Both colors are compared at one distance, so
 /// that an edge behind the glass, which one of them misses, does not count.
-fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&Walk; 2]) -> f64 {
+fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&ColorWalk; 2]) -> f64 {
     let [first, second] = walks;
     if !see_something(rays, walks) {
         return 0.0;
     }
-    let distance = walks.map(Walk::length).into_iter().find(|length| length.is_finite());
+    let distance = walks.map(ColorWalk::length).into_iter().find(|length| length.is_finite());
     let apart = between(first, second, distance);
     let beside = |x: f64, y: f64| rays.walk(at + DVec2::new(x, y) * step, 0);
     let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
@@ -66,7 +66,7 @@ fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&Walk; 2]) -> f64 {
 }
 
 /// How far apart two walks are after a distance on their last pieces, or the angle between these.
-fn between(a: &Walk, b: &Walk, distance: Option<f64>) -> f64 {
+fn between(a: &ColorWalk, b: &ColorWalk, distance: Option<f64>) -> f64 {
     let (Some(a), Some(b)) = (a.last(), b.last()) else { return 0.0 };
     match distance {
         Some(distance) => (a.at(distance) - b.at(distance)).length(),

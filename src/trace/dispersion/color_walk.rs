@@ -31,7 +31,7 @@ pub enum FollowedBranch {
 
 /// Where a ray of one color went.
 #[derive(Default)]
-pub struct Walk {
+pub struct ColorWalk {
     /// Its straight pieces: where each starts and how long it is, infinite where it leaves the scene.
     pub legs: Vec<(Ray, f64)>,
     /// The objects it went by.
@@ -53,7 +53,7 @@ pub struct Walk {
     media: Media,
 }
 
-impl Walk {
+impl ColorWalk {
     /// Whether it leaves the scene.
     pub fn is_out(&self) -> bool {
         self.length().is_infinite()
@@ -93,7 +93,7 @@ impl Walk {
 
 /// Where a walk meets a surface, with four random numbers.
 #[derive(Clone, Copy)]
-struct Surface<'a> {
+struct WalkSurface<'a> {
     ray: &'a Ray,
     surface_hit: &'a SurfaceHit,
     u: [f64; 4],
@@ -133,9 +133,9 @@ impl Colors<'_> {
         media: Media,
         sampler: &Sampler,
         choice: FollowedBranch,
-    ) -> Walk {
+    ) -> ColorWalk {
         let (legs, met) = (Vec::with_capacity(4), Vec::with_capacity(4));
-        let mut walk = Walk { legs, met, weight: 1.0, media, ..Walk::default() };
+        let mut walk = ColorWalk { legs, met, weight: 1.0, media, ..ColorWalk::default() };
         let mut key = BranchKey::CAMERA;
         for _ in 0..LONGEST {
             let hit = match is_from_camera {
@@ -147,7 +147,7 @@ impl Colors<'_> {
             let surface_hit = SurfaceHit::new(self.world, &ray, met);
             key = key.child(0);
             let at =
-                Surface { ray: &ray, surface_hit: &surface_hit, u: sampler.four_plain(key, SURFACE), lane, choice };
+                WalkSurface { ray: &ray, surface_hit: &surface_hit, u: sampler.four_plain(key, SURFACE), lane, choice };
             match self.next(&mut walk, &at) {
                 Next::Straight => ray = surface_hit.point.leave(ray.direction),
                 Next::Toward(direction) => (ray, is_from_camera) = (surface_hit.point.leave(direction), false),
@@ -164,7 +164,7 @@ impl Colors<'_> {
     }
 
     /// The way on from a surface; beyond as many as paths may have, one shows no more than its own light.
-    fn next(&self, walk: &mut Walk, at: &Surface) -> Next {
+    fn next(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
         let next = self.beyond(walk, at);
         if !matches!(next, Next::Toward(_) | Next::End) {
             return next;
@@ -178,8 +178,8 @@ impl Colors<'_> {
     }
 
     /// The way on from a surface, however many paths may have.
-    fn beyond(&self, walk: &mut Walk, at: &Surface) -> Next {
-        let Surface { ray, surface_hit, u, choice, .. } = *at;
+    fn beyond(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
+        let WalkSurface { ray, surface_hit, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(&surface_hit.point, wo);
         let inside = walk.media.inside(&world.scene);
@@ -212,8 +212,8 @@ impl Colors<'_> {
     }
 
     /// The way on from the surface of a clear body.
-    fn meet_glass(&self, walk: &mut Walk, at: &Surface, glass: &Dielectric<Table>) -> Next {
-        let Surface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *at;
+    fn meet_glass(&self, walk: &mut ColorWalk, at: &WalkSurface, glass: &Dielectric<Table>) -> Next {
+        let WalkSurface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
         let [_, normal] = shading::normals(point, wo);
         let material = world.scene.objects[hit.object as usize].material;
@@ -253,7 +253,7 @@ pub struct CameraRays<'a> {
 
 impl CameraRays<'_> {
     /// Follows one lane through a place of the film.
-    pub fn walk(&self, at: DVec2, lane: usize) -> Walk {
+    pub fn walk(&self, at: DVec2, lane: usize) -> ColorWalk {
         let world = self.colors.world;
         let ray = world.scene.camera.ray(at);
         self.colors.walk(lane, ray, true, world.media_at_camera(&ray), &self.sampler, self.choice)

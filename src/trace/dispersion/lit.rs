@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::color_walk::{Colors, FollowedBranch, Walk};
+use super::color_walk::{ColorWalk, Colors, FollowedBranch};
 use super::search::ReachedPlace;
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::light::{Light, LightId};
@@ -143,9 +143,9 @@ impl Pair<'_> {
         &self,
         start: &Ray,
         target: DVec3,
-        first: &Walk,
+        first: &ColorWalk,
         end: &SurfacePoint,
-        walk: &impl Fn(usize, Ray) -> Walk,
+        walk: &impl Fn(usize, Ray) -> ColorWalk,
     ) -> Option<f64> {
         let (scene, light) = (&self.colors.world.scene, &self.colors.world.scene.lights[self.light]);
         let (direction, distance, lamp) = if light.is_infinite() {
@@ -211,7 +211,7 @@ impl Pair<'_> {
     }
 
     /// Pixels per length where a ray lands, if the camera sees it: straight, through clear things or by way of others.
-    fn scale(&self, point: &SurfacePoint, walk: &Walk) -> Option<f64> {
+    fn scale(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
         let left = self.colors.world.method.max_bounces - walk.surfaces;
         let is_near = |place: &&ReachedPlace| (place.position - point.position).length() <= place.of_cell;
         let by_way = |place: &&ReachedPlace| place.surfaces < left && is_near(place);
@@ -219,7 +219,7 @@ impl Pair<'_> {
         straight.or_else(|| self.reached.iter().find(by_way).map(|place| 1.0 / place.of_pixel))
     }
 
-    fn straight(&self, point: &SurfacePoint, walk: &Walk) -> Option<f64> {
+    fn straight(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
         let (scene, film) = (&self.colors.world.scene, self.colors.world.scene.film);
         let seen = scene.camera.see(point.position, [0.5; 2])?;
         let size = DVec2::new(f64::from(film.width), f64::from(film.height));

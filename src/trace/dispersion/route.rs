@@ -52,7 +52,7 @@ pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 
 /// The end of a way that is followed back from the camera.
 #[derive(Clone)]
-pub struct Walk {
+pub struct RouteWalk {
     pub ray: Ray,
     /// Whether the camera sees straight what it meets next, if it sees that at all.
     pub is_from_camera: bool,
@@ -67,7 +67,7 @@ pub struct Walk {
     pub surfaces: u32,
 }
 
-impl Walk {
+impl RouteWalk {
     pub fn brightest(&self) -> f32 {
         self.left.0.into_iter().fold(0.0, f32::max)
     }
@@ -82,7 +82,7 @@ impl Walk {
 
 /// Where a way meets a surface.
 pub struct RouteVertex<'a> {
-    pub walk: &'a Walk,
+    pub walk: &'a RouteWalk,
     pub material: MaterialId,
     pub point: &'a SurfacePoint,
     /// Unit normal on the side of the viewer.

@@ -1,6 +1,6 @@
 //! Follows the ways of one pixel back to the lights, the brightest first.
 
-use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, Step, Walk};
+use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, RouteWalk, Step};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
 use crate::math::{BranchKey, DVec3, Ray, Sampler, cosine_about};
@@ -18,15 +18,15 @@ const SCATTERED: u32 = 2;
 const LIGHTS: usize = 8;
 
 /// Follows the ways of one pixel, the brightest first.
-pub struct Walker<'a> {
+pub struct RouteWalker<'a> {
     world: &'a World,
     draw: Draw<4>,
     sampler: Sampler,
-    pending: Vec<Walk>,
+    pending: Vec<RouteWalk>,
     pub found: Vec<Route>,
 }
 
-impl<'a> Walker<'a> {
+impl<'a> RouteWalker<'a> {
     pub fn new(world: &'a World, sampler: Sampler) -> Self {
         let draw = Draw::fixed(ROUTES_NM.len());
         Self { world, draw, sampler, pending: Vec::new(), found: Vec::new() }
@@ -37,7 +37,17 @@ impl<'a> Walker<'a> {
         let media = self.world.media_at_camera(&ray);
         let (steps, key) = (Vec::new(), BranchKey::CAMERA);
         let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
-        self.pending.push(Walk { ray, is_from_camera, media, key, steps, weight, left, scattered: 0, surfaces: 0 });
+        self.pending.push(RouteWalk {
+            ray,
+            is_from_camera,
+            media,
+            key,
+            steps,
+            weight,
+            left,
+            scattered: 0,
+            surfaces: 0,
+        });
         let mut best = 0.0_f32;
         for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
@@ -55,13 +65,13 @@ impl<'a> Walker<'a> {
         SURFACES
     }
 
-    fn record(&mut self, walk: &Walk, light: LightId) {
-        let Walk { steps, weight, scattered, .. } = walk;
+    fn record(&mut self, walk: &RouteWalk, light: LightId) {
+        let RouteWalk { steps, weight, scattered, .. } = walk;
         self.found.push(Route { steps: steps.clone(), light, weight: *weight, scattered: *scattered });
     }
 
     /// Follows a way to the next surface and finds out how it goes on.
-    fn meet(&mut self, walk: Walk) {
+    fn meet(&mut self, walk: RouteWalk) {
         let world = self.world;
         let hit = match walk.is_from_camera {
             true => world.scene.intersect_seen(&walk.ray, None),
@@ -84,7 +94,7 @@ impl<'a> Walker<'a> {
         let u = self.sampler.four_plain(walk.key, 0);
         if self.passes(&walk, &surface_hit, u[3]) {
             let (ray, key) = (point.leave(walk.ray.direction), walk.key.child(0));
-            self.pending.push(Walk { ray, key, ..walk });
+            self.pending.push(RouteWalk { ray, key, ..walk });
             return;
         }
         if let Some(light) = object.light
@@ -152,7 +162,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The way after a distance through the body around it.
-    fn inside(&self, walk: Walk, distance: f64) -> Walk {
+    fn inside(&self, walk: RouteWalk, distance: f64) -> RouteWalk {
         let Some(material) = walk.media.inside(&self.world.scene) else { return walk };
         let transmission = media::medium(&self.world.scene, material).transmission(&self.draw, distance);
         if transmission == Lanes::ONE {
@@ -162,7 +172,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Whether a hole lets the way pass, by chance.
-    fn passes(&self, walk: &Walk, surface_hit: &SurfaceHit, u: f64) -> bool {
+    fn passes(&self, walk: &RouteWalk, surface_hit: &SurfaceHit, u: f64) -> bool {
         let inside = walk.media.inside(&self.world.scene);
         u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
@@ -185,26 +195,26 @@ impl<'a> Walker<'a> {
     }
 
     /// Goes on from a surface in a direction, where it is turned or scattered, or light crosses a body's surface.
-    fn go_on(&mut self, at: &RouteVertex, next: Walk, direction: DVec3, number: usize) {
+    fn go_on(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
         if let Some(surfaces) = self.one_more(at.walk) {
-            self.follow(at, Walk { is_from_camera: false, surfaces, ..next }, direction, number);
+            self.follow(at, RouteWalk { is_from_camera: false, surfaces, ..next }, direction, number);
         }
     }
 
     /// Surfaces of a way with one more; none if paths may not have so many.
-    fn one_more(&self, walk: &Walk) -> Option<u32> {
+    fn one_more(&self, walk: &RouteWalk) -> Option<u32> {
         (walk.surfaces < self.world.method.max_bounces).then_some(walk.surfaces + 1)
     }
 
     /// Goes straight on as if nothing were there.
-    fn go_straight(&mut self, at: &RouteVertex, next: Walk) {
+    fn go_straight(&mut self, at: &RouteVertex, next: RouteWalk) {
         self.follow(at, next, at.walk.ray.direction, 0);
     }
 
-    fn follow(&mut self, at: &RouteVertex, next: Walk, direction: DVec3, number: usize) {
+    fn follow(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
         if next.brightest() > 0.0 {
             let (ray, key) = (at.point.leave(direction), at.walk.key.child(number));
-            self.pending.push(Walk { ray, key, ..next });
+            self.pending.push(RouteWalk { ray, key, ..next });
         }
     }
 
@@ -218,7 +228,7 @@ impl<'a> Walker<'a> {
         let (world, walk) = (self.world, at.walk);
         let (boundary, _) = walk.media.at_surface(&world.scene, at.material, at.point, walk.ray.direction);
         let [n1, n2] = boundary.sides().map(|inside| media::index(&world.scene, &self.draw, inside)[1]);
-        let crossed = Walk { media: walk.media.beyond(&boundary), ..walk.clone() };
+        let crossed = RouteWalk { media: walk.media.beyond(&boundary), ..walk.clone() };
         if boundary.here == boundary.beyond {
             return self.go_straight(at, crossed);
         }
@@ -245,7 +255,7 @@ impl<'a> Walker<'a> {
     fn scattered(&mut self, at: &RouteVertex, flat: DVec3, tint: Lanes<4>, factor: f64) {
         let Some(surfaces) = self.one_more(at.walk) else { return };
         let next = at.walk.after(Some(at.step(RouteEvent::Scattered)), tint, factor);
-        let next = Walk { scattered: next.scattered + 1, surfaces, ..next };
+        let next = RouteWalk { scattered: next.scattered + 1, surfaces, ..next };
         for id in 0..self.world.scene.lights.len().min(LIGHTS) {
             self.aim(at, &next, flat, id);
         }
@@ -256,10 +266,10 @@ impl<'a> Walker<'a> {
     }
 
     /// Light that comes straight from a light, through whatever lets it through.
-    fn aim(&mut self, at: &RouteVertex, walk: &Walk, normal: DVec3, id: LightId) {
+    fn aim(&mut self, at: &RouteVertex, walk: &RouteWalk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
         let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };
-        let mut walk = Walk { ray: sample.ray, ..walk.clone() };
+        let mut walk = RouteWalk { ray: sample.ray, ..walk.clone() };
         let mut left = sample.distance;
         for _ in 0..SURFACES {
             let Some(hit) = world.scene.nearest(&walk.ray, left, &|object| sample.object != Some(object)) else {
@@ -288,7 +298,7 @@ impl<'a> Walker<'a> {
                 if surfaces > world.method.max_bounces {
                     return;
                 }
-                walk = Walk { media, surfaces, ..walk.after(Some(step), tint, 1.0) };
+                walk = RouteWalk { media, surfaces, ..walk.after(Some(step), tint, 1.0) };
             }
             walk.ray = point.leave(walk.ray.direction);
         }

@@ -1,7 +1,7 @@
 //! The ways that light takes to the camera, as far as they tint it: which surfaces and bodies it meets, and how often.
 
 use super::route::Route;
-use super::route_walk::Walker;
+use super::route_walk::RouteWalker;
 use crate::material::Lobes;
 use crate::math::{DVec2, Sampler};
 use crate::trace::World;
@@ -21,7 +21,7 @@ pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let of_pixel = |(number, [x, y]): (u32, [i32; 2])| {
         let ray = world.scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let sampler = Sampler::of_pixel(world.method.seed, [x, y], number);
-        let mut walker = Walker::new(world, sampler);
+        let mut walker = RouteWalker::new(world, sampler);
         let met = walker.walk(ray);
         (met, walker.found)
     };

@@ -6,7 +6,7 @@
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
 use super::apart::{colors_apart, is_dark, share_apart};
-use super::color_walk::{CameraRays, Colors, FollowedBranch, Walk};
+use super::color_walk::{CameraRays, ColorWalk, Colors, FollowedBranch};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
@@ -49,7 +49,7 @@ pub struct SearchResult {
 
 /// A part of the view, in pixels.
 #[derive(Clone, Copy)]
-struct Cell {
+struct ViewCell {
     corner: DVec2,
     size: DVec2,
     choice: FollowedBranch,
@@ -59,7 +59,7 @@ struct Cell {
 
 /// What was seen in a cell.
 struct Look {
-    cell: Cell,
+    cell: ViewCell,
     /// Its area in pixels, as far as it is on dispersive surfaces; the share of light that goes this way.
     dispersive: f64,
     weight: f64,
@@ -78,8 +78,8 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
     let enough = PIXELS.min(SHARE * all);
     let size = DVec2::new(f64::from(film.width), f64::from(film.height)) / f64::from(SIDE);
     let corner = |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) * size;
-    let cell = |i: u32| Cell { corner: corner(i), size, choice: FollowedBranch::Brighter, count: 1.0 };
-    let mut cells: Vec<Cell> = (0..SIDE * SIDE).map(cell).collect();
+    let cell = |i: u32| ViewCell { corner: corner(i), size, choice: FollowedBranch::Brighter, count: 1.0 };
+    let mut cells: Vec<ViewCell> = (0..SIDE * SIDE).map(cell).collect();
     let (mut settled, mut reached, mut left) = (Vec::new(), Vec::new(), MOST);
     loop {
         let mut forks = Vec::new();
@@ -94,12 +94,12 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
         let (divided, whole): (Vec<Look>, Vec<Look>) =
             looks.into_iter().partition(|look| look.touched.is_some() && look.cell.is_divisible());
         settled.extend(whole);
-        let mut next: Vec<(usize, Cell)> = Vec::new();
+        let mut next: Vec<(usize, ViewCell)> = Vec::new();
         for look in &divided {
             next.extend(look.cell.parts().into_iter().map(|part| (look.touched.unwrap_or(0), part)));
         }
         // Faint mirror images are kinds of their own.
-        let kind = |cell: &Cell| targets.all.len() + usize::from(cell.choice == FollowedBranch::FainterInside);
+        let kind = |cell: &ViewCell| targets.all.len() + usize::from(cell.choice == FollowedBranch::FainterInside);
         next.extend(forks.into_iter().map(|cell| (kind(&cell), cell)));
         if next.is_empty() {
             break;
@@ -117,9 +117,9 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
 fn look(
     colors: &Colors,
     targets: &Targets,
-    cell: Cell,
+    cell: ViewCell,
     reached: &mut Vec<ReachedPlace>,
-    forks: &mut Vec<Cell>,
+    forks: &mut Vec<ViewCell>,
 ) -> Look {
     let rays = cell.rays(colors);
     let at = [DVec2::new(0.5, 0.5), DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
@@ -127,11 +127,11 @@ fn look(
     let first = &walks[0];
     if cell.is_whole(colors) && cell.choice == FollowedBranch::Brighter {
         if first.fork > 0.0 {
-            forks.push(Cell { choice: FollowedBranch::FainterFirst, ..cell });
+            forks.push(ViewCell { choice: FollowedBranch::FainterFirst, ..cell });
         }
         // Before a sky, or the dark, what is mirrored inside may be all there is to see.
         if first.fork_inside > 0.0 && first.is_out() {
-            forks.push(Cell { choice: FollowedBranch::FainterInside, ..cell });
+            forks.push(ViewCell { choice: FollowedBranch::FainterInside, ..cell });
         }
         reached.extend(place(&walks, cell.size));
     }
@@ -165,8 +165,8 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
 }
 
 /// The place where the first of a cell's walks ends, if that is on a diffuse surface that is seen by way of others.
-fn place(walks: &[Walk; 5], size: DVec2) -> Option<ReachedPlace> {
-    let of = |walk: &Walk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
+fn place(walks: &[ColorWalk; 5], size: DVec2) -> Option<ReachedPlace> {
+    let of = |walk: &ColorWalk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
     let position = of(&walks[0]).filter(|_| !walks[0].met.is_empty())?;
     let beside = walks[1..].iter().filter(|walk| walk.met == walks[0].met).filter_map(of);
     let of_cell = beside.map(|other| (other - position).length()).fold(0.0, f64::max);
@@ -174,7 +174,7 @@ fn place(walks: &[Walk; 5], size: DVec2) -> Option<ReachedPlace> {
     (of_cell > 0.0).then_some(ReachedPlace { position, of_pixel, of_cell, surfaces })
 }
 
-impl Cell {
+impl ViewCell {
     fn middle(&self) -> DVec2 {
         self.corner + self.size * 0.5
     }
@@ -208,16 +208,16 @@ impl Cell {
 }
 
 /// At most so many cells: all targets get alike, and those that want less leave it to the others.
-fn fairly(mut cells: Vec<(usize, Cell)>, most: usize) -> Vec<Cell> {
+fn fairly(mut cells: Vec<(usize, ViewCell)>, most: usize) -> Vec<ViewCell> {
     cells.sort_by_key(|cell| cell.0);
-    let mut groups: Vec<&[(usize, Cell)]> = cells.chunk_by(|a, b| a.0 == b.0).collect();
+    let mut groups: Vec<&[(usize, ViewCell)]> = cells.chunk_by(|a, b| a.0 == b.0).collect();
     groups.sort_by_key(|group| group.len());
     let (mut chosen, mut left) = (Vec::new(), most);
     for (number, group) in groups.iter().enumerate() {
         let share = (left / (groups.len() - number)).min(group.len());
         let count = group.len() as f64 / share.max(1) as f64;
         let one = |i: usize| group[i * group.len() / share].1;
-        chosen.extend((0..share).map(one).map(|cell| Cell { count: cell.count * count, ..cell }));
+        chosen.extend((0..share).map(one).map(|cell| ViewCell { count: cell.count * count, ..cell }));
         left -= share;
     }
     chosen

@@ -1,6 +1,6 @@
 //! Where dispersive objects are, and the smooth ones in or through which they may be seen.
 
-use super::color_walk::{Colors, Walk};
+use super::color_walk::{ColorWalk, Colors};
 use crate::material::Material;
 use crate::math::{Bounds, DVec3, Ray, neighbors};
 use crate::shape::Ball;
@@ -13,12 +13,12 @@ const MOST: usize = 48;
 const WIDER: f64 = 1.25;
 
 /// A box around an object, or around neighbors.
-pub struct Target {
+pub struct SearchTarget {
     bounds: Bounds,
     pub dispersive: bool,
 }
 
-impl Target {
+impl SearchTarget {
     /// A ball around it.
     pub fn ball(&self) -> Ball {
         Ball { center: self.bounds.center(), radius: 0.5 * (self.bounds.max - self.bounds.min).length() }
@@ -28,7 +28,7 @@ impl Target {
 /// All of them.
 pub struct Targets {
     /// Dispersive ones first.
-    pub all: Vec<Target>,
+    pub all: Vec<SearchTarget>,
     /// The target that each object belongs to, if any.
     of_object: Vec<Option<usize>>,
 }
@@ -49,7 +49,7 @@ impl Targets {
             let mut add = |group: &[(u32, Bounds)]| {
                 group.iter().for_each(|(object, _)| of_object[*object as usize] = Some(all.len()));
                 let bounds = group.iter().map(|of| of.1).fold(Bounds::EMPTY, Bounds::union);
-                all.push(Target { bounds, dispersive });
+                all.push(SearchTarget { bounds, dispersive });
             };
             neighbors(&mut objects, MOST, &|object| object.1.center(), &mut add);
         }
@@ -60,8 +60,8 @@ impl Targets {
     ///
     /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes
     /// its own way it is only known how wide a beam it would be that nothing has bent: `width` is its angle.
-    pub fn touched(&self, walks: &[Walk], width: f64) -> Option<usize> {
-        let met = |walk: &Walk, target: usize| {
+    pub fn touched(&self, walks: &[ColorWalk], width: f64) -> Option<usize> {
+        let met = |walk: &ColorWalk, target: usize| {
             walk.met
                 .iter()
                 .chain(walk.end.iter().map(|end| &end.1))
@@ -86,13 +86,13 @@ struct Beam {
 }
 
 /// The beams of rays that start together.
-fn beams(walks: &[Walk], width: f64) -> Vec<Beam> {
+fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
     let mut beams = Vec::new();
     let longest = walks.iter().map(|walk| walk.legs.len()).max().unwrap_or(0);
     for leg in 0..longest {
-        let on_leg: Vec<&Walk> = walks.iter().filter(|walk| walk.legs.len() > leg).collect();
+        let on_leg: Vec<&ColorWalk> = walks.iter().filter(|walk| walk.legs.len() > leg).collect();
         for (number, walk) in on_leg.iter().enumerate() {
-            let along = |other: &&&Walk| other.met[..leg] == walk.met[..leg];
+            let along = |other: &&&ColorWalk| other.met[..leg] == walk.met[..leg];
             if on_leg[..number].iter().any(|other| along(&other)) {
                 continue;
             }

@@ -6,10 +6,10 @@ use crate::film::RANKS;
 
 /// Of each pixel, the objects that its camera samples met, with how many did.
 #[derive(Default, Serialize, Deserialize)]
-pub struct Coverage(Vec<Vec<Covered>>);
+pub struct Coverage(Vec<Vec<ObjectSamples>>);
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
-struct Covered {
+struct ObjectSamples {
     object: u32,
     samples: u32,
 }
@@ -35,7 +35,7 @@ impl Coverage {
         let pixel = &mut self.0[pixel];
         match pixel.iter_mut().find(|covered| covered.object == object) {
             Some(covered) => covered.samples += 1,
-            None => pixel.push(Covered { object, samples: 1 }),
+            None => pixel.push(ObjectSamples { object, samples: 1 }),
         }
     }
 
@@ -43,7 +43,7 @@ impl Coverage {
     /// All objects have a number, which several may share.
     pub fn ranks(&self, pixel: usize, ids: &[u32]) -> [(u32, u32); RANKS] {
         let mut found: Vec<(u32, u32)> = Vec::new();
-        for &Covered { object, samples } in self.0.get(pixel).into_iter().flatten() {
+        for &ObjectSamples { object, samples } in self.0.get(pixel).into_iter().flatten() {
             let id = ids[object as usize];
             match found.iter_mut().find(|(known, _)| *known == id) {
                 Some((_, sum)) => *sum += samples,

@@ -40,7 +40,7 @@ const POINTS: usize = 128;
 const CHOICE: usize = 129;
 
 /// Where photons are gathered.
-struct Place<'a> {
+struct GatherSurface<'a> {
     world: &'a World,
     position: DVec3,
     /// The surface's own unit normal on the side of the path.
@@ -126,10 +126,10 @@ impl<const N: usize> Seen<N> {
 }
 
 /// Photons that are looked for around a place.
-struct Search<'a, const N: usize, P> {
+struct PhotonSearch<'a, const N: usize, P> {
     around: &'a GatherPoint<'a, N, P>,
     kernel: &'a Kernel<N>,
-    place: Place<'a>,
+    place: GatherSurface<'a>,
 }
 
 /// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
@@ -151,8 +151,8 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     };
     let radius = kernel.radius * world.scene.camera.pixel_width(path.length);
     let front = flat.dot(point.normal) > 0.0;
-    let place = Place { world, position: point.position, flat, front, crosses, radius };
-    let search = Search { around, kernel, place };
+    let place = GatherSurface { world, position: point.position, flat, front, crosses, radius };
+    let search = PhotonSearch { around, kernel, place };
     let mut found = GatheredSum { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
     photons.together.near(point.position, radius, &mut |position, photon| {
         search.add_together(&mut found, position, photon);
@@ -208,7 +208,7 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
     }
 }
 
-impl<const N: usize, P: Polarization<N>> Search<'_, N, P> {
+impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
     /// Adds a photon whose lanes have not parted.
     fn add_together(
         &self,
@@ -301,7 +301,7 @@ impl<const N: usize> GatheredSum<N> {
     }
 }
 
-impl Place<'_> {
+impl GatherSurface<'_> {
     /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
     fn density<const N: usize, P, T, L>(
         &self,

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use super::batch::{PHOTONS, batches_of_pass, send};
 use super::follow::{Photon, PhotonHit, Surfaces, follow_photon};
 use super::light_vertices::{LightVertex, LightVertices, holds_vertices};
-use super::usefulness::{Place, is_seen, places, usefulness};
+use super::usefulness::{DiffusePlace, is_seen, places, usefulness};
 use crate::film::Layer;
 use crate::light::{LeSample, Light, LightId};
 use crate::material::Material;
@@ -91,7 +91,7 @@ pub struct LightPaths<'a> {
     by_flux: Distribution,
     /// Whether all light is theirs.
     finds_all: bool,
-    places: Vec<Place>,
+    places: Vec<DiffusePlace>,
     /// The middle of vertices, and D.
     scale: OnceLock<(DVec3, f64)>,
 }

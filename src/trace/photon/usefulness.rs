@@ -18,7 +18,7 @@ const UNSEEN: f64 = 0.05;
 const SEED: u64 = 0x6c6f_6f6b;
 
 /// A place on a diffuse surface that the camera sees straight.
-pub struct Place {
+pub struct DiffusePlace {
     point: SurfacePoint,
     primitive: Primitive,
 }
@@ -26,7 +26,7 @@ pub struct Place {
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
 /// each other are neighbors, and each has the power of what leaves it. The whole image counts, also where only a part
 /// of it is made.
-pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3], powers: &[f64]) -> Vec<f32> {
+pub fn usefulness(world: &World, places: &[DiffusePlace], vertices: &[DVec3], powers: &[f64]) -> Vec<f32> {
     if places.is_empty() {
         return vec![1.0; vertices.len()];
     }
@@ -51,7 +51,7 @@ pub fn usefulness(world: &World, places: &[Place], vertices: &[DVec3], powers: &
 }
 
 /// Whether one of a few looks from places that the camera sees sees a vertex. `key` sets their random numbers apart.
-pub fn is_seen(world: &World, places: &[Place], vertex: DVec3, key: [u32; 2]) -> bool {
+pub fn is_seen(world: &World, places: &[DiffusePlace], vertex: DVec3, key: [u32; 2]) -> bool {
     let last_occluder = Cell::new(None);
     let looks = Sampler::new(world.method.seed ^ SEED, key, LOOKS).four(BranchKey::CAMERA, 0);
     places.is_empty() || looks.iter().any(|&u| sees(world, chosen(places, u), vertex, &last_occluder))
@@ -63,7 +63,7 @@ fn chosen<T>(some: &[T], u: f64) -> &T {
 }
 
 /// Some such places, all over the image.
-pub fn places(world: &World) -> Vec<Place> {
+pub fn places(world: &World) -> Vec<DiffusePlace> {
     let (scene, film) = (&world.scene, world.scene.film);
     let place = |number: u32| {
         let [x, y] = film.whole().middle_of_cell(SIDE, number).map(|x| f64::from(x) + 0.5);
@@ -71,13 +71,13 @@ pub fn places(world: &World) -> Vec<Place> {
         let hit = scene.intersect_seen(&ray, None)?;
         let point = scene.objects[hit.object as usize].point(&ray, &hit.intersection);
         let is_diffuse = world.lobes[scene.objects[hit.object as usize].material as usize].is_diffuse();
-        is_diffuse.then_some(Place { point, primitive: hit.primitive() })
+        is_diffuse.then_some(DiffusePlace { point, primitive: hit.primitive() })
     };
     (0..SIDE * SIDE).filter_map(place).collect()
 }
 
 /// Whether nothing stands between a place and a vertex; on which sides of their surfaces is not asked.
-fn sees(world: &World, place: &Place, vertex: DVec3, last_occluder: &Cell<Option<u32>>) -> bool {
+fn sees(world: &World, place: &DiffusePlace, vertex: DVec3, last_occluder: &Cell<Option<u32>>) -> bool {
     let way = vertex - place.point.position;
     let Some(direction) = way.try_normalize() else { return true };
     let ray = Ray { direction: unit(direction), ..place.point.leave(direction) };

@@ -91,7 +91,7 @@ fn bright_openings<const N: usize>(world: &World, Openings { walls, rectangles }
 
 /// Those of some rectangles from or through which more light comes than from elsewhere.
 fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
-    let mut places: Vec<Place> = rectangles.filter_map(Place::of).collect();
+    let mut places: Vec<LearnedPlace> = rectangles.filter_map(LearnedPlace::of).collect();
     let mut elsewhere = Squares::default();
     for bounce in &room.bounces {
         let ray = Ray { origin: bounce.from, direction: bounce.direction };
@@ -109,7 +109,7 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
     let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / room.weight();
     let elsewhere = elsewhere.root() + mean;
     let stands_out = |place: &BrightPlace| place.radiance > elsewhere;
-    let places: Vec<BrightPlace> = places.into_iter().filter_map(Place::bright).filter(stands_out).collect();
+    let places: Vec<BrightPlace> = places.into_iter().filter_map(LearnedPlace::bright).filter(stands_out).collect();
     (!places.is_empty() && elsewhere > 0.0).then_some(BrightPlaces {
         within: room.bounds,
         places,
@@ -119,13 +119,13 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
 }
 
 /// A place that is being learned.
-struct Place {
+struct LearnedPlace {
     shape: Shape,
     rectangle: Rectangle,
     squares: Squares,
 }
 
-impl Place {
+impl LearnedPlace {
     fn of(rectangle: Rectangle) -> Option<Self> {
         let Rectangle { center, half: [u, v] } = rectangle;
         let spans = u.cross(v).length();

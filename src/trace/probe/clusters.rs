@@ -142,7 +142,7 @@ impl Cluster {
             }
         }
         let (_, center, half) = best?;
-        let cost = Dispersion::of(&points).cost();
+        let cost = PointSpread::of(&points).cost();
         Some(Self { points, cost, center, half })
     }
 
@@ -153,7 +153,7 @@ impl Cluster {
             for cut in 0..CUTS {
                 let place = 2.0 * (cut as f64 + 1.0) / (CUTS as f64 + 1.0) - 1.0;
                 let level = axis.dot(self.center) + place * axis.length_squared();
-                let mut sides = [Dispersion::default(); 2];
+                let mut sides = [PointSpread::default(); 2];
                 self.points
                     .iter()
                     .for_each(|point| sides[usize::from(point.0.dot(axis) > level)].add(point.0, point.1));
@@ -172,7 +172,7 @@ impl Cluster {
 
 /// How far weighted points are spread.
 #[derive(Clone, Copy, Default)]
-struct Dispersion {
+struct PointSpread {
     count: usize,
     weight: f64,
     sum: DVec3,
@@ -181,7 +181,7 @@ struct Dispersion {
     products: DVec3,
 }
 
-impl Dispersion {
+impl PointSpread {
     fn of(points: &[(DVec3, f64)]) -> Self {
         let mut all = Self::default();
         points.iter().for_each(|point| all.add(point.0, point.1));

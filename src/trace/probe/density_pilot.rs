@@ -71,7 +71,7 @@ pub fn adaptive(world: &World) -> Option<Adaptive> {
 /// What a pixel of a cell showed in the film's channels: the mean of its samples, and the variance of one of them, as
 /// it counts where many are spread evenly.
 #[derive(Clone, Copy, Debug, Default)]
-struct Pixel {
+struct PixelMoments {
     mean: [f64; 3],
     variance: [f64; 3],
 }
@@ -79,13 +79,13 @@ struct Pixel {
 /// What the pixels of a cell showed, and the rays of all their samples.
 #[derive(Clone, Copy, Debug, Default)]
 struct CellSamples {
-    pixels: [Pixel; PIXELS as usize],
+    pixels: [PixelMoments; PIXELS as usize],
     rays: f64,
 }
 
 /// Variance of a sample of a cell, and the rays of one.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct CellNoise {
     variance: f64,
     rays: f64,
 }
@@ -144,7 +144,7 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
     world: &World,
     tracer: &mut PathTracer<N, P>,
     pixel: [i32; 2],
-) -> Pixel {
+) -> PixelMoments {
     let mut look = |look: u64| {
         let seed = (world.method.seed ^ SEED).wrapping_add(look);
         let mut mean = [0.0; 3];
@@ -160,15 +160,15 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
     let [one, other] = [look(0), look(1)];
     let mean = std::array::from_fn(|i| 0.5 * (one[i] + other[i]));
     let variance = |i: usize| 0.5 * f64::from(SAMPLES) * (one[i] - other[i]) * (one[i] - other[i]);
-    Pixel { mean, variance: std::array::from_fn(variance) }
+    PixelMoments { mean, variance: std::array::from_fn(variance) }
 }
 
 /// Of each cell, the mean over the 5 x 5 cells around it.
-fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_absolute: bool) -> Vec<Cell> {
+fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_absolute: bool) -> Vec<CellNoise> {
     let means = || found.iter().flat_map(|found| found.pixels).flat_map(|pixel| pixel.mean);
     let dark =
         means().map(|x| x * x).sum::<f64>() / means().count().max(1) as f64 * if is_absolute { 1.0 } else { DARK };
-    let of_pixel = |Pixel { mean, variance }: &Pixel| {
+    let of_pixel = |PixelMoments { mean, variance }: &PixelMoments| {
         let own = |i: usize| if is_absolute { 0.0 } else { mean[i] * mean[i] };
         (0..3).map(|i| variance[i] / (own(i) + dark).max(f64::MIN_POSITIVE)).sum::<f64>()
     };
@@ -181,14 +181,14 @@ fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_abs
         for at in near(y, rows).flat_map(|y| near(x, columns).map(move |x| (y * columns + x) as usize)) {
             (variance, rays, count) = (variance + own[at], rays + found[at].rays, count + 1.0);
         }
-        Cell { variance: variance / count, rays: rays / count }
+        CellNoise { variance: variance / count, rays: rays / count }
     };
     (0..columns * rows).map(around).collect()
 }
 
 /// The powers of two that make the error least, of as many rays as so many samples everywhere take; none where there is
 /// no noise.
-fn powers(found: &[Cell]) -> Option<Vec<i8>> {
+fn powers(found: &[CellNoise]) -> Option<Vec<i8>> {
     let wanted: Vec<f64> = found.iter().map(|cell| (cell.variance / cell.rays).sqrt()).collect();
     let most = wanted.iter().copied().fold(0.0, f64::max);
     if !(most > 0.0 && most.is_finite()) {
@@ -215,13 +215,13 @@ fn powers(found: &[Cell]) -> Option<Vec<i8>> {
 }
 
 /// The rays of all cells.
-fn rays(found: &[Cell], powers: &[i8]) -> f64 {
+fn rays(found: &[CellNoise], powers: &[i8]) -> f64 {
     found.iter().zip(powers).map(|(cell, &power)| cell.rays * SampleDensity::times(power)).sum()
 }
 
 /// How many times as long an equal error takes with as many samples everywhere, and how many times as many rays are
 /// followed.
-fn worth(powers: &[i8], found: &[Cell]) -> [f64; 2] {
+fn worth(powers: &[i8], found: &[CellNoise]) -> [f64; 2] {
     let rays = rays(found, powers) / rays(found, &vec![0; found.len()]);
     let before: f64 = found.iter().map(|cell| cell.variance).sum();
     let after: f64 = found.iter().zip(powers).map(|(cell, &power)| cell.variance / SampleDensity::times(power)).sum();

@@ -51,9 +51,9 @@ pub fn gathered_worth(world: &World, places: &[DVec3]) -> Option<GatheredWorth> 
 
 /// Sums of some values and of their squares.
 #[derive(Clone, Copy, Default)]
-struct Sums([[f64; 2]; 3]);
+struct Moments([[f64; 2]; 3]);
 
-impl Sums {
+impl Moments {
     fn add(&mut self, values: [f64; 3]) {
         if values.iter().all(|x| x.is_finite()) {
             self.0.iter_mut().zip(values).for_each(|(sum, x)| *sum = [sum[0] + x, sum[1] + x * x]);
@@ -67,7 +67,7 @@ impl Sums {
 }
 
 /// A first map of photons, and a world whose maps have no more photons than are enough.
-struct First<const N: usize> {
+struct FirstMap<const N: usize> {
     enough: f64,
     /// Whether any photon lies within a pixel of where paths lead.
     is_near: bool,
@@ -76,7 +76,7 @@ struct First<const N: usize> {
     photons: Option<PhotonMap<N>>,
 }
 
-impl<const N: usize> First<N> {
+impl<const N: usize> FirstMap<N> {
     fn new(world: &World, reached: &[DVec3]) -> Option<Self> {
         let photons = photons::<N, Polarized>(world, &Pass::of_photons_alone(world, 0))?;
         let is_near = reaches_photons(world, reached, &photons);
@@ -92,11 +92,11 @@ impl<const N: usize> First<N> {
 }
 
 fn gather<const N: usize>(world: &World, reached: &[DVec3]) -> Option<GatheredWorth> {
-    let First { enough, is_near, ref world, photons: mut first } = First::<N>::new(world, reached)?;
+    let FirstMap { enough, is_near, ref world, photons: mut first } = FirstMap::<N>::new(world, reached)?;
     let film = world.scene.film;
     let to_xyz = film.color_space.to_xyz();
     let mut places: Vec<_> = film.whole().middles_of_cells(SIDE).collect();
-    let mut by_photons = vec![Sums::default(); places.len()];
+    let mut by_photons = vec![Moments::default(); places.len()];
     let mut by_samples = by_photons.clone();
     let (mut all_sent, mut rays, mut of_samples, mut second_moment) = (0, 0, 0, 0.0);
     for map in 0..MAPS {

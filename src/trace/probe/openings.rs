@@ -51,7 +51,7 @@ pub struct Openings {
 impl Openings {
     /// Those of a room, if it has some. So many pieces of work look for them, or fewer if they find any.
     pub fn of(room: &Room, pieces: usize) -> Option<Self> {
-        let search = Search { room, walls: walls(room)? };
+        let search = OpeningSearch { room, walls: walls(room)? };
         let mut ways_out = search.ways_out(pieces);
         let mut points = Vec::new();
         for round in 0..ROUNDS {
@@ -72,12 +72,12 @@ impl Openings {
 }
 
 /// A search for openings.
-struct Search<'a> {
+struct OpeningSearch<'a> {
     room: &'a Room<'a>,
     walls: Bounds,
 }
 
-impl Search<'_> {
+impl OpeningSearch<'_> {
     /// Where some of the rays that bounces might take leave the room.
     fn ways_out(&self, most: usize) -> Vec<DVec3> {
         let (mut found, mut pieces) = (self.found(0..1, &by_cosine), 1);

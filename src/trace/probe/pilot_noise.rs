@@ -44,7 +44,7 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
 
 /// What some samples of a pixel are: the mean of X + Y + Z, and the variance of one. The cell of the format in which it
 /// lies.
-struct Pixel {
+struct PixelNoise {
     mean: f64,
     variance: f64,
     cell: usize,
@@ -91,7 +91,7 @@ impl Effort {
 
 /// What samples of pixels all over the image are.
 pub struct PilotNoise {
-    pixels: Vec<Pixel>,
+    pixels: Vec<PixelNoise>,
     is_whole: bool,
     /// Pixels of the format.
     format: f64,
@@ -123,7 +123,7 @@ fn weigh<const N: usize>(
         });
         let taken: Vec<f64> = taken.filter(|light| light.is_finite()).collect();
         let [mean, variance] = mean_and_variance(taken.iter().copied());
-        pixels.push(Pixel { mean, variance, cell: film.whole().cell_of(SIDE, [x, y].map(|place| place as u32)) });
+        pixels.push(PixelNoise { mean, variance, cell: film.whole().cell_of(SIDE, [x, y].map(|place| place as u32)) });
         if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
@@ -153,7 +153,8 @@ impl PilotNoise {
         if left().any(|(_, spike)| spike.is_infinite()) {
             return Effort { of_pixels: f64::INFINITY, of_whole: self.is_whole.then_some(f64::INFINITY) };
         }
-        let by_chance = |pixel: &Pixel| left().map(|(photons, spike)| spike * photons.cells[pixel.cell].mean).sum();
+        let by_chance =
+            |pixel: &PixelNoise| left().map(|(photons, spike)| spike * photons.cells[pixel.cell].mean).sum();
         self.effort(photons, sent, by_chance, self.mean(photons))
     }
 
@@ -161,9 +162,15 @@ impl PilotNoise {
     ///
     /// Of errors of pixels, the hundredth of the pixels in which samples vary most beside photons is left out: no
     /// photon mends it.
-    fn effort(&self, photons: &[PhotonWorth], sent: usize, by_chance: impl Fn(&Pixel) -> f64, mean: f64) -> Effort {
-        let of_pixel = |pixel: &Pixel| pixel.seen(photons).powi(2) + DARK * mean * mean;
-        let of_whole = |_: &Pixel| mean * mean;
+    fn effort(
+        &self,
+        photons: &[PhotonWorth],
+        sent: usize,
+        by_chance: impl Fn(&PixelNoise) -> f64,
+        mean: f64,
+    ) -> Effort {
+        let of_pixel = |pixel: &PixelNoise| pixel.seen(photons).powi(2) + DARK * mean * mean;
+        let of_whole = |_: &PixelNoise| mean * mean;
         let photons = &photons[..sent];
         Effort {
             of_pixels: self.work(photons, &by_chance, of_pixel, self.worst()).least(),
@@ -199,11 +206,12 @@ impl PilotNoise {
     fn work(
         &self,
         photons: &[PhotonWorth],
-        by_chance: impl Fn(&Pixel) -> f64,
-        squares: impl Fn(&Pixel) -> f64,
+        by_chance: impl Fn(&PixelNoise) -> f64,
+        squares: impl Fn(&PixelNoise) -> f64,
         left_out: usize,
     ) -> Work {
-        let of_pixel = |pixel: &Pixel| [pixel.variance, by_chance(pixel)].map(|variance| variance / squares(pixel));
+        let of_pixel =
+            |pixel: &PixelNoise| [pixel.variance, by_chance(pixel)].map(|variance| variance / squares(pixel));
         let mut of_samples: Vec<[f64; 2]> = self.pixels.iter().map(of_pixel).collect();
         of_samples.sort_by(|[a, _], [b, _]| a.total_cmp(b));
         let most = of_samples.len() - left_out;
@@ -211,7 +219,7 @@ impl PilotNoise {
         let count = of_samples.len() as f64;
         let samples = of_samples[..most].as_flattened().iter().sum::<f64>() / count * self.rays * self.format;
         let of_light = |photons: &PhotonWorth| {
-            let of_pixel = |pixel: &Pixel| photons.cells[pixel.cell].variance / squares(pixel);
+            let of_pixel = |pixel: &PixelNoise| photons.cells[pixel.cell].variance / squares(pixel);
             self.pixels.iter().map(of_pixel).sum::<f64>() / count * photons.rays
         };
         Work { samples, photons: photons.iter().map(of_light).collect() }
@@ -226,7 +234,7 @@ impl Work {
     }
 }
 
-impl Pixel {
+impl PixelNoise {
     /// Its mean with what photons show.
     fn seen(&self, photons: &[PhotonWorth]) -> f64 {
         self.mean + photons.iter().map(|photons| photons.cells[self.cell].mean).sum::<f64>()
