@@ -137,11 +137,15 @@ fn a_name_stands_for_one_type_in_a_room() {
 #[test]
 fn a_name_of_two_types_is_noticed() {
     let files = |room: &str| {
-        let texts =
-            [("a/one.rs", "struct Mirror; const B: u8 = 1; fn c() {}"), (room, "enum Mirror {} const B: u8 = 2; fn c() {}")];
+        let texts = [
+            ("a/mod.rs", "mod one; mod two;"),
+            ("b/mod.rs", "mod two;"),
+            ("a/one.rs", "struct Mirror; const B: u8 = 1; fn c() {}"),
+            (room, "enum Mirror {} const B: u8 = 2; fn c() {}"),
+        ];
         BTreeMap::from(texts.map(|(path, text)| (path.to_owned(), text.to_owned())))
     };
-    assert_eq!(shared_names(&files("a/b/two.rs")), BTreeSet::from(["a: Mirror".to_owned()]));
+    assert_eq!(shared_names(&files("a/two.rs")), BTreeSet::from(["a: Mirror".to_owned()]));
     assert!(shared_names(&files("b/two.rs")).is_empty());
 }
 
