@@ -5,9 +5,9 @@ use crate::math::DVec3;
 /// A share of the light that meets a rough surface, as a table over the cosine to the normal, from which directions can
 /// be drawn if it is nowhere negative.
 ///
-/// The table has evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: what
-/// facets whose slopes are as wide as alpha block changes as z log z near 0, most where z is about alpha, and as 1 /
-/// z^2 beyond.
+/// The table has evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: the
+/// energy missing from facets whose slopes are as wide as alpha changes as z log z near 0, most where z is about alpha,
+/// and as 1 / z^2 beyond.
 #[derive(Clone, Debug)]
 pub(super) struct AlbedoTable {
     alpha: f64,

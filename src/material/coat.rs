@@ -196,7 +196,7 @@ fn around_index(rows: &Rows, m: f64, row: impl Fn(f64) -> AlbedoTable) -> [(f64,
     [(1.0 - part, numbered(below)), (part, numbered(below + 1))]
 }
 
-/// What a rough surface reflects once and no facet blocks, beyond a smooth one of the same relative index m.
+/// What a rough surface reflects once and no facet shadows, beyond a smooth one of the same relative index m.
 fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     // At the very horizon a rough surface still lets light in, which a smooth one does not.
     let (facets, visible) = (surface.facets(), surface.facets().visible(m));
@@ -206,7 +206,7 @@ fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     })
 }
 
-/// The share that facets of relative index m reflect and no facet blocks.
+/// The share that facets of relative index m reflect and no facet shadows.
 struct ReflectedOnce {
     facets: Facets,
     m: f64,
@@ -247,7 +247,7 @@ impl OfFacet for Polarized {
     }
 }
 
-/// What of the light that facets would reflect is blocked, and all that they would let through.
+/// The energy that is missing of light that facets would reflect, and all that they would let through.
 fn kernel(surface: &RoughSurface) -> FilmKernel {
     let (facets, visible) = (surface.facets(), surface.facets().visible(1.0));
     // As if the body were denser than what is around it, which it nearly always is.

@@ -146,7 +146,7 @@ pub(super) struct VisibleFacets {
 struct Row {
     /// Cosine and sine of the angle around.
     around: [[f64; ROW]; 2],
-    /// The root of how many facets are left: dense among upright facets, which are few and block most.
+    /// The root of how many facets are left: dense among upright facets, which are few and shadow most.
     v: [f64; ROW],
     /// Weights, which sum to 1 over all rows.
     weights: [f64; ROW],

@@ -44,7 +44,7 @@ impl FilmKernel {
         Self { grid, rows, mean }
     }
 
-    /// What is blocked from a cosine, linear between the rows.
+    /// The energy that is missing from a cosine, linear between the rows.
     pub(super) fn at(&self, cos: f64) -> HatWeights {
         let (below, part) = step_at(self.grid.place(cos), self.rows.len() - 1);
         let [low, high] = [&self.rows[below], &self.rows[below + 1]];

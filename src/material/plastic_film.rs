@@ -25,8 +25,8 @@ impl<'a, const N: usize> PlasticFilm<'a, N> {
         self.local.at_cosine(self.lane, n1, n2, cos)
     }
 
-    /// What crosses it and a coat from two directions, where `bare` crosses the coat alone, and a rough one blocks so
-    /// much.
+    /// The transmittance of it and a coat from two directions, where `bare` is that of the coat alone, and single
+    /// scattering by a rough one is `missing` so much.
     pub(super) fn transmittance(
         &self,
         bare: &CoatTransmittance,

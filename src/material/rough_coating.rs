@@ -1,5 +1,5 @@
-//! A rough coated boundary, lane by lane: facets reflect and let through as the film does, and what they block is given
-//! back as [`FacetSides`] does for the bare one, so that no light is lost or won.
+//! A rough coated boundary, lane by lane: facets reflect and let through as the film does, and the missing energy is
+//! given back as [`FacetSides`] does for the bare one, so that no light is lost or won.
 
 use std::f64::consts::PI;
 
@@ -43,7 +43,7 @@ impl<'a> MissingEnergy<'a> {
     pub(super) fn value(&self, averages: &[Averages; 2], flow: &BsdfValue, single: f64, square: f64) -> f64 {
         let Self { side, to, bare, bare_around, hats, hats_around } = self;
         let around = [0, 1].map(|i| (bare_around[i] + averages[i].added(hats_around[i])).max(f64::MIN_POSITIVE));
-        // What the film leaves of what is blocked, where it absorbs: on the viewer's side, and on the way across.
+        // What the film leaves of the missing energy, where it absorbs: on the viewer's side, and on the way across.
         let left = [0, 1].map(|i| (averages[i].mean[0] + averages[i].mean[1]).min(1.0));
         let left_on_way = [left[0], (left[0] * left[1]).sqrt()][*side];
         // The share of it that crosses in the end.

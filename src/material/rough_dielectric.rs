@@ -16,8 +16,8 @@ use crate::spectrum::{Lanes, Table};
 const WIDTHS: f64 = 2.0;
 
 /// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices that refract. Lanes of
-/// one direction share the facets and what these block, and each has what they reflect and let through by its own
-/// indices.
+/// one direction share the facets and the energy that single scattering loses, and each has what they reflect and let
+/// through by its own indices.
 struct LaneBoundaries<'a, 'b, const N: usize> {
     context: &'a ScatterContext<'b, N>,
     frame: Frame,

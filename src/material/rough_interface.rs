@@ -8,13 +8,13 @@ use super::fresnel::diffuse_transmittance;
 use super::{BsdfValue, Facet, Facets};
 use crate::math::DVec3;
 
-/// A rough boundary between two clear media: what its facets reflect and refract once, and lobes that give back what
-/// they block, as tables by the cosine and by the ratio of the indices.
+/// A rough boundary between two clear media: single scattering by its facets, and lobes that give the missing energy
+/// back, as tables by the cosine and by the ratio of the indices.
 ///
 /// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*: a facet reflects and refracts by
 /// Fresnel's equations; reflected light is masked as correlated by height, refracted light on each side by itself. What
-/// is blocked beyond the surface meets the boundary again, from the other side: as much as crosses both there and back
-/// from all around, T T', goes on as if it were not blocked ([`Facets::passed`]), for facets turn it there as little as
+/// is shadowed beyond the surface meets the boundary again, from the other side: as much as crosses both there and back
+/// from all around, T T', goes on as if it were not ([`Facets::passed`]), for facets turn it there as little as
 /// here. So glass in a liquid of nearly its index is as invisible rough as smooth. All other light that meets a second
 /// facet is given back after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see
 /// [`FacetSides`]. One row of the tables is computed when a ratio near it is first asked for.
@@ -63,7 +63,7 @@ impl RoughInterface {
         FacetSides { facets: &self.facets, indices: [n1, n2], near, far, crossing, straight: enters * leaves }
     }
 
-    /// What films add to what is blocked, on the viewer's side and beyond, of ratios near that of the indices.
+    /// What films add to the missing energy, on the viewer's side and beyond, of ratios near that of the indices.
     pub(super) fn film_kernels(&self, n1: f64, n2: f64) -> [&FilmKernel; 2] {
         let (denser, place) = place(n1, n2);
         [denser, !denser].map(|denser| {
@@ -101,7 +101,7 @@ fn ratio(denser: bool, row: usize) -> f64 {
     libm::exp(if denser { size } else { -size })
 }
 
-/// What is blocked of the light that facets would reflect, all of it, or let through.
+/// The energy that is missing of light that facets would reflect, all of it, or let through.
 fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
     FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
@@ -163,7 +163,7 @@ impl Side<'_> {
         self.mix(AlbedoTable::mean)
     }
 
-    /// What is blocked at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
+    /// The missing energy at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
     /// there.
     fn missing_energy_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
@@ -176,7 +176,7 @@ impl Side<'_> {
         self.part * self.rows[1].mean() / self.mean_missing_energy()
     }
 
-    /// A direction above the surface, drawn by nearly what is blocked times the cosine.
+    /// A direction above the surface, drawn by nearly the missing energy times the cosine.
     pub fn draw(&self, u: [f64; 2]) -> DVec3 {
         let often = self.often();
         let (row, left) = if u[0] < often { (1, u[0] / often) } else { (0, (u[0] - often) / (1.0 - often)) };
@@ -188,8 +188,8 @@ impl Side<'_> {
 ///
 /// What light loses that meets a second facet, M(z), is given back on the sides a and b by lobes M_a M_b k_ab / pi with
 /// k_11 m_1 + k_12 m_2 = 1, where m is the mean of M: no light is lost or won. They are reciprocal, as k_ab / n_b^2 is
-/// the same both ways; and as far as that allows, as much crosses of what is blocked as of light from all around smooth
-/// glass: k_12 m_2 = T_12 m_2 / max(m_1, m_2).
+/// the same both ways; and as far as that allows, as much of the missing energy crosses as of light from all around
+/// smooth glass: k_12 m_2 = T_12 m_2 / max(m_1, m_2).
 #[derive(Clone, Copy, Debug)]
 pub struct FacetSides<'a> {
     facets: &'a Facets,
@@ -198,9 +198,9 @@ pub struct FacetSides<'a> {
     pub near: Side<'a>,
     /// As met from beyond.
     pub far: Side<'a>,
-    /// The share of what is blocked on each side that crosses in the end.
+    /// The share of the energy missing on each side that crosses in the end.
     pub crossing: [f64; 2],
-    /// The share of the light blocked beyond the surface that goes on as if it were not.
+    /// The share of the light shadowed beyond the surface that goes on as if it were not.
     pub straight: f64,
 }
 
