@@ -226,17 +226,17 @@ fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     let (facets, visible) = (surface.facets(), surface.facets().visible(m));
     AlbedoTable::new(facets.alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
-        visible.mean(z, Polarized { facets: *facets, m }) - Block::at_boundary([1.0, m, z], false).d
+        visible.mean(z, ReflectedPolarization { facets: *facets, m }) - Block::at_boundary([1.0, m, z], false).d
     })
 }
 
-/// How much of the same is polarized across the plane of incidence.
-struct Polarized {
+/// By how much what such facets reflect and no facet shadows is polarized across the plane of incidence.
+struct ReflectedPolarization {
     facets: Facets,
     m: f64,
 }
 
-impl OfFacet for Polarized {
+impl OfFacet for ReflectedPolarization {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
         // Across the surface's plane of incidence is y.

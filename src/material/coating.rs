@@ -77,20 +77,11 @@ impl Coating<Table> {
         inside: bool,
     ) -> LocalCoating<'a, N> {
         let read = |layer: &CoatingLayer<Table>| context.read(&layer.thickness);
-        let is_even = self.varying().next().is_none();
-        let thicknesses = if is_even { Vec::new() } else { self.layers.iter().map(read).collect() };
-        LocalCoating { coating: self, context, inside, thicknesses }
-    }
-
-    /// The layers whose thickness varies over the surface.
-    fn varying(&self) -> impl Iterator<Item = usize> {
-        (0..self.layers.len()).filter(|&number| self.layers[number].thickness.varies())
-    }
-
-    /// The layer that alone varies.
-    fn varying_alone(&self) -> Option<usize> {
-        let mut varying = self.varying();
-        varying.next().filter(|_| varying.next().is_none())
+        let mut all_varying = (0..self.layers.len()).filter(|&number| self.layers[number].thickness.varies());
+        let first = all_varying.next();
+        let thicknesses = if first.is_none() { Vec::new() } else { self.layers.iter().map(read).collect() };
+        let varying = first.filter(|_| all_varying.next().is_none());
+        LocalCoating { coating: self, context, inside, thicknesses, varying }
     }
 }
 
@@ -140,6 +131,8 @@ pub(super) struct LocalCoating<'a, const N: usize> {
     inside: bool,
     /// Of each layer, where any varies over the surface.
     thicknesses: Vec<Lanes<N>>,
+    /// The layer that alone varies.
+    varying: Option<usize>,
 }
 
 impl<'a, const N: usize> LocalCoating<'a, N> {
@@ -166,13 +159,15 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
             return known.map_or_else(|| Averages::Made(Box::new(make_here())), Averages::Known);
         }
         let read = || {
-            let number = coating.varying_alone()?;
+            let number = self.varying?;
             let layer = self.layer(number, lane);
             let new = || FilmTable::new(&layer, self.context.wave(lane)[0], coating.layers[number].thickness.range().1);
             let table = coating.by_thickness[side].get(draw, lane, indices, new)?;
             table.read(layer.thickness_nm, |thickness_nm| {
-                let with = |at: usize| Layer { thickness_nm, ..self.layer(at, lane) };
-                let layers = self.in_order().map(|at| if at == number { with(at) } else { self.layer(at, lane) });
+                let layers = self.in_order().map(|at| match self.layer(at, lane) {
+                    layer if at == number => Layer { thickness_nm, ..layer },
+                    layer => layer,
+                });
                 make(&Stack::new(self.context.wave(lane), layers))
             })
         };
@@ -218,8 +213,8 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
 
     /// The numbers of the layers, the viewer's side first.
     fn in_order(&self) -> impl Iterator<Item = usize> {
-        let last = self.coating.layers.len().wrapping_sub(1);
-        (0..self.coating.layers.len()).map(move |place| if self.inside { last - place } else { place })
+        let count = self.coating.layers.len();
+        (0..count).map(move |place| if self.inside { count - 1 - place } else { place })
     }
 
     fn layer(&self, number: usize, lane: usize) -> Layer {

@@ -116,17 +116,17 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
 /// beyond is `ratio` times that on this side.
 fn missing_energy(facets: &Facets, ratio: f64) -> AlbedoTable {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
-    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Again { facets: *facets, ratio, straight }))
+    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, SecondFacet { facets: *facets, ratio, straight }))
 }
 
 /// The share that meets a second facet.
-struct Again {
+struct SecondFacet {
     facets: Facets,
     ratio: f64,
     straight: f64,
 }
 
-impl OfFacet for Again {
+impl OfFacet for SecondFacet {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
         Facet::new(&self.facets, [1.0, self.ratio], self.straight, [wo, h], None).multiple

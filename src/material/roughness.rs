@@ -188,13 +188,13 @@ pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
 /// The share of light from each cosine that meets a second facet: the mean over the visible facets.
 fn missing_energy(facets: &Facets) -> AlbedoTable {
     let visible = facets.visible(1.0);
-    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Blocked(*facets)))
+    AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Shadowed(*facets)))
 }
 
 /// The share that meets a second facet, where the first one reflects all light.
-struct Blocked(Facets);
+struct Shadowed(Facets);
 
-impl OfFacet for Blocked {
+impl OfFacet for Shadowed {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
         self.0.unshadowed_and_shadowed(wo, reflect(wo, h))[1]

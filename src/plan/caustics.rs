@@ -22,9 +22,6 @@ const MOST_OF_A_SAMPLE: f64 = 4.0;
 /// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is
 /// seen through glass.
 const NOTHING: f64 = 0.01;
-/// Why no photons are sent where nothing shines but a sky, and why not where bounces are aimed at openings to it.
-const OFTEN: &str = "rays find the sky by chance often enough";
-const LEFT: &str = "caustics of the sky, whose light comes through openings, are left to chance";
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
@@ -36,13 +33,15 @@ pub(super) struct CausticChoice {
     pub(super) why: Vec<String>,
     /// Whether photons are not gathered either, as they do not pay where the camera would see them.
     pub(super) settled: bool,
+    /// Whether none are sent because nothing shines but a sky.
+    pub(super) only_sky: bool,
     /// A world whose photons have learned where to go.
     pub(super) guided: Option<World>,
 }
 
 impl CausticChoice {
     fn not(why: Vec<String>, settled: bool) -> Self {
-        Self { caustics: None, why, settled, guided: None }
+        Self { caustics: None, why, settled, only_sky: false, guided: None }
     }
 }
 
@@ -95,7 +94,11 @@ impl Caustics {
 pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice {
     let Sources { small, mut large } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(why) => return CausticChoice::not(why.into_iter().collect(), sees_receivers(scene)),
+        Err(unsent) => {
+            let only_sky = matches!(unsent, Unsent::OnlySky);
+            let why = if let Unsent::Because(why) = unsent { vec![why] } else { Vec::new() };
+            return CausticChoice { only_sky, ..CausticChoice::not(why, sees_receivers(scene)) };
+        }
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
@@ -146,13 +149,17 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice 
     }));
     let to = aim(scene, &smooth);
     let caustics = Caustics { photons, smooth, from: named(scene, &sending), to, seen, gain };
-    CausticChoice { caustics: Some(caustics), why: lines, settled: false, guided: Some(world) }
+    CausticChoice { caustics: Some(caustics), why: lines, settled: false, only_sky: false, guided: Some(world) }
 }
 
-/// Why photons are not sent, for a world of which more is known by now.
-pub(super) fn why_in(world: &World, why: Vec<String>) -> Vec<String> {
+/// Why a sky alone sends no photons: its light may come through openings, at which bounces are aimed.
+pub(super) fn of_sky(world: &World) -> String {
     let has_openings = world.method().bright.as_ref().is_some_and(|bright| bright.are_openings);
-    why.into_iter().map(|line| if has_openings { line.replace(OFTEN, LEFT) } else { line }).collect()
+    let why = match has_openings {
+        true => "caustics of the sky, whose light comes through openings, are left to chance",
+        false => "rays find the sky by chance often enough",
+    };
+    format!("no photon tracing: {why}")
 }
 
 /// What photons are sent to, as a person is told.
@@ -201,21 +208,31 @@ struct Sources {
     large: Vec<SizedLight>,
 }
 
+/// Why no photons are sent.
+enum Unsent {
+    /// Paths are followed without chance.
+    Deterministic,
+    /// Nothing shines but a sky.
+    OnlySky,
+    /// As a person is told.
+    Because(String),
+}
+
 /// The lights that photons may be sent from, or why none are sent.
-fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String>> {
+fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Unsent> {
     if let Some(why) = no_caustics(scene) {
-        return Err(Some(format!("no caustics: {why}")));
+        return Err(Unsent::Because(format!("no caustics: {why}")));
     }
     if matches!(world.method().transport, Transport::Deterministic { .. }) {
-        return Err(None);
+        return Err(Unsent::Deterministic);
     }
     if scene.render.caustics == AutoText::Off {
-        return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
+        return Err(Unsent::Because(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     let places = thinned(lit_places(scene), scene.lights.len());
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
-        return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
+        return Err(Unsent::Because(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
     }
     let mut sources = Sources { small: Vec::new(), large: Vec::new() };
     for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
@@ -230,10 +247,10 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
                 "caustics of a polarized image of the sky are left to chance".into()
             }
-            [] => OFTEN.into(),
+            [] => return Err(Unsent::OnlySky),
             lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
         };
-        return Err(Some(format!("no photon tracing: {why}")));
+        return Err(Unsent::Because(format!("no photon tracing: {why}")));
     }
     Ok(sources)
 }

@@ -17,11 +17,12 @@ pub(super) struct LitWorld {
 
 impl LitWorld {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, unlit);
+        let CausticChoice { caustics, why, settled, only_sky, guided } = caustics::caustics(scene, unlit);
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
         let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref(), settled);
         // Why nothing is shown matters only where nothing is gathered either.
-        let why = if shown.is_some() || light_pass.is_none() { why } else { Vec::new() };
+        let is_told = shown.is_some() || light_pass.is_none();
+        let why = if is_told { why } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
         let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
         let way = between(unlit.with_light_pass(light_pass), photons);
@@ -33,8 +34,9 @@ impl LitWorld {
         }
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
         let left = caustics::without_end(scene, &world);
-        let why = caustics::why_in(&world, why);
-        let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
+        let of_sky = (only_sky && is_told).then(|| caustics::of_sky(&world));
+        let because =
+            reason.into_iter().chain(left).chain(why).chain(of_sky).chain(why_gathered).chain(reasons).collect();
         Self { world, because, guided }
     }
 }

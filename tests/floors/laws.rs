@@ -16,7 +16,11 @@ const LONG_FUNCTIONS: usize = 3;
 const WIDEST: usize = 120;
 
 fn one(path: &str, text: &str) -> BTreeMap<String, String> {
-    BTreeMap::from([(path.to_owned(), text.to_owned())])
+    several([(path, text)])
+}
+
+fn several<const N: usize>(texts: [(&str, &str); N]) -> BTreeMap<String, String> {
+    texts.map(|(path, text)| (path.to_owned(), text.to_owned())).into()
 }
 
 fn long_files(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
@@ -137,13 +141,12 @@ fn a_name_stands_for_one_type_in_a_room() {
 #[test]
 fn a_name_of_two_types_is_noticed() {
     let files = |room: &str| {
-        let texts = [
+        several([
             ("a/mod.rs", "mod one; mod two;"),
             ("b/mod.rs", "mod two;"),
             ("a/one.rs", "struct Mirror; const B: u8 = 1; fn c() {}"),
             (room, "enum Mirror {} const B: u8 = 2; fn c() {}"),
-        ];
-        BTreeMap::from(texts.map(|(path, text)| (path.to_owned(), text.to_owned())))
+        ])
     };
     assert_eq!(shared_names(&files("a/two.rs")), BTreeSet::from(["a: Mirror".to_owned()]));
     assert!(shared_names(&files("b/two.rs")).is_empty());
@@ -159,8 +162,7 @@ fn an_impl_away_from_its_type_is_noticed() {
     let files = |text: &str| {
         let root = ("lib.rs", "mod room;");
         let room = ("room/mod.rs", "mod a; mod b; pub use a::A; pub struct Own;");
-        let files = [root, room, ("room/a.rs", "pub struct A<T>(T);"), ("room/b.rs", text)];
-        BTreeMap::from(files.map(|(path, text)| (path.to_owned(), text.to_owned())))
+        several([root, room, ("room/a.rs", "pub struct A<T>(T);"), ("room/b.rs", text)])
     };
     for text in [
         "use super::A; impl<T> A<T> {}",

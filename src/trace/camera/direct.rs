@@ -159,7 +159,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let context = &at.context;
         let ends = RayEnds { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
-        let passage = VisibilityTest {
+        let segment = VisibilityTest {
             ray,
             distance,
             ends,
@@ -171,7 +171,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;
         let toward = || self.path.polarization.toward(at, wi, &mut bsdf_cos);
-        let arriving = passage.arriving(world, context.draw, toward, light_of);
+        let arriving = segment.arriving(world, context.draw, toward, light_of);
         let Some((mut arriving, on_its_way)) = arriving else { return };
         let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
         let on_its_way = lit.as_ref().unwrap_or(&on_its_way);

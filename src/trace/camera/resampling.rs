@@ -60,7 +60,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         let short = (vertex.error + gamma(8) * distance) / cos;
         let ends = RayEnds { left: self.path.left, ..RayEnds::default() };
         let (distance, inside) = (distance - short, at.boundary.here);
-        let passage = VisibilityTest {
+        let segment = VisibilityTest {
             ray: &ray,
             distance,
             ends,
@@ -69,7 +69,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
             last_occluder: self.last_occluder,
         };
         let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
-        let (arriving, on_its_way) = passage.arriving(world, at.context.draw, toward, || vertex.leaving)?;
+        let (arriving, on_its_way) = segment.arriving(world, at.context.draw, toward, || vertex.leaving)?;
         let near_squared = self.vertices.near_squared();
         let factor = factor * cos / (squared + near_squared);
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);

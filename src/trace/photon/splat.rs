@@ -115,7 +115,7 @@ struct CameraConnection<'v, 'a, const N: usize, P: Polarization<N>> {
     /// Whether the camera is on the side where the photon has arrived; the surface as it sees it.
     same: bool,
     viewed: Interaction<'v, N>,
-    ways: SeenThrough,
+    seen_through: SeenThrough,
 }
 
 /// Adds what the camera sees of a photon.
@@ -125,14 +125,14 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
     splats: &mut Vec<PlacedSplat>,
 ) {
     let world = walker.world;
-    let ways: &[SeenThrough] = match world.visibility(photon_hit.at.object) {
+    let all: &[SeenThrough] = match world.visibility(photon_hit.at.object) {
         Visibility::Shown => &[SeenThrough::All],
         Visibility::Hidden => &[],
         Visibility::Holdout => &[SeenThrough::Panes],
         Visibility::ShadowCatcher => &[SeenThrough::Holes, SeenThrough::Panes],
     };
-    for &ways in ways {
-        let Some(view) = CameraConnection::new(walker, photon_hit, ways) else { return };
+    for &seen_through in all {
+        let Some(view) = CameraConnection::new(walker, photon_hit, seen_through) else { return };
         view.keep(view.scattered(), splats);
         if let Some(dyes) = &world.dyes {
             for (number, dye) in dyes.of(&world.scene, photon_hit.at.object).enumerate() {
@@ -144,7 +144,11 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
 
 impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> {
     /// None where the camera does not see the place.
-    fn new(walker: &'v Walker<'a, N, P>, photon_hit: &'v PhotonHit<'v, N, P>, ways: SeenThrough) -> Option<Self> {
+    fn new(
+        walker: &'v Walker<'a, N, P>,
+        photon_hit: &'v PhotonHit<'v, N, P>,
+        seen_through: SeenThrough,
+    ) -> Option<Self> {
         let PhotonHit { path, at, photon } = photon_hit;
         let Interaction { flat, point, .. } = at;
         let world = walker.world;
@@ -161,7 +165,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         }
         let same = seen.direction.dot(*flat) > 0.0;
         let viewed = at.viewed_from(seen.direction);
-        Some(Self { walker, photon_hit, seen, places, same, viewed, ways })
+        Some(Self { walker, photon_hit, seen, places, same, viewed, seen_through })
     }
 
     /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
@@ -182,9 +186,15 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         };
         let ends = RayEnds { left: path.left, ..RayEnds::default() };
         let last_occluder = &self.walker.last_occluder;
-        let passage =
-            VisibilityTest { ray: &ray, distance, ends, inside, occluders: Occluders::Seen(self.ways), last_occluder };
-        let (arriving, polarization) = passage.arriving(world, draw, start, light)?;
+        let segment = VisibilityTest {
+            ray: &ray,
+            distance,
+            ends,
+            inside,
+            occluders: Occluders::Seen(self.seen_through),
+            last_occluder,
+        };
+        let (arriving, polarization) = segment.arriving(world, draw, start, light)?;
         if inside == there {
             return Some((arriving, polarization));
         }
@@ -275,7 +285,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let Photon { light, early, .. } = *self.photon_hit.photon;
         let changed = || received.times(Lanes::ONE + polarized.change, &world.responses).map(|x| x * factor);
         let change = if polarized.change.is_zero() { 0.0 } else { world.share_of_change(rgb, changed()) as f32 };
-        let (bounces, caught) = (self.photon_hit.path.surfaces(), self.ways == SeenThrough::Holes);
+        let (bounces, caught) = (self.photon_hit.path.surfaces(), self.seen_through == SeenThrough::Holes);
         Splat { change, rgb, stokes, bands, weight: 1.0, light, bounces, dispersed, early, caught, first }
     }
 

@@ -64,7 +64,7 @@ const TIMES: u64 = 64;
 const GATHERED: u64 = 4096;
 /// Time after which enough camera samples have been seen.
 const ENOUGH: Duration = Duration::from_millis(300);
-/// Time after which enough photons have been: they differ less.
+/// Time after which enough photons have been followed, which differ less.
 const ENOUGH_PHOTONS: Duration = Duration::from_millis(100);
 
 /// Traces single samples of pixels spread over the part of the image that is made.
