@@ -43,7 +43,13 @@ fn main() {
             let photons = (f64::from(samples) * 576.0 * each) as u64;
             Method {
                 samples,
-                light_pass: Some(LightPass { photons, lights: vec![0], to: vec![Smoothness::Whole], map: None }),
+                light_pass: Some(LightPass {
+                    photons,
+                    lights: vec![0],
+                    openings: Vec::new(),
+                    to: vec![Smoothness::Whole],
+                    map: None,
+                }),
                 ..plan.clone()
             }
         };

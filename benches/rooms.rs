@@ -48,6 +48,7 @@ fn main() {
             None => LightPass {
                 photons: taken(&scene, plan.samples) as u64,
                 lights: all,
+                openings: Vec::new(),
                 to: Smoothness::ALL.to_vec(),
                 map: None,
             },

@@ -139,7 +139,13 @@ fn the_density_of_samples_changes_no_mean() {
     let stop = |method| Method { stop: Some(Stop { noise: None, time: None, least: 32, most: 32 }), ..method };
     let plain: Change = |method| method;
     let photons = |method| Method {
-        light_pass: Some(LightPass { photons: 4096, lights: vec![0, 1], to: vec![Smoothness::Whole], map: None }),
+        light_pass: Some(LightPass {
+            photons: 4096,
+            lights: vec![0, 1],
+            openings: Vec::new(),
+            to: vec![Smoothness::Whole],
+            map: None,
+        }),
         ..method
     };
     let sharp = lit([12, 12], 24, "").replace("height = 12", "height = 12\nfilter = \"mitchell\"");

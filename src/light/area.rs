@@ -1,8 +1,9 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use super::beam::TowardBall;
 use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
-use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray, cosine_about};
+use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray};
 use crate::shape::{
     Ball, Coordinates, Density, Intersection, Shape, ShapeSample, Sides, Sphere, SurfacePoint, TexturedShape,
 };
@@ -266,23 +267,16 @@ impl<S> Area<S> {
         let own = self.shape.ball();
         let from = own.map_or(ball.center, |own| own.center);
         let is_apart = own.is_some_and(|own| (own.center - ball.center).length() > own.radius + ball.radius);
-        Beam { ball: *ball, cone: Cone::ALL, flux: size * TAU * ball.cone_from(from).one_minus_cos, is_apart }
+        let flux = size * TAU * ball.cone_from(from).one_minus_cos;
+        Beam { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart }
     }
 
     /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is
     /// inside the ball.
-    pub(super) fn sample_le(&self, ball: &Ball, [a, b]: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+    pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let surface = self.sample_emission(ball, u)?;
         let point = &surface.point;
-        let cone = ball.cone_from(point.position);
-        let direction = if cone.is_all() {
-            let front = self.front();
-            let (side, a) =
-                if a < front { (point.normal, a / front) } else { (-point.normal, (a - front) / (1.0 - front)) };
-            cosine_about(side, [a, b])
-        } else {
-            cone.sample([a, b])?
-        };
+        let direction = self.toward(ball, point).sample(guide_uv)?;
         let cos = point.normal.dot(direction);
         let sample = LeSample { ray: point.leave(direction), factor: cos.abs(), surface: Some(surface) };
         self.sides.shine(cos > 0.0).then_some(sample)
@@ -292,20 +286,17 @@ impl<S> Area<S> {
     /// steradian; 0 of a way that does not lead there.
     pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let Some(EmissionPoint { point, density, .. }) = &sample.surface else { return 0.0 };
-        let (cone, direction) = (ball.cone_from(point.position), sample.ray.direction);
-        let along = if cone.is_all() {
-            let cos = point.normal.dot(direction);
-            let side = if cos > 0.0 { self.front() } else { 1.0 - self.front() };
-            side * cos.abs() / PI
-        } else {
-            cone.pdf(direction, guide)
-        };
+        let along = self.toward(ball, point).pdf(sample.ray.direction, guide);
         let of_point = match (density, self.seen_cap()) {
             (Some(density), _) => *density,
             (None, Some((sphere, cap))) => sphere.pdf_cap_emission(cap, ball, point),
             (None, None) => self.shape.pdf_emission(ball, point),
         };
         along * of_point
+    }
+
+    fn toward<'a>(&self, ball: &'a Ball, point: &SurfacePoint) -> TowardBall<'a> {
+        TowardBall { ball, from: point.position, normal: point.normal, front: self.front() }
     }
 
     /// A point from which light may reach a ball.

@@ -1,8 +1,8 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::{Beam, BrightPart, LeSample, LightSample, Panorama};
-use crate::math::{DMat3, DVec3, cosine_about, unit};
+use super::{Beam, BrightPart, LeSample, LightSample, Opening, Panorama};
+use crate::math::{DMat3, DVec3, Ray, cosine_about, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
@@ -132,11 +132,26 @@ impl<S> Environment<S> {
         Some(Beam::from_sky(ball, self.bright()?.irradiance()))
     }
 
-    /// A photon of the bright part, through a disc across the ball.
-    pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
-        let (direction, pdf) = self.sample_bright(u)?;
-        let ray = Beam::ray_from_sky(ball, direction, guide_uv)?;
-        Some(LeSample { ray, factor: 1.0 / pdf, surface: None })
+    /// Photons of all its light that comes through an opening, but that of the bright part; none of a polarized sky.
+    pub(super) fn beam_through(&self, opening: &Opening, ball: &Ball) -> Option<Beam> {
+        self.polarization.is_none().then(|| Beam::through(opening, ball, self.mean()))
+    }
+
+    /// A photon of the bright part, through a disc across the ball; of a beam through an opening, of all but that part.
+    pub(super) fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
+        let Some(opening) = &beam.opening else {
+            let (direction, pdf) = self.sample_bright(u)?;
+            let ray = Beam::ray_from_sky(&beam.ball, direction, guide_uv)?;
+            return Some(LeSample { ray, factor: 1.0 / pdf, surface: None });
+        };
+        let ray = opening.ray(&beam.ball, guide_uv, u)?;
+        (!self.is_bright(-ray.direction)).then_some(LeSample { ray, factor: 1.0, surface: None })
+    }
+
+    /// How densely `sample_le` draws a photon for a beam; 0 of a direction whose light the beam does not send.
+    pub(super) fn pdf_le(&self, beam: &Beam, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let is_sent = self.is_bright(-ray.direction) == beam.opening.is_none();
+        if is_sent { beam.pdf_from_sky(ray, guide) } else { 0.0 }
     }
 
     /// The mean over all directions of the factor on `radiance`.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Point, SkyPolarization, Spot, Sun};
+use super::{Area, Beam, Environment, LeSample, LightBounds, LightSample, Opening, Point, SkyPolarization, Spot, Sun};
 use crate::math::{DVec3, Ray};
 use crate::shape::{Ball, Intersection, Sides, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
@@ -113,7 +113,12 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether photons bring what it sends along a direction toward it, if it sends any.
+    /// Whether photons can be sent from it through openings: of a sky that is not polarized.
+    pub fn sends_photons_through_openings(&self) -> bool {
+        matches!(self, Self::Environment(environment) if environment.polarization.is_none())
+    }
+
+    /// Whether photons bring what it sends along a direction toward it, if it sends any, wherever that way leads.
     pub fn sends_photons_from(&self, direction: DVec3) -> bool {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
@@ -140,6 +145,12 @@ impl<S> Light<S> {
         Some(beam).filter(|beam| beam.flux > 0.0)
     }
 
+    /// How photons of a sky are sent to a ball through an opening; none of other lights, or if it sends none there.
+    pub fn beam_through(&self, opening: &Opening, ball: &Ball) -> Option<Beam> {
+        let Self::Environment(environment) = self else { return None };
+        environment.beam_through(opening, ball).filter(|beam| beam.flux > 0.0)
+    }
+
     /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers;
     /// none where the light does not shine.
     pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
@@ -148,7 +159,7 @@ impl<S> Light<S> {
             Self::Point(point) => LeSample::of_point(point.position.into(), &beam.cone, guide_uv, |_| 1.0),
             Self::Spot(spot) => LeSample::of_point(spot.position.into(), &beam.cone, guide_uv, |way| spot.part(way)),
             Self::Sun(sun) => sun.sample_le(&beam.ball, guide_uv, u),
-            Self::Environment(environment) => environment.sample_le(&beam.ball, guide_uv, u),
+            Self::Environment(environment) => environment.sample_le(beam, guide_uv, u),
         }
     }
 
@@ -158,7 +169,8 @@ impl<S> Light<S> {
         match self {
             Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
             Self::Point(_) | Self::Spot(_) => beam.cone.pdf(sample.ray.direction, guide),
-            Self::Sun(_) | Self::Environment(_) => beam.pdf_from_sky(&sample.ray, guide),
+            Self::Sun(_) => beam.pdf_from_sky(&sample.ray, guide),
+            Self::Environment(environment) => environment.pdf_le(beam, &sample.ray, guide),
         }
     }
 

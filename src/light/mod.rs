@@ -5,6 +5,7 @@
 //! up to 1. Photons start from lights (`sample_le`, `pdf_le`). Of many lights a [`LightSampler`] draws one.
 
 mod area;
+mod beam;
 mod bounds;
 mod emission_map;
 mod environment;
@@ -19,6 +20,7 @@ mod sun;
 mod tree;
 
 pub use area::{Area, ShownImage};
+pub use beam::{Beam, Opening};
 pub use bounds::LightBounds;
 pub use emission_map::EmissionMap;
 pub use environment::{Environment, Sky, SkyPolarization};
@@ -26,7 +28,7 @@ pub use kinds::{Light, LightId};
 pub use panorama::{BrightPart, Panorama};
 pub use parts::{KnownParts, LightParts};
 pub use point::Point;
-pub use sample::{Beam, EmissionPoint, LeSample, LightSample};
+pub use sample::{EmissionPoint, LeSample, LightSample};
 pub use sampler::{LightSampler, SampledLight};
 pub use spot::Spot;
 pub use sun::Sun;

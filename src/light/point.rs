@@ -26,7 +26,7 @@ impl<S> Point<S> {
 
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let cone = ball.cone_from(self.position.into());
-        Beam { ball: *ball, cone, flux: TAU * cone.one_minus_cos, is_apart: true }
+        Beam { ball: *ball, cone, opening: None, flux: TAU * cone.one_minus_cos, is_apart: true }
     }
 
     pub(super) fn emit(&self, u: [f64; 2]) -> LeSample {

@@ -1,7 +1,5 @@
-use std::f64::consts::PI;
-
-use crate::math::{Cone, DVec3, Frame, Ray, disk_in_square, square_around_disk};
-use crate::shape::{Ball, SurfacePoint};
+use crate::math::{Cone, DVec3, Ray};
+use crate::shape::SurfacePoint;
 
 /// Light that may reach a point along one ray, unless something hides it.
 ///
@@ -39,47 +37,6 @@ impl LightSample {
         let factor = part / squared;
         let distance = squared.sqrt();
         (part > 0.0).then_some(Self { ray, distance, object: None, part: None, pdf: None, factor, uv: [0.0; 2] })
-    }
-}
-
-/// How one light sends photons to a ball.
-#[derive(Clone, Copy, Debug)]
-pub struct Beam {
-    /// What they are sent to.
-    pub ball: Ball,
-    /// Of a light that is a point: the directions that photons take.
-    pub cone: Cone,
-    /// The flux that it sends to the ball or into the cone, per emission, about.
-    pub flux: f64,
-    /// Whether the light is apart from the ball, so that a place of the unit square stands for a way to it.
-    pub is_apart: bool,
-}
-
-impl Beam {
-    /// Of light that comes from far away, with an irradiance for its emission.
-    pub(super) fn from_sky(ball: &Ball, irradiance: f64) -> Self {
-        Self { ball: *ball, cone: Cone::ALL, flux: irradiance * PI * ball.radius * ball.radius, is_apart: true }
-    }
-
-    /// The ray of a photon from a unit vector toward the sky, through a disc across the ball; none beside the disc.
-    pub(super) fn ray_from_sky(ball: &Ball, toward: DVec3, guide_uv: [f64; 2]) -> Option<Ray> {
-        let [x, y] = disk_in_square(guide_uv)?;
-        let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
-        Some(Ray { origin, direction: -toward })
-    }
-
-    /// Where the way from a point along a unit vector toward the sky runs through the disc across the ball, as a place
-    /// of the unit square; none beside it.
-    pub(crate) fn place_in_disc(&self, from: DVec3, toward: DVec3) -> Option<[f64; 2]> {
-        let local = Frame::about(toward).to_local(from - self.ball.center) / self.ball.radius;
-        square_around_disk([local.x, local.y])
-    }
-
-    /// How densely `ray_from_sky` draws a ray of a direction from places of a density of their own, per unit of area
-    /// across its way; 0 beside the ball.
-    pub(super) fn pdf_from_sky(&self, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
-        let radius = self.ball.radius;
-        self.place_in_disc(ray.origin, -ray.direction).map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
     }
 }
 

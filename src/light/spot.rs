@@ -64,7 +64,13 @@ impl<S> Spot<S> {
         let between = libm::acos(toward.axis.dot(own.axis).clamp(-1.0, 1.0));
         let misses = !toward.is_all() && between > half(&toward) + half(&own);
         let cone = if own.one_minus_cos < toward.one_minus_cos { own } else { toward };
-        Beam { ball: *ball, cone, flux: if misses { 0.0 } else { TAU * cone.one_minus_cos }, is_apart: true }
+        Beam {
+            ball: *ball,
+            cone,
+            opening: None,
+            flux: if misses { 0.0 } else { TAU * cone.one_minus_cos },
+            is_apart: true,
+        }
     }
 
     pub(super) fn emit(&self, u: [f64; 2]) -> Option<LeSample> {

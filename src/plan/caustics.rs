@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::efficiency::{PhotonGain, rounded, weigh};
 use super::words::{as_long, in_number};
-use crate::light::{Light, LightId};
+use crate::light::{Light, LightId, Opening};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3};
 use crate::scene::{AutoText, Scene};
@@ -33,15 +33,13 @@ pub(super) struct CausticChoice {
     pub(super) why: Vec<String>,
     /// Whether photons are not gathered either, as they do not pay where the camera would see them.
     pub(super) settled: bool,
-    /// Whether none are sent because nothing shines but a sky.
-    pub(super) only_sky: bool,
     /// A world whose photons have learned where to go.
     pub(super) guided: Option<World>,
 }
 
 impl CausticChoice {
     fn not(why: Vec<String>, settled: bool) -> Self {
-        Self { caustics: None, why, settled, only_sky: false, guided: None }
+        Self { caustics: None, why, settled, guided: None }
     }
 }
 
@@ -49,6 +47,8 @@ impl CausticChoice {
 pub(super) struct Caustics {
     /// The photons of each light that sends them.
     pub(super) photons: Vec<PhotonWorth>,
+    /// The openings through which a sky sends them.
+    openings: Vec<Opening>,
     /// How smooth what they are sent to is.
     smooth: Vec<Smoothness>,
     /// Which those are, and what they are sent to.
@@ -70,6 +70,7 @@ impl Caustics {
         LightPass {
             photons: (of_a_sample * world.samples_of_the_format()).max(FEWEST).ceil() as u64,
             lights,
+            openings: self.openings.clone(),
             to: self.smooth.clone(),
             map: None,
         }
@@ -92,18 +93,15 @@ impl Caustics {
 
 /// The caustics of a scene that are worth photons, if any, and why.
 pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice {
-    let Sources { small, mut large } = match sources(scene, unguided) {
+    let Sources { small, mut large, openings } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(unsent) => {
-            let only_sky = matches!(unsent, Unsent::OnlySky);
-            let why = if let Unsent::Because(why) = unsent { vec![why] } else { Vec::new() };
-            return CausticChoice { only_sky, ..CausticChoice::not(why, sees_receivers(scene)) };
-        }
+        Err(why) => return CausticChoice::not(why.into_iter().collect(), sees_receivers(scene)),
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
     let all = Smoothness::ALL.to_vec();
-    let world = piloted(unguided, LightPass { photons: of_all, lights, to: all, map: None });
+    let world =
+        piloted(unguided, LightPass { photons: of_all, lights, openings: openings.clone(), to: all, map: None });
     if let Some(why) = nowhere_to_aim(scene, &world) {
         return CausticChoice::not(vec![why], true);
     }
@@ -148,18 +146,8 @@ pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice 
         Some(format!("left to chance: caustics of {name}, which is {how}{points}"))
     }));
     let to = aim(scene, &smooth);
-    let caustics = Caustics { photons, smooth, from: named(scene, &sending), to, seen, gain };
-    CausticChoice { caustics: Some(caustics), why: lines, settled: false, only_sky: false, guided: Some(world) }
-}
-
-/// Why a sky alone sends no photons: its light may come through openings, at which bounces are aimed.
-pub(super) fn of_sky(world: &World) -> String {
-    let has_openings = world.method().bright.as_ref().is_some_and(|bright| bright.are_openings);
-    let why = match has_openings {
-        true => "caustics of the sky, whose light comes through openings, are left to chance",
-        false => "rays find the sky by chance often enough",
-    };
-    format!("no photon tracing: {why}")
+    let caustics = Caustics { photons, openings, smooth, from: named(scene, &sending), to, seen, gain };
+    CausticChoice { caustics: Some(caustics), why: lines, settled: false, guided: Some(world) }
 }
 
 /// What photons are sent to, as a person is told.
@@ -206,38 +194,31 @@ type SizedLight = (LightId, f64);
 struct Sources {
     small: Vec<SizedLight>,
     large: Vec<SizedLight>,
+    /// The openings through which those that are skies shine.
+    openings: Vec<Opening>,
 }
 
-/// Why no photons are sent.
-enum Unsent {
-    /// Paths are followed without chance.
-    Deterministic,
-    /// Nothing shines but a sky.
-    OnlySky,
-    /// As a person is told.
-    Because(String),
-}
-
-/// The lights that photons may be sent from, or why none are sent.
-fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Unsent> {
+/// The lights that photons may be sent from, or why none are sent, if that is worth telling.
+fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String>> {
     if let Some(why) = no_caustics(scene) {
-        return Err(Unsent::Because(format!("no caustics: {why}")));
+        return Err(Some(format!("no caustics: {why}")));
     }
     if matches!(world.method().transport, Transport::Deterministic { .. }) {
-        return Err(Unsent::Deterministic);
+        return Err(None);
     }
     if scene.render.caustics == AutoText::Off {
-        return Err(Unsent::Because(format!("caustics \"off\": no photon tracing{}", missing(scene))));
+        return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
     let places = thinned(lit_places(scene), scene.lights.len());
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
-        return Err(Unsent::Because(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
+        return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
     }
-    let mut sources = Sources { small: Vec::new(), large: Vec::new() };
+    let openings = openings(world, &places, SMALL);
+    let mut sources = Sources { small: Vec::new(), large: Vec::new(), openings };
     for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
-        match solid_angle(light, &places) {
-            Some(size) if size < SMALL && light.sends_photons() => sources.small.push((id, size)),
+        match solid_angle(light, &sources.openings, &places) {
+            Some(size) if size < SMALL && sends(light, &sources.openings) => sources.small.push((id, size)),
             Some(size) => sources.large.push((id, size)),
             None => {}
         }
@@ -247,10 +228,10 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Unsent> {
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
                 "caustics of a polarized image of the sky are left to chance".into()
             }
-            [] => return Err(Unsent::OnlySky),
+            [] => "rays find the sky by chance often enough".into(),
             lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
         };
-        return Err(Unsent::Because(format!("no photon tracing: {why}")));
+        return Err(Some(format!("no photon tracing: {why}")));
     }
     Ok(sources)
 }
@@ -283,14 +264,38 @@ fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
     material.lobes().is_wide() && !(material.lobes().is_diffuse() && scene.render.diffuse_bounces == Some(0))
 }
 
-/// Lights that photons can be sent from and that are seen from the places given under less than a solid angle.
-pub(super) fn small_lights(world: &World, places: &[DVec3], small: f64) -> Vec<LightId> {
+/// Lights that photons can be sent from and that are seen from the places given under less than a solid angle, and the
+/// openings through which skies among them are.
+pub(super) fn small_lights(world: &World, places: &[DVec3], small: f64) -> (Vec<LightId>, Vec<Opening>) {
     let scene = world.scene();
     let places = thinned(places.to_vec(), scene.lights.len());
-    let is_small = |light: &Light<_>| solid_angle(light, &places).is_some_and(|size| size < small);
+    let openings = openings(world, &places, small);
+    let is_small = |light: &Light<_>| solid_angle(light, &openings, &places).is_some_and(|size| size < small);
     let lights = scene.lights.iter().enumerate();
-    let wanted = lights.filter(|(_, light)| light.is_sampled() && light.sends_photons() && is_small(light));
-    wanted.map(|(id, _)| id).collect()
+    let wanted = lights.filter(|(_, light)| light.is_sampled() && sends(light, &openings) && is_small(light));
+    (wanted.map(|(id, _)| id).collect(), openings)
+}
+
+/// Whether a light can send photons, a sky also through openings.
+fn sends<S>(light: &Light<S>, openings: &[Opening]) -> bool {
+    light.sends_photons() || (!openings.is_empty() && light.sends_photons_through_openings())
+}
+
+/// The openings at which bounces are aimed, where all are seen under less than a solid angle.
+fn openings(world: &World, places: &[DVec3], small: f64) -> Vec<Opening> {
+    let openings = world.openings();
+    if of_openings(&openings, places).is_some_and(|size| size < small) { openings } else { Vec::new() }
+}
+
+/// Under which solid angle all openings are seen from half of some places or more.
+fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
+    let from = |place: &DVec3| openings.iter().map(|opening| opening.solid_angle_from(*place)).sum();
+    median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
+}
+
+fn median(mut angles: Vec<f64>) -> Option<f64> {
+    angles.sort_by(f64::total_cmp);
+    angles.get(angles.len() / 2).copied()
 }
 
 /// Some of the places, so that all of them can be held against all lights.
@@ -339,6 +344,7 @@ fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
             Light::Point(_) => "a point".into(),
             Light::Spot(_) => "a spot".into(),
             Light::Sun(_) => "the sun".into(),
+            Light::Environment(environment) if environment.bright().is_none() => "the sky through openings".into(),
             Light::Environment(_) => "what is bright in the image of the sky".into(),
         };
         if size > 0.0 { format!("{name} (solid angle {size:.1e} sr)") } else { name }
@@ -369,21 +375,22 @@ fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
 }
 
 /// Under which solid angle, in steradians, a light is seen from half of some places or more, by the part of it that can
-/// be seen and is bright; none of one that fills the sky.
-fn solid_angle<S>(light: &Light<S>, places: &[DVec3]) -> Option<f64> {
+/// be seen and is bright or, of a sky that fills it all, by openings; none of one that is seen without them.
+fn solid_angle<S>(light: &Light<S>, openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),
         Light::Sun(sun) => Some(sun.solid_angle()),
-        Light::Environment(environment) => environment.bright().map(|bright| bright.solid_angle()),
+        Light::Environment(environment) => {
+            let bright = environment.bright().map(|bright| bright.solid_angle());
+            bright.or_else(|| of_openings(openings, places).filter(|_| light.sends_photons_through_openings()))
+        }
         Light::Area(area) => {
             let (ball, size) = area.visible_part()?;
             let from = |place: &DVec3| {
                 let distance_squared = (ball.center - *place).length_squared();
                 area.bright_share() * (TAU * ball.cone_from(*place).one_minus_cos).min(size / distance_squared)
             };
-            let mut angles: Vec<f64> = places.iter().map(from).collect();
-            angles.sort_by(f64::total_cmp);
-            angles.get(angles.len() / 2).copied()
+            median(places.iter().map(from).collect())
         }
     }
 }

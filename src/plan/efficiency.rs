@@ -83,7 +83,9 @@ impl<'a> TargetObjects<'a> {
         let blurred = if self.spread > 0.0 { size / (size + self.spread) } else { 1.0 };
         let factor = match light {
             Light::Area(area) => area.brightness() * blurred,
-            Light::Environment(environment) => environment.bright()?.radiance() * blurred,
+            Light::Environment(environment) => {
+                environment.bright().map_or(environment.mean(), |bright| bright.radiance()) * blurred
+            }
             Light::Sun(sun) if sun.angular_diameter > 0.0 => sun.radiance_factor() * blurred,
             _ if self.spread == 0.0 => return None,
             Light::Sun(_) => 1.0 / self.spread,

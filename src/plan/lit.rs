@@ -1,11 +1,14 @@
 //! How the light of a scene is found.
 
+use std::borrow::Cow;
+
 use super::between::{IndirectMethod, between};
 use super::caustics::{self, CausticChoice};
 use super::photon_map;
+use crate::light::Light;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, World};
+use crate::trace::{LightPass, Smoothness, World, room_light};
 
 /// A world with all that finds its light.
 pub(super) struct LitWorld {
@@ -17,12 +20,12 @@ pub(super) struct LitWorld {
 
 impl LitWorld {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let CausticChoice { caustics, why, settled, only_sky, guided } = caustics::caustics(scene, unlit);
+        let seen = with_openings(scene, unlit);
+        let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, &seen);
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
-        let (light_pass, why_gathered) = photon_map::with_map(scene, unlit, shown.as_ref(), settled);
+        let (light_pass, why_gathered) = photon_map::with_map(scene, &seen, shown.as_ref(), settled);
         // Why nothing is shown matters only where nothing is gathered either.
-        let is_told = shown.is_some() || light_pass.is_none();
-        let why = if is_told { why } else { Vec::new() };
+        let why = if shown.is_some() || light_pass.is_none() { why } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
         let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
         let way = between(unlit.with_light_pass(light_pass), photons);
@@ -34,9 +37,15 @@ impl LitWorld {
         }
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
         let left = caustics::without_end(scene, &world);
-        let of_sky = (only_sky && is_told).then(|| caustics::of_sky(&world));
-        let because =
-            reason.into_iter().chain(left).chain(why).chain(of_sky).chain(why_gathered).chain(reasons).collect();
+        let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
         Self { world, because, guided }
     }
+}
+
+/// The world with bounces that are aimed at openings of a room, where a sky might send photons through some.
+fn with_openings<'a>(scene: &Scene<Curve>, unlit: &'a World) -> Cow<'a, World> {
+    let may_send = scene.lights.iter().any(Light::sends_photons_through_openings)
+        && !caustics::targets(scene, &Smoothness::ALL).is_empty();
+    let openings = if may_send { room_light(unlit).openings } else { None };
+    openings.map_or(Cow::Borrowed(unlit), |openings| Cow::Owned(unlit.with_bright(Some(openings))))
 }

@@ -58,11 +58,10 @@ pub(super) fn with_map(
         MapPasses { count: count as u32, photons: (all / count).ceil() as u64, radius, chance: 1.0 }
     };
     let map = passes(PHOTONS, OF_A_PASS);
-    let pass = shown.cloned().unwrap_or_else(|| LightPass {
-        photons: (PHOTONS * samples).ceil() as u64,
-        lights: small_lights(unguided, &places, SMALL),
-        to: vec![Smoothness::Whole],
-        map: None,
+    let pass = shown.cloned().unwrap_or_else(|| {
+        let (lights, openings) = small_lights(unguided, &places, SMALL);
+        let photons = (PHOTONS * samples).ceil() as u64;
+        LightPass { photons, lights, openings, to: vec![Smoothness::Whole], map: None }
     });
     if pass.lights.is_empty() {
         return as_shown();

@@ -3,7 +3,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::{BrightPlaces, SampleDensity, Smoothness, SunlitPlaces};
-use crate::light::LightId;
+use crate::light::{LightId, Opening};
 use crate::spectrum::Basis;
 
 /// How to render, as plain data: what the plan decides and the tracer obeys.
@@ -112,9 +112,11 @@ pub struct Stop {
 pub struct LightPass {
     /// How many, about.
     pub photons: u64,
-    /// The lights that send them: points, spots, suns, what is bright in an image of the sky, and finite `emissive`
-    /// surfaces.
+    /// The lights that send them: points, spots, suns, what is bright in an image of the sky, skies through openings,
+    /// and finite `emissive` surfaces.
     pub lights: Vec<LightId>,
+    /// Openings of a room through which skies among these lights send all their light.
+    pub openings: Vec<Opening>,
     /// How smooth the objects are that they are sent to.
     pub to: Vec<Smoothness>,
     /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and

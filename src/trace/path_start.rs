@@ -38,7 +38,7 @@ pub(super) enum PathStart {
     /// Wherever the light leaves it.
     Anywhere,
     /// In a beam from the sky.
-    Beam(SkyBeam),
+    Beam(Box<SkyBeam>),
 }
 
 impl PathStart {
@@ -49,7 +49,7 @@ impl PathStart {
             return Self::Anywhere;
         }
         let beam = || SkyBeam::new(scene, sunlit.iter().find(|sunlit| sunlit.light == id)?);
-        beam().map_or(Self::Nowhere, Self::Beam)
+        beam().map_or(Self::Nowhere, |beam| Self::Beam(Box::new(beam)))
     }
 
     /// The flux of the paths, per emission, about; 0 where there are none.
@@ -76,8 +76,8 @@ impl PathStart {
         match self {
             Self::Nowhere => false,
             Self::Anywhere => true,
-            Self::Beam(SkyBeam { beam, .. }) => {
-                light.sends_photons_from(ray.direction) && beam.place_in_disc(ray.origin, ray.direction).is_some()
+            Self::Beam(from) => {
+                light.sends_photons_from(ray.direction) && from.beam.place_in_disc(ray.origin, ray.direction).is_some()
             }
         }
     }

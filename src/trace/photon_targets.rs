@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::LightPass;
 use super::guide::Guide;
 use super::photon_focus::{FocusBall, FocusPlace, Smoothness, parts, reach};
-use crate::light::{Beam, LeSample, LightId};
+use crate::light::{Beam, LeSample, LightId, Opening};
 use crate::math::{DVec3, Ray, neighbors};
 use crate::scene::Scene;
 use crate::shape::Ball;
@@ -60,14 +61,13 @@ const EVENLY: f64 = 0.1;
 const MIRRORED: f64 = 0.05;
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, to all objects of some kinds of smoothness, of large ones mostly
-    /// to places that matter; none if there is none, or none of the lights shines there.
+    /// Of a pass, from some lights, given with their luminances, to all objects of some kinds of smoothness, of large
+    /// ones mostly to places that matter; none if there is none, or none of the lights shines there.
     pub(super) fn new(
         scene: &Scene<Table>,
         lights: &[(LightId, f64)],
         places: &[FocusPlace],
-        to: &[Smoothness],
-        photons: u64,
+        LightPass { openings, to, photons, .. }: &LightPass,
     ) -> Option<Self> {
         let reach = reach(places);
         let of_object = |object: usize| {
@@ -89,11 +89,11 @@ impl PhotonTargets {
             balls.into_iter().map(|(smooth, ball)| (smooth, ball, parts(places, smooth, &ball, most))).collect();
         let guides = [Guide::even(), Guide::disc()].map(Arc::new);
         let targets: Vec<_> =
-            lights.iter().flat_map(|light| of_light(scene, light.0, light.1, &wholes, &guides)).collect();
+            lights.iter().flat_map(|light| of_light(scene, light, openings, &wholes, &guides)).collect();
         let mut lights = vec![false; scene.lights.len()];
         targets.iter().for_each(|target| lights[target.light] = true);
         let world = ball_around_all(scene).into_iter().chain(reach).reduce(Ball::around)?;
-        let mut targets = Self { targets, lights, objects, reach, world, photons };
+        let mut targets = Self { targets, lights, objects, reach, world, photons: *photons };
         targets.share_out();
         (!targets.targets.is_empty()).then_some(targets)
     }
@@ -179,6 +179,17 @@ impl PhotonTargets {
         self.share_out();
     }
 
+    /// Whether photons of a light start along the line of a ray that leads to it.
+    pub(super) fn start_along(&self, scene: &Scene<Table>, light: LightId, ray: &Ray) -> bool {
+        let source = &scene.lights[light];
+        if !self.lights[light] || source.sends_photons_from(ray.direction) {
+            return self.lights[light];
+        }
+        let sample = LeSample { ray: Ray { direction: -ray.direction, ..*ray }, factor: 1.0, surface: None };
+        let starts = |target: &PhotonTarget| source.pdf_le(&target.beam, &sample, |uv| target.guide.density(uv)) > 0.0;
+        self.targets.iter().any(|target| target.light == light && target.beam.opening.is_some() && starts(target))
+    }
+
     /// The start of a photon of a target for a place that its guide has drawn and two random numbers; none where the
     /// light does not shine.
     ///
@@ -204,17 +215,18 @@ impl PhotonTargets {
     }
 }
 
-/// The targets of a light with a luminance: each ball, followed by its parts. Photons start by one of two guides, the
-/// even one or, toward what is apart from the light, the disc.
+/// The targets of a light with a luminance: each ball, followed by its parts; of a sky, the same through each opening.
+/// Photons start by one of two guides, the even one or, toward what is apart from the light, the disc.
 fn of_light(
     scene: &Scene<Table>,
-    light: LightId,
-    luminance: f64,
+    &(light, luminance): &(LightId, f64),
+    openings: &[Opening],
     wholes: &[(Smoothness, Ball, Vec<FocusBall>)],
     [even, disc]: &[Arc<Guide>; 2],
 ) -> Vec<PhotonTarget> {
-    let target = |smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
-        let beam = scene.lights[light].beam(ball)?;
+    let target = |through: Option<&Opening>, smoothness: Smoothness, ball: &Ball, share: f64, is_part: bool| {
+        let source = &scene.lights[light];
+        let beam = through.map_or_else(|| source.beam(ball), |opening| source.beam_through(opening, ball))?;
         let goes_on = match smoothness {
             Smoothness::Whole | Smoothness::Narrow => 1.0,
             Smoothness::Partial | Smoothness::NarrowPartial => MIRRORED,
@@ -224,11 +236,13 @@ fn of_light(
         (flux > 0.0).then_some(PhotonTarget { light, smoothness, photons: 0, share, is_part, beam, guide, flux })
     };
     let mut targets = Vec::new();
-    for (smooth, ball, parts) in wholes {
-        let share = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
-        if let Some(whole) = target(*smooth, ball, share, false) {
-            targets.push(whole);
-            targets.extend(parts.iter().filter_map(|part| target(*smooth, &part.ball, part.share, true)));
+    for through in std::iter::once(None).chain(openings.iter().map(Some)) {
+        for (smooth, ball, parts) in wholes {
+            let share = 1.0 - parts.iter().map(|part| part.share).sum::<f64>();
+            if let Some(whole) = target(through, *smooth, ball, share, false) {
+                targets.push(whole);
+                targets.extend(parts.iter().filter_map(|part| target(through, *smooth, &part.ball, part.share, true)));
+            }
         }
     }
     targets

@@ -1,6 +1,6 @@
 use std::sync::{Arc, OnceLock};
 
-use super::bright::{Bright, BrightPlaces};
+use super::bright::{Bright, BrightPlace, BrightPlaces};
 use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::layers::Layers;
@@ -9,7 +9,7 @@ use super::path_start::{PathStart, SunlitPlaces};
 use super::photon_focus::places;
 use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Polarizing, Transport};
-use crate::light::{Light, LightId, LightSampler};
+use crate::light::{Light, LightId, LightSampler, Opening};
 use crate::material::Lobes;
 use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, Scene, Visibility};
@@ -206,11 +206,13 @@ impl World {
     fn choose_photon_targets(&mut self) {
         (self.photon_targets, self.map_targets) = (None, None);
         let Some(pass) = &self.method.light_pass else { return };
-        let sends = |&light: &LightId| self.scene.lights[light].sends_photons();
-        let senders: Vec<LightId> = pass.lights.iter().copied().filter(sends).collect();
-        let places = places(&self.scene, &senders, &pass.to);
+        let through = |light: &Light<Table>| !pass.openings.is_empty() && light.sends_photons_through_openings();
+        let sends = |light: &Light<Table>| light.sends_photons() || through(light);
+        let senders: Vec<LightId> = pass.lights.iter().copied().filter(|&id| sends(&self.scene.lights[id])).collect();
+        let places = places(&self.scene, &senders, pass);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
-        let targets_of = |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, &pass.to, photons);
+        let targets_of =
+            |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, &LightPass { photons, ..pass.clone() });
         let map = pass.map.and_then(|map| targets_of(map.photons));
         (self.photon_targets, self.map_targets) = (targets_of(pass.photons), map);
     }
@@ -329,6 +331,12 @@ impl World {
         lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
     }
 
+    /// The openings at which bounces are aimed.
+    pub fn openings(&self) -> Vec<Opening> {
+        let places = self.method.bright.iter().filter(|bright| bright.are_openings).flat_map(|bright| &bright.places);
+        places.map(|&BrightPlace { center, half, .. }| Opening { center, half }).collect()
+    }
+
     /// Whether photons are sent to a place on an object.
     pub(super) fn is_photon_target(&self, object: u32, place: DVec3) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.include(&self.scene, object, place))
@@ -351,7 +359,7 @@ impl World {
 
     /// Whether photons bring the light of a ray that meets a light.
     pub(super) fn is_found_by_photons(&self, light: LightId, ray: &Ray) -> bool {
-        self.sends_photons(light) && self.scene.lights[light].sends_photons_from(ray.direction)
+        self.photon_targets.as_ref().is_some_and(|targets| targets.start_along(&self.scene, light, ray))
     }
 }
 

@@ -47,6 +47,7 @@ fn films(
     let light_pass = pass.then_some(LightPass {
         photons: u64::from(samples) * (SIDE * SIDE) as u64,
         lights,
+        openings: Vec::new(),
         to: Smoothness::ALL.to_vec(),
         map,
     });

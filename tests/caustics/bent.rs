@@ -62,7 +62,8 @@ impl Seen {
     }
 
     fn assert_photons_bring(&self, Beam { toward, sheets }: &Beam) {
-        let photons = LightPass { photons: 1000, lights: vec![0], to: Smoothness::ALL.to_vec(), map: None };
+        let photons =
+            LightPass { photons: 1000, lights: vec![0], openings: Vec::new(), to: Smoothness::ALL.to_vec(), map: None };
         let expected = self.stokes(&(sheets.clone() + &sun(*toward)), None);
         let found = self.stokes(&(sheets.clone() + &mirrored(*toward)), Some(&photons));
         let what = format!("{} seen by {}, from {toward}", self.material, self.camera);

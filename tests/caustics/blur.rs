@@ -48,6 +48,7 @@ fn moved(x: f64, y: f64, radius: f64) -> f64 {
 fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) -> Vec<(Film, Report)> {
     let (scene, method) = with_method(text);
     let light_pass = Some(LightPass {
+        openings: Vec::new(),
         photons: 8192,
         lights: (0..scene.lights.len()).collect(),
         to: vec![Smoothness::Whole],

@@ -56,7 +56,13 @@ fn what_a_varnished_floor_mirrors_of_a_spot_has_its_closed_form() {
             "{:?}",
             planned.because
         );
-        let pass = LightPass { photons: 65_536, lights: vec![0], to: Smoothness::ALL.to_vec(), map: None };
+        let pass = LightPass {
+            photons: 65_536,
+            lights: vec![0],
+            openings: Vec::new(),
+            to: Smoothness::ALL.to_vec(),
+            map: None,
+        };
         let method = Method { samples: 1, transport: SPLITTING, light_pass: Some(pass), ..planned.method };
         let films = films_of(&scene, &method, 0..SEEDS);
         let (found, variance) = moments(films.iter().map(|film| mean_color(film)[1]));
@@ -139,7 +145,7 @@ fn photons_to_glass_alone_leave_varnish_to_chance() {
     let planned = plan(&scene).method;
     let by = |coats: bool, photons: u64| {
         let to = if coats { vec![Smoothness::Whole, Smoothness::Partial] } else { vec![Smoothness::Whole] };
-        let light_pass = Some(LightPass { photons, lights: vec![0], to, map: None });
+        let light_pass = Some(LightPass { photons, lights: vec![0], openings: Vec::new(), to, map: None });
         let method = Method { samples: 32, transport: SPLITTING, light_pass, ..planned.clone() };
         moments(films_of(&scene, &method, 0..16).iter().map(|film| mean_color(film)[1]))
     };

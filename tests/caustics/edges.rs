@@ -135,8 +135,13 @@ fn k5_a_thin_table_that_is_lit_from_below_does_not_glow_above() {
     let table = object("matte", "cube = { center = [-0.2, 0, 0], size = [2, 1e-4, 2] }");
     let seen = |height: f64| {
         let scene = scene(&by_mirror(&table, height));
-        let light_pass =
-            Some(LightPass { photons: 32_768, lights: vec![0], to: vec![Smoothness::Whole], map: Some(WIDE) });
+        let light_pass = Some(LightPass {
+            photons: 32_768,
+            lights: vec![0],
+            openings: Vec::new(),
+            to: vec![Smoothness::Whole],
+            map: Some(WIDE),
+        });
         let method = Method { samples: 4, transport: SPLITTING, light_pass, ..plan(&scene).method };
         mean_color(&film_of(&scene, method))[1]
     };

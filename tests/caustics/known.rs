@@ -11,8 +11,13 @@ use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene};
 /// The method of a scene's plan with all lights and so many photons.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
-    let light_pass =
-        Some(LightPass { photons, lights: (0..scene.lights.len()).collect(), to: vec![Smoothness::Whole], map: None });
+    let light_pass = Some(LightPass {
+        photons,
+        lights: (0..scene.lights.len()).collect(),
+        to: vec![Smoothness::Whole],
+        map: None,
+        openings: Vec::new(),
+    });
     let method = Method { samples, transport: SPLITTING, light_pass, ..plan(&scene).method };
     film_of(&scene, method)
 }

@@ -56,7 +56,13 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
     for in_a_mirror in [false, true] {
         let scene = scene(&two_plates(in_a_mirror));
         let map = in_a_mirror.then_some(MapPasses { count: 2, photons: 50_000, radius: 1.0, chance: 1.0 });
-        let light_pass = Some(LightPass { photons: 200_000, lights: vec![0], to: vec![Smoothness::Whole], map });
+        let light_pass = Some(LightPass {
+            photons: 200_000,
+            lights: vec![0],
+            openings: Vec::new(),
+            to: vec![Smoothness::Whole],
+            map,
+        });
         let planned = plan(&scene);
         let method =
             Method { samples: 4, transport: SPLITTING, diffuse_bounces: 1, light_pass, ..planned.method.clone() };

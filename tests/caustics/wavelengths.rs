@@ -20,6 +20,7 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
             let light_pass = map.map(|map| LightPass {
                 photons: 4096,
                 lights: vec![1],
+                openings: Vec::new(),
                 to: vec![Smoothness::Whole],
                 map: Some(map),
             });

@@ -199,7 +199,13 @@ fn photons_are_spread_by_the_filter_with_its_sign() {
              [[light]]\npoint = {{ position = [1, 2.4, 0], intensity = 5 }}\n"
         ));
         scene.format.layers = vec![Layer::Caustics];
-        let light_pass = Some(LightPass { photons: 20_000, lights: vec![0], to: vec![Smoothness::Whole], map: None });
+        let light_pass = Some(LightPass {
+            photons: 20_000,
+            lights: vec![0],
+            openings: Vec::new(),
+            to: vec![Smoothness::Whole],
+            map: None,
+        });
         let method = Method { samples: 4, light_pass, ..plan(&scene).method };
         let film = film_of(&scene, method);
         film.layers[0].channel(1).map(f64::from).collect::<Vec<f64>>()

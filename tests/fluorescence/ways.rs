@@ -77,7 +77,8 @@ fn photons_excite_dyes_where_they_are_shown_and_where_they_are_gathered() {
     for dye in [YELLOW, BRIGHTENER] {
         for gathered in [false, true] {
             let map = gathered.then_some(MapPasses { count: 2, photons: 40_000, radius: 1.0, chance: 1.0 });
-            let pass = LightPass { photons: 200_000, lights: vec![0], to: vec![Smoothness::Whole], map };
+            let pass =
+                LightPass { photons: 200_000, lights: vec![0], openings: Vec::new(), to: vec![Smoothness::Whole], map };
             let straight = mean(&films(&paper(&dye, false, gathered), lanes, None));
             let what = format!("{}, gathered {gathered}", dye.name);
             agree(mean(&films(&paper(&dye, true, gathered), lanes, Some(pass.clone()))), straight, &what);

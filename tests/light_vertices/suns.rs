@@ -150,6 +150,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
     let map = LightPass {
         photons: 8192,
         lights: vec![0],
+        openings: Vec::new(),
         to: Smoothness::ALL.to_vec(),
         map: Some(MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 }),
     };
@@ -221,8 +222,13 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
     ];
     for (what, text, lights, map) in &rooms {
         let photons = |method: &mut Method| {
-            method.light_pass =
-                Some(LightPass { photons: 8192, lights: lights.clone(), to: Smoothness::ALL.to_vec(), map: *map });
+            method.light_pass = Some(LightPass {
+                photons: 8192,
+                lights: lights.clone(),
+                openings: Vec::new(),
+                to: Smoothness::ALL.to_vec(),
+                map: *map,
+            });
         };
         let worst = assert_same(what, text, &photons, &looking, rooms.len());
         println!("{what}: at most {worst:.1} sigma");

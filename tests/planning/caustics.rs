@@ -112,7 +112,8 @@ fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
         + &body("mirror", "mirror = { reflectance = 1 }", &[&quad(4.0, 1.0, -1.0)])
         + "[[light]]\nspot = { position = [0, 0, 2], toward = [0, 0, 1], cone_angle = 20, intensity = 9 }\n";
     let scene = scene(&text);
-    let pass = LightPass { photons: 1 << 20, lights: vec![0], to: vec![Smoothness::Whole], map: None };
+    let pass =
+        LightPass { photons: 1 << 20, lights: vec![0], openings: Vec::new(), to: vec![Smoothness::Whole], map: None };
     let world = World::new(&scene, method(&scene, SPLITTING)).with_light_pass(Some(pass));
     // Those that are sent beside the spot's cone follow none.
     let photons = photons_within(&world, 4096.0);

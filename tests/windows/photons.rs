@@ -31,7 +31,13 @@ fn mean(text: &str, light_pass: bool, map: bool) -> Mean {
     let scene = scene(text);
     let map = map.then_some(MapPasses { count: 4, photons: 20_000, radius: 1.0, chance: 1.0 });
     let lights = (0..scene.lights.len()).collect();
-    let light_pass = light_pass.then_some(LightPass { photons: 60_000, lights, to: vec![Smoothness::Whole], map });
+    let light_pass = light_pass.then_some(LightPass {
+        photons: 60_000,
+        lights,
+        openings: Vec::new(),
+        to: vec![Smoothness::Whole],
+        map,
+    });
     let asked = Method { light_pass, samples: 64, ..method(&scene, SPLITTING) };
     Mean::over_seeds(&films_of(&scene, &asked, 0..8))
 }

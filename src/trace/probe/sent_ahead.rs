@@ -148,6 +148,7 @@ mod tests {
         World::new(&scene, method).with_light_pass(Some(LightPass {
             photons,
             lights: vec![0],
+            openings: Vec::new(),
             to: vec![Smoothness::Whole],
             map: None,
         }))

@@ -1,0 +1,149 @@
+use std::f64::consts::{PI, TAU};
+
+use serde::{Deserialize, Serialize};
+
+use crate::math::{Cone, DVec3, Frame, Ray, cosine_about, disk_in_square, square_around_disk};
+use crate::shape::Ball;
+
+/// How one light sends photons to a ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Beam {
+    /// What they are sent to.
+    pub ball: Ball,
+    /// Of a light that is a point: the directions that photons take.
+    pub cone: Cone,
+    /// Of a sky: the opening through which they come, if it is one.
+    pub opening: Option<Opening>,
+    /// The flux that it sends to the ball or into the cone, per emission, about.
+    pub flux: f64,
+    /// Whether the light is apart from the ball, so that a place of the unit square stands for a way to it.
+    pub is_apart: bool,
+}
+
+impl Beam {
+    /// Of light that comes from far away, with an irradiance for its emission.
+    pub(super) fn from_sky(ball: &Ball, irradiance: f64) -> Self {
+        let flux = irradiance * PI * ball.radius * ball.radius;
+        Self { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart: true }
+    }
+
+    /// Of a sky's light that comes through an opening, with a mean radiance for its emission.
+    pub(super) fn through(opening: &Opening, ball: &Ball, radiance: f64) -> Self {
+        let TowardBall { from, normal, .. } = opening.toward(ball, opening.center);
+        let cone = ball.cone_from(from);
+        let seen = if cone.is_all() { PI } else { TAU * cone.one_minus_cos * cone.axis.dot(normal).abs() };
+        let flux = radiance * opening.area() * seen;
+        let [u, v] = opening.half;
+        let is_apart = (ball.center - from).length() > ball.radius + (u.length_squared() + v.length_squared()).sqrt();
+        Self { ball: *ball, cone: Cone::ALL, opening: Some(*opening), flux, is_apart }
+    }
+
+    /// The ray of a photon from a unit vector toward the sky, through a disc across the ball; none beside the disc.
+    pub(super) fn ray_from_sky(ball: &Ball, toward: DVec3, guide_uv: [f64; 2]) -> Option<Ray> {
+        let [x, y] = disk_in_square(guide_uv)?;
+        let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
+        Some(Ray { origin, direction: -toward })
+    }
+
+    /// Where the way from a point along a unit vector toward the sky runs through the disc across the ball, as a place
+    /// of the unit square; none beside it.
+    pub(crate) fn place_in_disc(&self, from: DVec3, toward: DVec3) -> Option<[f64; 2]> {
+        let local = Frame::about(toward).to_local(from - self.ball.center) / self.ball.radius;
+        square_around_disk([local.x, local.y])
+    }
+
+    /// How densely the ray of a photon from the sky is drawn from places of a density of their own: per unit of area
+    /// across its way, and through an opening per steradian as well; 0 of one that does not lead to the ball.
+    pub(super) fn pdf_from_sky(&self, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        if let Some(opening) = &self.opening {
+            return opening.pdf(&self.ball, ray, guide);
+        }
+        let radius = self.ball.radius;
+        self.place_in_disc(ray.origin, -ray.direction).map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
+    }
+}
+
+/// A rectangle through which the light of a sky comes into a room.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Opening {
+    /// Its middle.
+    pub center: DVec3,
+    /// Half edges at right angles.
+    pub half: [DVec3; 2],
+}
+
+impl Opening {
+    fn area(&self) -> f64 {
+        let [u, v] = self.half;
+        4.0 * u.cross(v).length()
+    }
+
+    /// The solid angle in steradians under which it is seen from a point, about.
+    pub fn solid_angle_from(&self, point: DVec3) -> f64 {
+        let ([u, v], way) = (self.half, self.center - point);
+        let squared = way.length_squared();
+        (4.0 * u.cross(v).dot(way).abs() / (squared * squared.sqrt())).min(TAU)
+    }
+
+    fn toward<'a>(&self, ball: &'a Ball, from: DVec3) -> TowardBall<'a> {
+        let [u, v] = self.half;
+        TowardBall { ball, from, normal: u.cross(v).normalize(), front: 0.5 }
+    }
+
+    /// The ray of a photon from one of its points toward a ball.
+    pub(super) fn ray(&self, ball: &Ball, guide_uv: [f64; 2], [a, b]: [f64; 2]) -> Option<Ray> {
+        let [u, v] = self.half;
+        let origin = self.center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0);
+        Some(Ray { origin, direction: self.toward(ball, origin).sample(guide_uv)? })
+    }
+
+    /// How densely `ray` draws the line of a ray, per unit of area across it and steradian.
+    fn pdf(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let Some(from) = self.crossing(ray) else { return 0.0 };
+        let toward = self.toward(ball, from);
+        toward.pdf(ray.direction, guide) / (self.area() * toward.normal.dot(ray.direction).abs())
+    }
+
+    /// Where the line of a ray, before its origin and behind it, crosses the opening.
+    fn crossing(&self, ray: &Ray) -> Option<DVec3> {
+        let [u, v] = self.half;
+        let across = u.cross(v);
+        let t = across.dot(self.center - ray.origin) / across.dot(ray.direction);
+        let place = ray.at(t) - self.center;
+        let is_within = |half: DVec3| place.dot(half).abs() <= half.length_squared();
+        (is_within(u) && is_within(v)).then(|| ray.at(t))
+    }
+}
+
+/// How a photon leaves a point of a surface toward a ball: in the cone that the ball fills or, from inside of it, by
+/// the cosine to the unit normal.
+pub(super) struct TowardBall<'a> {
+    pub(super) ball: &'a Ball,
+    pub(super) from: DVec3,
+    pub(super) normal: DVec3,
+    /// From inside, how often it leaves on the side of the normal.
+    pub(super) front: f64,
+}
+
+impl TowardBall<'_> {
+    /// The direction for a place of the unit square.
+    pub(super) fn sample(&self, [a, b]: [f64; 2]) -> Option<DVec3> {
+        let (front, cone) = (self.front, self.ball.cone_from(self.from));
+        if !cone.is_all() {
+            return cone.sample([a, b]);
+        }
+        let (side, a) = if a < front { (self.normal, a / front) } else { (-self.normal, (a - front) / (1.0 - front)) };
+        Some(cosine_about(side, [a, b]))
+    }
+
+    /// Density per steradian with which `sample` draws a direction from places of a density of their own.
+    pub(super) fn pdf(&self, direction: DVec3, guide: impl Fn([f64; 2]) -> f64) -> f64 {
+        let cone = self.ball.cone_from(self.from);
+        if !cone.is_all() {
+            return cone.pdf(direction, guide);
+        }
+        let cos = self.normal.dot(direction);
+        let side = if cos > 0.0 { self.front } else { 1.0 - self.front };
+        side * cos.abs() / PI
+    }
+}
