@@ -274,7 +274,7 @@ fn rooms() -> Vec<(&'static str, String)> {
 
 /// A world with light vertices, where there is light that can be followed.
 fn looking(world: &World) -> World {
-    with_light_vertices(world).unwrap_or_else(|| world.clone())
+    with_light_vertices(world, &[]).unwrap_or_else(|| world.clone())
 }
 
 /// How many times as long an equal error takes without light vertices.
@@ -432,8 +432,8 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
     for (what, text) in &scenes {
         let scene = scene(text);
         let world = prepare(&scene, Method { samples: 4, ..method(&scene, SPLITTING) });
-        assert!(with_light_vertices(&world).is_none(), "{what}");
-        let forced = world.with_light_vertices(Vec::new());
+        assert!(with_light_vertices(&world, &[]).is_none(), "{what}");
+        let forced = world.with_light_vertices(Vec::new(), Vec::new());
         assert!(render(&forced, &|_| ()).0 == render(&world, &|_| ()).0, "{what}: it is another film");
     }
 }

@@ -1,7 +1,6 @@
 use std::f64::consts::{PI, TAU};
 
-use serde::{Deserialize, Serialize};
-
+use super::Opening;
 use crate::math::{Cone, DVec3, Frame, Ray, cosine_about, disk_in_square, square_around_disk};
 use crate::shape::Ball;
 
@@ -56,62 +55,10 @@ impl Beam {
     /// across its way, and through an opening per steradian as well; 0 of one that does not lead to the ball.
     pub(super) fn pdf_from_sky(&self, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         if let Some(opening) = &self.opening {
-            return opening.pdf(&self.ball, ray, guide);
+            return opening.pdf_toward(&self.ball, ray, guide);
         }
         let radius = self.ball.radius;
         self.place_in_disc(ray.origin, -ray.direction).map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
-    }
-}
-
-/// A rectangle through which the light of a sky comes into a room.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Opening {
-    /// Its middle.
-    pub center: DVec3,
-    /// Half edges at right angles.
-    pub half: [DVec3; 2],
-}
-
-impl Opening {
-    fn area(&self) -> f64 {
-        let [u, v] = self.half;
-        4.0 * u.cross(v).length()
-    }
-
-    /// The solid angle in steradians under which it is seen from a point, about.
-    pub fn solid_angle_from(&self, point: DVec3) -> f64 {
-        let ([u, v], way) = (self.half, self.center - point);
-        let squared = way.length_squared();
-        (4.0 * u.cross(v).dot(way).abs() / (squared * squared.sqrt())).min(TAU)
-    }
-
-    fn toward<'a>(&self, ball: &'a Ball, from: DVec3) -> TowardBall<'a> {
-        let [u, v] = self.half;
-        TowardBall { ball, from, normal: u.cross(v).normalize(), front: 0.5 }
-    }
-
-    /// The ray of a photon from one of its points toward a ball.
-    pub(super) fn ray(&self, ball: &Ball, guide_uv: [f64; 2], [a, b]: [f64; 2]) -> Option<Ray> {
-        let [u, v] = self.half;
-        let origin = self.center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0);
-        Some(Ray { origin, direction: self.toward(ball, origin).sample(guide_uv)? })
-    }
-
-    /// How densely `ray` draws the line of a ray, per unit of area across it and steradian.
-    fn pdf(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
-        let Some(from) = self.crossing(ray) else { return 0.0 };
-        let toward = self.toward(ball, from);
-        toward.pdf(ray.direction, guide) / (self.area() * toward.normal.dot(ray.direction).abs())
-    }
-
-    /// Where the line of a ray, before its origin and behind it, crosses the opening.
-    fn crossing(&self, ray: &Ray) -> Option<DVec3> {
-        let [u, v] = self.half;
-        let across = u.cross(v);
-        let t = across.dot(self.center - ray.origin) / across.dot(ray.direction);
-        let place = ray.at(t) - self.center;
-        let is_within = |half: DVec3| place.dot(half).abs() <= half.length_squared();
-        (is_within(u) && is_within(v)).then(|| ray.at(t))
     }
 }
 

@@ -144,7 +144,7 @@ impl<S> Environment<S> {
             let ray = Beam::ray_from_sky(&beam.ball, direction, guide_uv)?;
             return Some(LeSample { ray, factor: 1.0 / pdf, surface: None });
         };
-        let ray = opening.ray(&beam.ball, guide_uv, u)?;
+        let ray = opening.ray_toward(&beam.ball, guide_uv, u)?;
         (!self.is_bright(-ray.direction)).then_some(LeSample { ray, factor: 1.0, surface: None })
     }
 

@@ -118,6 +118,11 @@ impl<S> Light<S> {
         matches!(self, Self::Environment(environment) if environment.polarization.is_none())
     }
 
+    /// The mean radiance of a sky, per emission; 0 of other lights.
+    pub fn mean_radiance(&self) -> f64 {
+        if let Self::Environment(environment) = self { environment.mean() } else { 0.0 }
+    }
+
     /// Whether photons bring what it sends along a direction toward it, if it sends any, wherever that way leads.
     pub fn sends_photons_from(&self, direction: DVec3) -> bool {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }

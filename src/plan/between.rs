@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use super::words::as_long;
-use crate::light::Light;
+use crate::light::{Light, Opening};
 use crate::spectrum::Table;
 use crate::trace::{
     BrightPlaces, PhotonWorth, PilotNoise, RoomLight, World, light_paths_reach, pilot_noise, room_light,
@@ -31,13 +31,18 @@ pub(super) struct IndirectMethod<'a> {
 pub(super) fn between(world: World, photons: &[PhotonWorth]) -> IndirectMethod<'_> {
     let plain = IndirectMethod { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
     let light = room_light(&plain.world);
-    if let RoomLight { openings: Some(openings), is_rare: true, .. } = light {
-        let aimed = plain.aimed_at_rare(openings);
-        return aimed.with_light_vertices().unwrap_or(aimed);
+    let openings = light.openings.as_ref().map_or(Vec::new(), BrightPlaces::openings);
+    if let RoomLight { openings: Some(places), is_rare: true, .. } = light {
+        let aimed = plain.aimed_at_rare(places);
+        return aimed.with_light_vertices(&openings).unwrap_or(aimed);
     }
     let aimed = plain.aimed(light);
-    let looking = plain.with_light_vertices();
-    let both = looking.as_ref().and_then(|looking| looking.aimed(room_light(&looking.world)));
+    let looking = plain.with_light_vertices(&openings);
+    let both = match (&looking, &aimed) {
+        (Some(looking), _) => looking.aimed(room_light(&looking.world)),
+        (None, Some(aimed)) => aimed.with_light_vertices(&openings),
+        (None, None) => None,
+    };
     let others = [looking, both, aimed].into_iter().flatten();
     others.fold(plain, |best, other| if other.gain > best.gain { other } else { best })
 }
@@ -67,15 +72,15 @@ impl IndirectMethod<'_> {
         })
     }
 
-    /// With light vertices. Their paths know no dyes.
-    fn with_light_vertices(&self) -> Option<Self> {
+    /// With light vertices, those of skies by paths through some openings. Their paths know no dyes.
+    fn with_light_vertices(&self, openings: &[Opening]) -> Option<Self> {
         if self.world.samples_of_the_format() < LARGE
             || self.world.method().diffuse_bounces == 0
             || self.world.fluoresces()
         {
             return None;
         }
-        let with_vertices = with_light_vertices(&self.world).filter(light_paths_reach)?;
+        let with_vertices = with_light_vertices(&self.world, openings).filter(light_paths_reach)?;
         self.improved(with_vertices, |world, without| {
             let light = carried(world);
             format!("{light} is looked for at light vertices; without them, {without}")
@@ -122,9 +127,12 @@ fn carried(world: &World) -> String {
     let of_some = |is_kind: &dyn Fn(&Light<Table>) -> bool| {
         world.method().sunlit.iter().any(|sunlit| is_kind(&lights[sunlit.light]))
     };
+    let is_sky = |light: &Light<Table>| light.sends_photons_through_openings();
+    let of_openings = !world.method().openings.is_empty() && lights.iter().any(is_sky);
     let kinds = [
         ("suns", of_some(&|light| matches!(light, Light::Sun(_)))),
         ("what is bright in the image of the sky", of_some(&|light| matches!(light, Light::Environment(_)))),
+        ("the sky through openings", of_openings),
         ("lamps", lights.iter().any(|light| !light.is_infinite())),
     ];
     let kinds: Vec<&str> = kinds.into_iter().filter(|kind| kind.1).map(|kind| kind.0).collect();

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::light::Opening;
 use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Density, Quad, Shape};
 
@@ -51,6 +52,18 @@ pub struct BrightPlaces {
     pub elsewhere: f64,
     /// Whether they are openings to the sky.
     pub are_openings: bool,
+}
+
+impl BrightPlaces {
+    /// Those that are openings, seen from inside.
+    pub fn openings(&self) -> Vec<Opening> {
+        let into = self.within.center();
+        let opening = |&BrightPlace { center, half: [u, v], .. }: &BrightPlace| {
+            let half = if u.cross(v).dot(into - center) < 0.0 { [v, u] } else { [u, v] };
+            Opening { center, half }
+        };
+        self.places.iter().filter(|_| self.are_openings).map(opening).collect()
+    }
 }
 
 /// A place, ready to be aimed at.

@@ -36,6 +36,8 @@ pub struct Method {
     /// Where paths from suns, and from what is bright in an image of the sky, start for that; light of others is left
     /// to the camera's paths.
     pub sunlit: Vec<SunlitPlaces>,
+    /// Openings through which paths from skies start for that.
+    pub openings: Vec<Opening>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
 }
@@ -73,6 +75,7 @@ impl Method {
             bright: None,
             light_vertices: false,
             sunlit: Vec::new(),
+            openings: Vec::new(),
             polarization: Polarizing::Averaged,
         }
     }

@@ -2,8 +2,8 @@
 //!
 //! Those of lamps start anywhere on them. Those of a sun, or of what is bright in an image of the sky, start toward the
 //! places in its light that paths from the camera find: on a disc across that light, densest where such places lie
-//! behind. Light beside the disc is left to paths from the camera: of every ray to the sun it is known whether it runs
-//! through the disc.
+//! behind. All other light of a sky starts through openings of a room. Light beside the disc and the openings is left
+//! to paths from the camera: of every ray to the sun or the sky it is known whether it runs through them.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::guide::Guide;
 use super::photon_targets::{ball_around_all, started_outside};
-use crate::light::{Beam, LeSample, Light, LightId};
+use crate::light::{Beam, LeSample, Light, LightId, Opening};
 use crate::math::{DVec3, Ray};
 use crate::scene::Scene;
 use crate::shape::Ball;
@@ -37,19 +37,18 @@ pub(super) enum PathStart {
     Nowhere,
     /// Wherever the light leaves it.
     Anywhere,
-    /// In a beam from the sky.
-    Beam(Box<SkyBeam>),
+    /// From a sun or a sky.
+    Sky(Box<SkyStart>),
 }
 
 impl PathStart {
-    /// Of one light, where places in the light of some are known.
-    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces]) -> Self {
+    /// Of one light, where places in the light of some are known, and openings of a room.
+    pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
             return Self::Anywhere;
         }
-        let beam = || SkyBeam::new(scene, sunlit.iter().find(|sunlit| sunlit.light == id)?);
-        beam().map_or(Self::Nowhere, |beam| Self::Beam(Box::new(beam)))
+        SkyStart::new(scene, id, sunlit, openings).map_or(Self::Nowhere, |start| Self::Sky(Box::new(start)))
     }
 
     /// The flux of the paths, per emission, about; 0 where there are none.
@@ -57,7 +56,7 @@ impl PathStart {
         match self {
             Self::Nowhere => 0.0,
             Self::Anywhere => light.flux(),
-            Self::Beam(beam) => beam.flux,
+            Self::Sky(start) => start.of_beam() + start.of_openings,
         }
     }
 
@@ -67,7 +66,7 @@ impl PathStart {
         match self {
             Self::Nowhere => None,
             Self::Anywhere => light.emit(u),
-            Self::Beam(beam) => beam.emit(scene, light, u),
+            Self::Sky(start) => start.emit(scene, light, u),
         }
     }
 
@@ -76,40 +75,85 @@ impl PathStart {
         match self {
             Self::Nowhere => false,
             Self::Anywhere => true,
-            Self::Beam(from) => {
-                light.sends_photons_from(ray.direction) && from.beam.place_in_disc(ray.origin, ray.direction).is_some()
-            }
+            Self::Sky(start) => start.covers(light, ray),
         }
     }
 }
 
 /// Paths from a sun or a sky, ready to be started.
 #[derive(Clone, Debug)]
-pub(super) struct SkyBeam {
-    beam: Beam,
-    guide: Guide,
-    /// The flux that is worth sending, per emission: to about the area in which light was found.
-    flux: f64,
+pub(super) struct SkyStart {
+    /// Those of a sun, or of what is bright in an image of the sky.
+    beam: Option<SkyBeam>,
+    /// Those of all else of a sky ..
+    openings: Vec<Opening>,
+    /// .. with their flux per emission, about.
+    of_openings: f64,
     /// A ball around all that is finite.
     world: Ball,
 }
 
+/// A beam, and where in it paths start.
+#[derive(Clone, Debug)]
+struct SkyBeam {
+    beam: Beam,
+    guide: Guide,
+    /// The flux that is worth sending, per emission: to about the area in which light was found.
+    flux: f64,
+}
+
+impl SkyStart {
+    /// None where no light was found and no opening, or the light does not come from far away.
+    fn new(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Option<Self> {
+        let light = scene.lights.get(id).filter(|light| light.is_infinite())?;
+        let sunlit = sunlit.iter().find(|sunlit| sunlit.light == id);
+        let beam = sunlit.and_then(|sunlit| SkyBeam::new(light, sunlit));
+        let openings = if light.sends_photons_through_openings() { openings.to_vec() } else { Vec::new() };
+        let of_openings = light.mean_radiance() * PI * openings.iter().map(Opening::area).sum::<f64>();
+        let start = Self { beam, openings, of_openings, world: ball_around_all(scene)? };
+        (start.of_beam() + of_openings > 0.0).then_some(start)
+    }
+
+    fn of_beam(&self) -> f64 {
+        self.beam.as_ref().map_or(0.0, |beam| beam.flux)
+    }
+
+    fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, [a, b, c, d]: [f64; 4]) -> Option<LeSample> {
+        let share = self.of_beam() / (self.of_beam() + self.of_openings);
+        let (sample, chance) = match &self.beam {
+            Some(beam) if c < share => (beam.emit(light, [a, b, c / share, d])?, share),
+            _ => {
+                let (ray, pdf) = Opening::ray_through(&self.openings, [a, b, (c - share) / (1.0 - share), d])?;
+                let is_sent = !light.sends_photons_from(-ray.direction);
+                (LeSample { ray, factor: 1.0 / pdf, surface: None }, if is_sent { 1.0 - share } else { 0.0 })
+            }
+        };
+        let (ray, factor) = (started_outside(scene, &self.world, &sample.ray), sample.factor / chance);
+        factor.is_finite().then_some(LeSample { ray, factor, ..sample })
+    }
+
+    fn covers(&self, light: &Light<Table>, ray: &Ray) -> bool {
+        if light.sends_photons_from(ray.direction) {
+            return self.beam.as_ref().is_some_and(|of| of.beam.place_in_disc(ray.origin, ray.direction).is_some());
+        }
+        let back = Ray { direction: -ray.direction, ..*ray };
+        self.openings.iter().any(|opening| opening.is_entered_by(&back))
+    }
+}
+
 impl SkyBeam {
-    /// None where no light was found, or the light does not come from far away.
-    fn new(scene: &Scene<Table>, sunlit: &SunlitPlaces) -> Option<Self> {
-        let light = scene.lights.get(sunlit.light).filter(|light| light.is_infinite())?;
+    /// None where no light was found.
+    fn new(light: &Light<Table>, sunlit: &SunlitPlaces) -> Option<Self> {
         let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
-        let world = ball_around_all(scene)?;
         let guide = Guide::weighted(&sunlit.cells);
         // The disc is a part of the square of the guide.
         let flux = guide.extent() * (4.0 / PI) * beam.flux;
-        (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux, world })
+        (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux })
     }
 
-    fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
+    fn emit(&self, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
         let sample = light.sample_le(&self.beam, self.guide.sample([u[0], u[1]]), [u[2], u[3]])?;
         let factor = sample.factor / light.pdf_le(&self.beam, &sample, |place| self.guide.density(place));
-        let ray = started_outside(scene, &self.world, &sample.ray);
-        factor.is_finite().then_some(LeSample { ray, factor, ..sample })
+        Some(LeSample { factor, ..sample })
     }
 }

@@ -1,6 +1,6 @@
 use std::sync::{Arc, OnceLock};
 
-use super::bright::{Bright, BrightPlace, BrightPlaces};
+use super::bright::{Bright, BrightPlaces};
 use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::layers::Layers;
@@ -91,7 +91,7 @@ impl World {
         let light_sampler = LightSampler::new(&scene.lights);
         let sampled_lights = light_sampler.lights();
         let bright = method.bright.as_ref().map(Bright::new);
-        let path_starts = if method.light_vertices { path_starts(&scene, &method.sunlit) } else { Arc::new([]) };
+        let path_starts = if method.light_vertices { path_starts(&scene, &method) } else { Arc::new([]) };
         let mut world = Self {
             waves: method.basis.waves(),
             layers,
@@ -150,11 +150,12 @@ impl World {
         world
     }
 
-    /// This world with light vertices, for which paths from suns start where some places in their light are.
-    pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>) -> Self {
+    /// This world with light vertices, for which paths from suns start where some places in their light are, and those
+    /// from skies through some openings.
+    pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: Vec<Opening>) -> Self {
         let mut world = self.clone();
-        world.path_starts = path_starts(&world.scene, &sunlit);
-        (world.method.light_vertices, world.method.sunlit) = (true, sunlit);
+        world.method = Method { light_vertices: true, sunlit, openings, ..world.method };
+        world.path_starts = path_starts(&world.scene, &world.method);
         world
     }
 
@@ -333,8 +334,7 @@ impl World {
 
     /// The openings at which bounces are aimed.
     pub fn openings(&self) -> Vec<Opening> {
-        let places = self.method.bright.iter().filter(|bright| bright.are_openings).flat_map(|bright| &bright.places);
-        places.map(|&BrightPlace { center, half, .. }| Opening { center, half }).collect()
+        self.method.bright.as_ref().map_or(Vec::new(), BrightPlaces::openings)
     }
 
     /// Whether photons are sent to a place on an object.
@@ -364,6 +364,6 @@ impl World {
 }
 
 /// How paths of each light start.
-fn path_starts(scene: &Scene<Table>, sunlit: &[SunlitPlaces]) -> Arc<[PathStart]> {
-    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, sunlit)).collect()
+fn path_starts(scene: &Scene<Table>, method: &Method) -> Arc<[PathStart]> {
+    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings)).collect()
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::brightness::bounces;
 use super::clusters::bounds_of_most;
-use crate::light::LightId;
+use crate::light::{LightId, Opening};
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::RayEnds;
 use crate::shape::Ball;
@@ -27,10 +27,10 @@ const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7375_6e73;
 
-/// The world with light vertices; none where there is no light that can be followed forward, or they would spoil the
-/// layer of a faint lamp.
-pub fn with_light_vertices(world: &World) -> Option<World> {
-    let world = can_be_followed(world).then(|| world.with_light_vertices(sunlit_places(world)))?;
+/// The world with light vertices, those of skies by paths through some openings; none where there is no light that can
+/// be followed forward, or they would spoil the layer of a faint lamp.
+pub fn with_light_vertices(world: &World, openings: &[Opening]) -> Option<World> {
+    let world = can_be_followed(world).then(|| world.with_light_vertices(sunlit_places(world), openings.to_vec()))?;
     LightPaths::new(&world, world.method.seed).is_some_and(|paths| !paths.starve_a_layer()).then_some(world)
 }
 
