@@ -14,5 +14,6 @@ mod known;
 mod large;
 mod materials;
 mod nearly_smooth;
+mod openings;
 mod polarization;
 mod wavelengths;

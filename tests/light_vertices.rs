@@ -5,13 +5,14 @@
 //! cargo test --test all light_vertices::
 //! ```
 
+mod openings;
 mod suns;
 
 use std::f64::consts::PI;
 
 use abbe::film::{Film, Layer};
 use abbe::plan::plan;
-use abbe::trace::{Effort, Method, World, pilot_noise, prepare, render, with_light_vertices};
+use abbe::trace::{Effort, Method, SkyOpenings, World, pilot_noise, prepare, render, with_light_vertices};
 
 use crate::support::larger::larger;
 use crate::support::scenes::{
@@ -274,7 +275,7 @@ fn rooms() -> Vec<(&'static str, String)> {
 
 /// A world with light vertices, where there is light that can be followed.
 fn looking(world: &World) -> World {
-    with_light_vertices(world, &[]).unwrap_or_else(|| world.clone())
+    with_light_vertices(world, &SkyOpenings::default()).unwrap_or_else(|| world.clone())
 }
 
 /// How many times as long an equal error takes without light vertices.
@@ -432,8 +433,8 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
     for (what, text) in &scenes {
         let scene = scene(text);
         let world = prepare(&scene, Method { samples: 4, ..method(&scene, SPLITTING) });
-        assert!(with_light_vertices(&world, &[]).is_none(), "{what}");
-        let forced = world.with_light_vertices(Vec::new(), Vec::new());
+        assert!(with_light_vertices(&world, &SkyOpenings::default()).is_none(), "{what}");
+        let forced = world.with_light_vertices(Vec::new(), SkyOpenings::default());
         assert!(render(&forced, &|_| ()).0 == render(&world, &|_| ()).0, "{what}: it is another film");
     }
 }

@@ -3,10 +3,10 @@
 use std::cell::OnceCell;
 
 use super::words::as_long;
-use crate::light::{Light, Opening};
+use crate::light::Light;
 use crate::spectrum::Table;
 use crate::trace::{
-    BrightPlaces, PhotonWorth, PilotNoise, RoomLight, World, light_paths_reach, pilot_noise, room_light,
+    BrightPlaces, PhotonWorth, PilotNoise, RoomLight, SkyOpenings, World, light_paths_reach, pilot_noise, room_light,
     with_light_vertices,
 };
 
@@ -31,7 +31,7 @@ pub(super) struct IndirectMethod<'a> {
 pub(super) fn between(world: World, photons: &[PhotonWorth]) -> IndirectMethod<'_> {
     let plain = IndirectMethod { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
     let light = room_light(&plain.world);
-    let openings = light.openings.as_ref().map_or(Vec::new(), BrightPlaces::openings);
+    let openings = light.openings.as_ref().map(BrightPlaces::openings).unwrap_or_default();
     if let RoomLight { openings: Some(places), is_rare: true, .. } = light {
         let aimed = plain.aimed_at_rare(places);
         return aimed.with_light_vertices(&openings).unwrap_or(aimed);
@@ -73,7 +73,7 @@ impl IndirectMethod<'_> {
     }
 
     /// With light vertices, those of skies by paths through some openings. Their paths know no dyes.
-    fn with_light_vertices(&self, openings: &[Opening]) -> Option<Self> {
+    fn with_light_vertices(&self, openings: &SkyOpenings) -> Option<Self> {
         if self.world.samples_of_the_format() < LARGE
             || self.world.method().diffuse_bounces == 0
             || self.world.fluoresces()
@@ -128,7 +128,7 @@ fn carried(world: &World) -> String {
         world.method().sunlit.iter().any(|sunlit| is_kind(&lights[sunlit.light]))
     };
     let is_sky = |light: &Light<Table>| light.sends_photons_through_openings();
-    let of_openings = !world.method().openings.is_empty() && lights.iter().any(is_sky);
+    let of_openings = !world.method().openings.openings.is_empty() && lights.iter().any(is_sky);
     let kinds = [
         ("suns", of_some(&|light| matches!(light, Light::Sun(_)))),
         ("what is bright in the image of the sky", of_some(&|light| matches!(light, Light::Environment(_)))),

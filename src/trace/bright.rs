@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use super::path_start::SkyOpenings;
 use crate::light::Opening;
 use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Density, Quad, Shape};
@@ -50,19 +51,22 @@ pub struct BrightPlaces {
     pub places: Vec<BrightPlace>,
     /// Root of the mean square of the radiance from elsewhere.
     pub elsewhere: f64,
+    /// The share of the sky's light that bounces found elsewhere.
+    pub missed: f64,
     /// Whether they are openings to the sky.
     pub are_openings: bool,
 }
 
 impl BrightPlaces {
-    /// Those that are openings, seen from inside.
-    pub fn openings(&self) -> Vec<Opening> {
+    /// Those that are openings.
+    pub fn openings(&self) -> SkyOpenings {
         let into = self.within.center();
         let opening = |&BrightPlace { center, half: [u, v], .. }: &BrightPlace| {
             let half = if u.cross(v).dot(into - center) < 0.0 { [v, u] } else { [u, v] };
             Opening { center, half }
         };
-        self.places.iter().filter(|_| self.are_openings).map(opening).collect()
+        let openings = self.places.iter().filter(|_| self.are_openings).map(opening).collect();
+        SkyOpenings { openings, missed: self.missed }
     }
 }
 
@@ -213,7 +217,7 @@ mod tests {
             place([1.0, 1.0, 1.0], [0.2, 0.1, 0.0], [-0.05, 0.1, 0.3], 5.0),
         ];
         let within = Bounds { min: DVec3::splat(-3.0), max: DVec3::splat(3.0) };
-        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05, are_openings: false })
+        Bright::new(&BrightPlaces { within, places, elsewhere: 0.05, missed: 0.0, are_openings: false })
     }
 
     const ROWS: usize = 12;

@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BrightPlaces, SampleDensity, Smoothness, SunlitPlaces};
+use super::{BrightPlaces, SampleDensity, SkyOpenings, Smoothness, SunlitPlaces};
 use crate::light::{LightId, Opening};
 use crate::spectrum::Basis;
 
@@ -37,7 +37,7 @@ pub struct Method {
     /// to the camera's paths.
     pub sunlit: Vec<SunlitPlaces>,
     /// Openings through which paths from skies start for that.
-    pub openings: Vec<Opening>,
+    pub openings: SkyOpenings,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
 }
@@ -75,7 +75,7 @@ impl Method {
             bright: None,
             light_vertices: false,
             sunlit: Vec::new(),
-            openings: Vec::new(),
+            openings: SkyOpenings::default(),
             polarization: Polarizing::Averaged,
         }
     }

@@ -30,6 +30,15 @@ pub struct SunlitPlaces {
     pub cells: Vec<(u32, f32)>,
 }
 
+/// Openings of a room through which paths from skies start.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SkyOpenings {
+    /// The openings.
+    pub openings: Vec<Opening>,
+    /// The share of the skies' light in the room that comes by other ways, about, 0 to 1.
+    pub missed: f64,
+}
+
 /// How paths of a light start.
 #[derive(Clone, Debug)]
 pub(super) enum PathStart {
@@ -67,6 +76,18 @@ impl PathStart {
             Self::Nowhere => None,
             Self::Anywhere => light.emit(u),
             Self::Sky(start) => start.emit(scene, light, u),
+        }
+    }
+
+    /// Whether paths start with all light that may matter, but for what comes beside a beam or openings.
+    pub(super) fn finds_most(&self, light: &Light<Table>) -> bool {
+        match self {
+            Self::Nowhere => false,
+            Self::Anywhere => true,
+            Self::Sky(start) => {
+                (start.beam.is_some() || !light.sends_photons())
+                    && (!start.openings.is_empty() || !light.sends_photons_through_openings())
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
-use super::path_start::{PathStart, SunlitPlaces};
+use super::path_start::{PathStart, SkyOpenings, SunlitPlaces};
 use super::photon_focus::places;
 use super::photon_targets::PhotonTargets;
 use super::{LightPass, Method, Polarizing, Transport};
@@ -152,7 +152,7 @@ impl World {
 
     /// This world with light vertices, for which paths from suns start where some places in their light are, and those
     /// from skies through some openings.
-    pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: Vec<Opening>) -> Self {
+    pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: SkyOpenings) -> Self {
         let mut world = self.clone();
         world.method = Method { light_vertices: true, sunlit, openings, ..world.method };
         world.path_starts = path_starts(&world.scene, &world.method);
@@ -334,7 +334,7 @@ impl World {
 
     /// The openings at which bounces are aimed.
     pub fn openings(&self) -> Vec<Opening> {
-        self.method.bright.as_ref().map_or(Vec::new(), BrightPlaces::openings)
+        self.method.bright.as_ref().map_or(Vec::new(), |bright| bright.openings().openings)
     }
 
     /// Whether photons are sent to a place on an object.
@@ -352,9 +352,9 @@ impl World {
         self.map_targets.is_some()
     }
 
-    /// Whether a light sends photons.
-    pub(super) fn sends_photons(&self, light: LightId) -> bool {
-        self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
+    /// Whether light paths for light vertices start along a ray that meets a light.
+    pub(super) fn is_found_by_light_paths(&self, light: LightId, ray: &Ray) -> bool {
+        self.path_starts.get(light).is_some_and(|start| start.covers(&self.scene.lights[light], ray))
     }
 
     /// Whether photons bring the light of a ray that meets a light.
@@ -365,5 +365,5 @@ impl World {
 
 /// How paths of each light start.
 fn path_starts(scene: &Scene<Table>, method: &Method) -> Arc<[PathStart]> {
-    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings)).collect()
+    (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings.openings)).collect()
 }

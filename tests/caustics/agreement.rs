@@ -44,13 +44,11 @@ fn films(
     seeds: u64,
 ) -> Vec<Film> {
     let lights = (0..scene.lights.len()).collect();
-    let light_pass = pass.then_some(LightPass {
-        photons: u64::from(samples) * (SIDE * SIDE) as u64,
-        lights,
-        openings: Vec::new(),
-        to: Smoothness::ALL.to_vec(),
-        map,
-    });
+    // Bounces are aimed at openings through which photons are sent.
+    let openings = method.bright.as_ref().map_or(Vec::new(), |bright| bright.openings().openings);
+    let photons = u64::from(samples) * (SIDE * SIDE) as u64;
+    let to = Smoothness::ALL.to_vec();
+    let light_pass = pass.then_some(LightPass { photons, lights, openings, to, map });
     let asked = Method { samples, transport: SPLITTING, light_pass, ..method.clone() };
     films_of(scene, &asked, 0..seeds)
 }
@@ -80,9 +78,13 @@ pub fn agree(what: &str, text: &str, samples: u32) {
 /// Compares all blocks of some samples with the light pass, which may have a map, and of others without it: more of the
 /// noisier, so that the difference is told best in the least time.
 pub fn agree_with(what: &str, text: &str, samples: [u32; 2], map: Option<MapPasses>) {
-    let planned = with_method(text);
-    let with = blocks(&planned, true, map, samples[0]);
-    let without = blocks(&planned, false, None, samples[1]);
+    agree_of(what, &with_method(text), samples, map);
+}
+
+/// The same of a scene by a method.
+pub fn agree_of(what: &str, planned: &(Scene<Curve>, Method), samples: [u32; 2], map: Option<MapPasses>) {
+    let with = blocks(planned, true, map, samples[0]);
+    let without = blocks(planned, false, None, samples[1]);
     // Means of 16 films have the tails of Student's t with 30 degrees of freedom: 1.25 times those of the normal one so
     // far out.
     let limit = 1.25 * standard_errors(with.len());
@@ -108,7 +110,7 @@ pub fn agree_with(what: &str, text: &str, samples: [u32; 2], map: Option<MapPass
     assert!(worst < limit, "{what}: {worst} standard errors apart");
     // Bands of a block move together, so the sum of all has a few times the error of independent ones.
     assert!(whole.abs() < 3.0 * 3.0_f64.sqrt(), "{what}: the whole is {whole} standard errors apart");
-    let [shown, hidden] = [true, false].map(|pass| films(&planned, pass, map.filter(|_| pass), samples[0], 1));
+    let [shown, hidden] = [true, false].map(|pass| films(planned, pass, map.filter(|_| pass), samples[0], 1));
     assert!(shown[0].pixels != hidden[0].pixels, "{what}: the light pass did nothing");
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
-use abbe::trace::{LightPass, MapPasses, Method, Smoothness, SunlitPlaces, World};
+use abbe::trace::{LightPass, MapPasses, Method, SkyOpenings, Smoothness, SunlitPlaces, World};
 
 use super::{LAMP, SEEDS, WHITE, assert_same, assert_shows, ball, films, lamp, looking, room, screen, smooth, walls};
 use crate::support::scenes::{body, environment, quad, scene, view};
@@ -114,7 +114,7 @@ fn paths_may_start_in_any_part_of_a_suns_light() {
     for (what, center, radius, cell) in parts {
         let cells = cell.map(|cell| (cell, 1.0)).into_iter().collect();
         let sunlit = SunlitPlaces { light: 0, center: DVec3::from(center), radius, cells };
-        let part = |world: &World| world.with_light_vertices(vec![sunlit.clone()], Vec::new());
+        let part = |world: &World| world.with_light_vertices(vec![sunlit.clone()], SkyOpenings::default());
         if what == "nothing" {
             let [plain, looked] =
                 [None, Some(&part as &dyn Fn(&World) -> World)].map(|with| films(&text, &|_| (), with, 1));
@@ -144,7 +144,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
     );
     let part = |cells: Vec<(u32, f32)>, center: [f64; 3], radius: f64| {
         let sunlit = SunlitPlaces { light: 0, center: DVec3::from(center), radius, cells };
-        move |world: &World| world.with_light_vertices(vec![sunlit.clone()], Vec::new())
+        move |world: &World| world.with_light_vertices(vec![sunlit.clone()], SkyOpenings::default())
     };
     let with = |more: &[String]| open("", &[std::slice::from_ref(&sky), more].concat());
     let map = LightPass {

@@ -64,7 +64,7 @@ fn places(list: &[Listed]) -> BrightPlaces {
         BrightPlace { center, half, radiance }
     };
     let within = Bounds { min: DVec3::new(-2.1, -0.1, -2.6), max: DVec3::new(2.1, 3.1, 2.6) };
-    BrightPlaces { within, places: list.iter().map(place).collect(), elsewhere: 0.05, are_openings: false }
+    BrightPlaces { within, places: list.iter().map(place).collect(), elsewhere: 0.05, missed: 0.0, are_openings: false }
 }
 
 /// Sum of the variances of all pixels.

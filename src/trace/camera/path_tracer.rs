@@ -444,18 +444,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         let chance = vertices.complement((surface_hit.point.position - scatter.from).length_squared());
         let u = sampler.four_plain(path.key, numbers::COMPLEMENT);
         let ends = u[0] >= chance;
-        if !vertices.carry_all() {
-            path.resampled |= ends;
-            return ends;
-        }
         if !ends {
             return false;
         }
-        let goes_on = if self.walker.audit.is_some() { 1.0 } else { ACCOUNTED };
+        let rest = vertices.rest();
+        let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest.unwrap_or(ACCOUNTED) };
         // A pilot that looks on wants to know of light alone.
-        let is_asked = self.walker.world.method.has_limits() && self.sensor.observer.is_none();
+        let is_asked = rest.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());
         if is_asked && u[1] < goes_on {
-            (path.resampled, path.unlit) = (true, true);
+            (path.resampled, path.unlit) = (true, rest.is_none());
             path.throughput = path.throughput.scaled(1.0 / goes_on);
         } else {
             self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));

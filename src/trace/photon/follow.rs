@@ -4,13 +4,13 @@ use std::f64::consts::PI;
 
 use crate::light::{LeSample, LightId};
 use crate::material::{Branch, Lobes, Scatter, ScatterContext};
-use crate::math::{DVec3, Frame, Sampler, cosine_hemisphere, unit};
+use crate::math::{DVec3, Frame, Ray, Sampler, cosine_hemisphere, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
+use crate::trace::World;
 use crate::trace::walk::{
     Interaction, OutgoingPath, PassThrough, Path, PathKind, Polarization, Polarized, Walker, shading,
 };
-use crate::trace::{Smoothness, World};
 
 /// The branch of what passes holes, beyond those that a material may have.
 const BEYOND: usize = 64;
@@ -33,6 +33,24 @@ pub struct Photon<'a, const N: usize> {
     pub over: Surfaces,
     /// Whether it is of the first half of those sent with it.
     pub early: bool,
+}
+
+impl<const N: usize> Photon<'_, N> {
+    /// Whether photons of the light pass bring the light that starts along its way.
+    pub fn is_left_to_pass(&self, world: &World) -> bool {
+        world.is_found_by_photons(self.light, &self.toward_light())
+    }
+
+    /// Whether light paths for light vertices bring it.
+    fn is_found_by_light_paths(&self, world: &World) -> bool {
+        world.is_found_by_light_paths(self.light, &self.toward_light())
+    }
+
+    /// The ray back along its way.
+    fn toward_light(&self) -> Ray {
+        let Ray { origin, direction } = self.emitted.ray;
+        Ray { origin, direction: -direction }
+    }
 }
 
 /// Where a photon lands, and the light's way there.
@@ -63,8 +81,6 @@ pub enum Surfaces {
     Smooth,
     /// All.
     All,
-    /// All, but light that smooth surfaces of an object send on to which its photons are sent is left to those.
-    AllButPhotons,
 }
 
 /// Follows a photon over surfaces; `land` is told where it lands on those that scatter widely.
@@ -76,7 +92,8 @@ pub fn follow_photon<const N: usize, P: Polarization<N>>(
     photon: &Photon<N>,
     land: &mut dyn FnMut(&Walker<N, P>, &PhotonHit<N, P>),
 ) {
-    let path = Path::from_light(walker.world, photon.draw, photon.emitted.ray, photon.light);
+    let mut path = Path::from_light(walker.world, photon.draw, photon.emitted.ray, photon.light);
+    path.resampled = photon.is_found_by_light_paths(walker.world);
     *walker.pending.add(|| path) = path;
     while let Some(mut path) = walker.pending.take() {
         advance(walker, &mut path, photon, land);
@@ -107,11 +124,10 @@ fn advance<const N: usize, P: Polarization<N>>(
     let is_smooth = is_first || path.kind == PathKind::Other;
     let is_target = is_smooth && world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
     // Whether gathered photons bring what smooth lobes send on.
-    let is_left = is_target && over != Surfaces::Smooth && world.has_map() && world.sends_photons(photon.light);
+    let is_left = is_target && over != Surfaces::Smooth && world.has_map() && photon.is_left_to_pass(world);
     match over {
         Surfaces::Smooth if is_first && !is_target => return,
-        Surfaces::AllButPhotons if is_left && leaves_all(world, surface_hit.hit.object) => return,
-        Surfaces::All | Surfaces::AllButPhotons if is_first && !is_target => path.kind = PathKind::Wide,
+        Surfaces::All if is_first && !is_target => path.kind = PathKind::Wide,
         _ => {}
     }
     let boundary = match walker.boundary(path, &surface_hit) {
@@ -119,8 +135,11 @@ fn advance<const N: usize, P: Polarization<N>>(
         Err(hidden) => return walker.go_on_past(path, &surface_hit, &hidden),
     };
     path.vertices += 1;
-    if over != Surfaces::Smooth && world.ends_light_paths(surface_hit.hit.object) {
-        return;
+    if world.ends_light_paths(surface_hit.hit.object) {
+        if over == Surfaces::All {
+            return;
+        }
+        path.resampled = false;
     }
     let at = Interaction::new(world, draw, &path.arriving(), &surface_hit, boundary);
     if over != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden > 0 || !at.lobes.is_diffuse()) {
@@ -137,23 +156,16 @@ fn advance<const N: usize, P: Polarization<N>>(
     let goes_on = path.surfaces() < world.method.max_bounces;
     let is_narrow = at.lobes.is_narrow() || (is_first && at.lobes.has_narrow_apart());
     let tells_narrow = is_target && is_narrow && (over == Surfaces::Smooth || is_left);
-    if tells_narrow && goes_on && over != Surfaces::AllButPhotons {
+    if tells_narrow && goes_on {
         let path = Path { key: path.key.child(BY_NARROW), ..*path };
         scatter(walker, &path, &at.of_lobes(Lobes::NARROW), sampler);
     }
     if over == Surfaces::Smooth || !at.lobes.is_wide() {
         bounce(walker, path, at, sampler);
     } else if allowed && goes_on {
-        let delta = if is_left && over == Surfaces::AllButPhotons { Lobes::DELTA } else { Lobes::NONE };
         let narrow = if tells_narrow { Lobes::NARROW } else { Lobes::NONE };
-        scatter(walker, path, &at.of_lobes(Lobes::ALL.without(delta.union(narrow))), sampler);
+        scatter(walker, path, &at.of_lobes(Lobes::ALL.without(narrow)), sampler);
     }
-}
-
-/// Whether all light that goes on from an object is left to photons that are sent there.
-fn leaves_all(world: &World, object: u32) -> bool {
-    let smoothness = Smoothness::of(&world.scene, object as usize);
-    matches!(smoothness, Some(Smoothness::Whole | Smoothness::Narrow))
 }
 
 /// Lets a photon go straight on, and answers whether it does not meet the surface as well. One that carries little does

@@ -310,7 +310,9 @@ impl GatherSurface<'_> {
         photon: &StoredPhoton<T, L>,
     ) -> Option<f64> {
         let short = path.surfaces() + photon.surfaces - 1 <= self.world.method.max_bounces;
-        if !short || photon.crosses != self.crosses || !self.goes_on(position, photon.flat, photon.front) {
+        // Where a path was to find light at light vertices, those bring what surfaces send on.
+        let is_found = path.resampled && photon.is_resampled;
+        if !short || is_found || photon.crosses != self.crosses || !self.goes_on(position, photon.flat, photon.front) {
             return None;
         }
         let (way, squared_radius) = (position - self.position, self.radius * self.radius);

@@ -19,7 +19,7 @@ use crate::math::{BranchKey, DVec3, Distribution, Sampler, seed_of};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 use crate::trace::parallel::in_parallel;
-use crate::trace::path_start::PathStart;
+use crate::trace::path_start::{PathStart, SkyOpenings};
 use crate::trace::stats::Stats;
 use crate::trace::walk::{PathKind, Polarization, Polarized, Walker};
 use crate::trace::width::in_lanes;
@@ -51,6 +51,12 @@ const PHOTON_SEED: u64 = 0x6169_6d65;
 /// Uses of a light path's random numbers: where it starts, and of which light.
 const START: u32 = 0;
 const LIGHT: u32 = 1;
+
+/// Where light paths of skies through openings find all but a share of the light, paths from the camera that look for
+/// the rest go on with the root of so many times that share, and as often as this at least. What is found so rarely
+/// is about ten times as noisy as what light vertices bring, and noise for the time is least for the root of the ratio.
+const SPIKES: f64 = 10.0;
+const LEAST_ON: f64 = 1.0 / 8.0;
 
 /// Fewest paths of a pilot that reach what is seen: of a largest set, as many as a smallest one has.
 const REACHING: usize = (OF_A_PILOT * FEWEST / MOST) as usize;
@@ -89,8 +95,8 @@ pub struct LightPaths<'a> {
     /// Of their random numbers.
     seed: u64,
     by_flux: Distribution,
-    /// Whether all light is theirs.
-    finds_all: bool,
+    /// How likely paths from the camera go on for light that is not theirs; none where all is.
+    rest: Option<f64>,
     places: Vec<DiffusePlace>,
     /// The middle of vertices, and D.
     scale: OnceLock<(DVec3, f64)>,
@@ -105,11 +111,17 @@ impl<'a> LightPaths<'a> {
         let starts = || world.path_starts.iter().zip(&world.scene.lights);
         let flux = |(id, (start, light)): (LightId, (&PathStart, &Light<_>))| start.flux(light) * world.luminance(id);
         let by_flux = Distribution::new(starts().enumerate().map(flux));
-        let starts_anywhere = world.path_starts.iter().all(|start| matches!(start, PathStart::Anywhere));
         let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
-        let finds_all = starts_anywhere && ends_nowhere;
+        let find_all = starts().all(|(start, _)| matches!(start, PathStart::Anywhere));
+        let find_most = starts().all(|(start, light)| start.finds_most(light));
+        let SkyOpenings { openings, missed } = &world.method.openings;
+        let rest = match ends_nowhere {
+            true if find_all => None,
+            true if find_most && !openings.is_empty() => Some((SPIKES * missed).sqrt().clamp(LEAST_ON, 1.0)),
+            _ => Some(1.0),
+        };
         let places = places(world);
-        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, finds_all, places, scale: OnceLock::new() })
+        (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, rest, places, scale: OnceLock::new() })
     }
 
     /// Whether a layer of lights is asked for whose paths would be so few that it would be too bright or too dark as a
@@ -181,8 +193,7 @@ impl<'a> LightPaths<'a> {
             }
         }
         let (center, near) = *self.scale.get_or_init(|| self.scale::<N, P>());
-        let starts = (!self.finds_all).then(|| self.world.path_starts.clone());
-        LightVertices::dealt(vertices, center, near, starts, stats, |vertices| self.powers(vertices))
+        LightVertices::dealt(vertices, center, near, self.rest, stats, |vertices| self.powers(vertices))
     }
 
     /// The middle of vertices, and D, by light paths of their own: weights by a D that depends on the vertices that
@@ -217,7 +228,7 @@ impl<'a> LightPaths<'a> {
         let world = self.world;
         let mut walker = Walker::<N, P>::new(world, PHOTONS);
         let draw = world.method.basis.draw(0.0);
-        let over = if self.finds_all || !world.has_map() { Surfaces::All } else { Surfaces::AllButPhotons };
+        let over = Surfaces::All;
         let mut vertices = Vec::new();
         for number in paths {
             let sampler = self.sampler(set, number as u32);
@@ -254,7 +265,7 @@ fn kept<const N: usize, P>(world: &World, photon_hit: &PhotonHit<N, P>, is_of_ph
     let Material::Diffuse(diffuse) = at.material else { return None };
     let leaving = photon_hit.flux(world) * at.context.read(&diffuse.reflectance) * FRAC_1_PI as f32;
     let came_over_smooth = path.vertices > 1 && path.kind == PathKind::Other;
-    let is_left = !is_of_photon && world.has_map() && world.sends_photons(photon.light) && came_over_smooth;
+    let is_left = !is_of_photon && world.has_map() && came_over_smooth && photon.is_left_to_pass(world);
     let usable = holds_vertices(world, at.object, at.point)
         && !is_left
         && !leaving.is_zero()

@@ -7,15 +7,12 @@
 //! probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004, *Illumination
 //! in the Presence of Weak Singularities*, bound the same way).
 
-use std::sync::Arc;
-
 use crate::light::LightId;
 use crate::material::Material;
 use crate::math::{DVec3, Ray};
 use crate::shape::{Computation, Instructions, SurfacePoint, Vectors};
 use crate::spectrum::Lanes;
 use crate::trace::World;
-use crate::trace::path_start::PathStart;
 use crate::trace::stats::Stats;
 
 /// A vertex of a light path, on a diffuse surface.
@@ -47,8 +44,8 @@ pub struct LightVertices<const N: usize> {
     center: DVec3,
     /// D.
     near: f64,
-    /// How paths of each light start, where they do not find all light.
-    starts: Option<Arc<[PathStart]>>,
+    /// How likely paths from the camera go on for light that light paths do not find; none where they find all.
+    rest: Option<f64>,
     /// The instructions by which candidates are weighed.
     instructions: Instructions,
     pub stats: Stats,
@@ -87,7 +84,7 @@ impl<const N: usize> LightVertices<N> {
         mut vertices: Vec<LightVertex<N>>,
         center: DVec3,
         near: f64,
-        starts: Option<Arc<[PathStart]>>,
+        rest: Option<f64>,
         stats: Stats,
         powers: impl FnOnce(&[LightVertex<N>]) -> Vec<f32>,
     ) -> Self {
@@ -97,7 +94,7 @@ impl<const N: usize> LightVertices<N> {
         for (number, (vertex, power)) in vertices.iter().zip(powers(&vertices)).enumerate() {
             candidates[number % count].set(number / count, (vertex.position - center) / near, vertex.flat, power);
         }
-        Self { candidates, vertices, center, near, starts, instructions: Instructions::best(), stats }
+        Self { candidates, vertices, center, near, rest, instructions: Instructions::best(), stats }
     }
 
     /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
@@ -105,14 +102,14 @@ impl<const N: usize> LightVertices<N> {
         self.near * self.near
     }
 
-    /// Whether all light that surfaces send each other is looked for.
-    pub fn carry_all(&self) -> bool {
-        self.starts.is_none()
-    }
-
     /// Whether the light that comes along a ray from a light is looked for behind the first surface that it meets.
     pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
-        self.starts.as_ref().is_none_or(|starts| starts[light].covers(&world.scene.lights[light], ray))
+        self.rest.is_none() || world.is_found_by_light_paths(light, ray)
+    }
+
+    /// How likely a path goes on for light that is not looked for; none where all is.
+    pub fn rest(&self) -> Option<f64> {
+        self.rest
     }
 
     /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.

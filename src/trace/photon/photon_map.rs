@@ -31,6 +31,8 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub crosses: bool,
     /// Surfaces it met, the last one included.
     pub surfaces: u32,
+    /// Whether light vertices show what surfaces send on of its light.
+    pub is_resampled: bool,
     /// How its light is polarized.
     pub polarization: L,
     pub carries: T,
@@ -129,6 +131,7 @@ fn keep<const N: usize, P: Polarization<N>>(
         front: flat.dot(point.normal) > 0.0,
         crosses: at.lobes.is_transmissive(),
         surfaces: path.surfaces(),
+        is_resampled: path.resampled,
         polarization: path.polarization.landed(at),
         carries: (),
     };
@@ -148,8 +151,8 @@ fn keep<const N: usize, P: Polarization<N>>(
 
 impl<L> StoredPhoton<(), L> {
     fn with<T>(&self, polarization: L, carries: T) -> StoredPhoton<T, L> {
-        let Self { back, flat, front, crosses, surfaces, .. } = *self;
-        StoredPhoton { back, flat, front, crosses, surfaces, polarization, carries }
+        let Self { back, flat, front, crosses, surfaces, is_resampled, .. } = *self;
+        StoredPhoton { back, flat, front, crosses, surfaces, is_resampled, polarization, carries }
     }
 }
 

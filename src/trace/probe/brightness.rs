@@ -83,7 +83,7 @@ fn bright_openings<const N: usize>(world: &World, Openings { walls, rectangles }
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
     let places = rectangles.iter().map(place).collect();
     // What light comes through them, bounces tell that are aimed at them.
-    let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, are_openings: true };
+    let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, missed: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
     let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
     Some(BrightPlaces { within: *walls, are_openings: true, ..bright_of(&room, rectangles.iter().copied())? })
@@ -93,6 +93,7 @@ fn bright_openings<const N: usize>(world: &World, Openings { walls, rectangles }
 fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
     let mut places: Vec<LearnedPlace> = rectangles.filter_map(LearnedPlace::of).collect();
     let mut elsewhere = Squares::default();
+    let (mut of_sky, mut missed) = (0.0, 0.0);
     for bounce in &room.bounces {
         let ray = Ray { origin: bounce.from, direction: bounce.direction };
         let mut any = false;
@@ -105,6 +106,10 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
         if !any {
             elsewhere.add(bounce);
         }
+        if bounce.distance == f64::INFINITY {
+            of_sky += bounce.light;
+            missed += if any { 0.0 } else { bounce.light };
+        }
     }
     let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / room.weight();
     let elsewhere = elsewhere.root() + mean;
@@ -114,6 +119,7 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
         within: room.bounds,
         places,
         elsewhere,
+        missed: if of_sky > 0.0 { missed / of_sky } else { 1.0 },
         are_openings: false,
     })
 }

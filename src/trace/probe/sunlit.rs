@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::brightness::bounces;
 use super::clusters::bounds_of_most;
-use crate::light::{LightId, Opening};
+use crate::light::LightId;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::RayEnds;
 use crate::shape::Ball;
@@ -14,7 +14,7 @@ use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
 use crate::trace::photon::{LightPaths, can_be_followed};
 use crate::trace::width::in_lanes;
-use crate::trace::{SunlitPlaces, World};
+use crate::trace::{SkyOpenings, SunlitPlaces, World};
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
@@ -29,8 +29,8 @@ const SEED: u64 = 0x7375_6e73;
 
 /// The world with light vertices, those of skies by paths through some openings; none where there is no light that can
 /// be followed forward, or they would spoil the layer of a faint lamp.
-pub fn with_light_vertices(world: &World, openings: &[Opening]) -> Option<World> {
-    let world = can_be_followed(world).then(|| world.with_light_vertices(sunlit_places(world), openings.to_vec()))?;
+pub fn with_light_vertices(world: &World, openings: &SkyOpenings) -> Option<World> {
+    let world = can_be_followed(world).then(|| world.with_light_vertices(sunlit_places(world), openings.clone()))?;
     LightPaths::new(&world, world.method.seed).is_some_and(|paths| !paths.starve_a_layer()).then_some(world)
 }
 

@@ -53,7 +53,8 @@ pub struct Path<const N: usize, P = Polarized> {
     pub is_seen: bool,
     /// Which objects there are for it.
     pub among: Among,
-    /// Whether light was looked for at light vertices before: what they carry does not count any more.
+    /// Whether light was looked for at light vertices before: what they carry does not count any more. Of a photon,
+    /// whether they carry its light.
     pub resampled: bool,
     /// Whether all of its light is found otherwise, and it goes on to be accounted for alone.
     pub unlit: bool,
