@@ -47,3 +47,34 @@ fn behind_holes_in_a_hidden_body_the_camera_sees_as_if_that_were_not_there() {
         }
     }
 }
+
+/// Light that goes straight on through holes and panes is seen as if they were not there; what is mirrored or refracted
+/// is not seen straight.
+#[test]
+fn what_the_camera_does_not_see_is_hidden_behind_holes_and_panes_and_not_in_mirrors_and_glass() {
+    let quad = "quad = { center = [0, 0, 0], u = [3, 0, 0], v = [0, 3, 0] }";
+    let cube = "cube = { center = [0, 0, 0], size = [6, 6, 1] }";
+    let lamp = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 50 }\nmaterial = \"lamp\"\n".to_owned();
+    let sky = "[[light]]\nenvironment = { radiance = 2 }\n".to_owned();
+    for (front, shape, open, hidden) in [
+        ("mask = { material = \"black\", opacity = 0.5 }", quad, 0.5, 0.0),
+        ("thin = { index = 1, transmittance = 0.5 }", quad, 0.5, 0.0),
+        ("polarizer.axis = [1, 0, 0]", quad, 0.5, 0.0),
+        ("mirror.reflectance = 0.5", quad, 0.5, 0.5),
+        ("dielectric = { index = 1, transmittance = 0.8 }", cube, 0.64, 0.64),
+    ] {
+        for around in [&lamp, &sky] {
+            for (visibility, share) in [("", open), ("visible_to_camera = false\n", hidden)] {
+                let text = format!(
+                    "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\n\
+                     film = {{ width = 2, height = 2 }}\nrender.samples = 4\n[material]\nlamp.emissive.radiance = 2\n\
+                     black.diffuse.reflectance = 0\nfront.{front}\n\
+                     [[object]]\nshape.{shape}\nmaterial = \"front\"\n{around}{visibility}"
+                );
+                for color in beauty(&rendered(&text, &[Layer::Residual])) {
+                    assert!((color[1] - 2.0 * share).abs() < 1e-5, "{front}, {around}{visibility}: {color:?}");
+                }
+            }
+        }
+    }
+}
