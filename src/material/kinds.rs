@@ -201,8 +201,8 @@ impl Material<Curve> {
     #[must_use]
     pub fn turned(&self, map: &Transform) -> Self {
         match self {
-            Self::Polarizer(polarizer) => Self::Polarizer(polarizer.turned(map)),
-            Self::Retarder(retarder) => Self::Retarder(retarder.turned(map)),
+            Self::Polarizer(sheet) => Self::Polarizer(Polarizer { axis: map.vector(sheet.axis), ..*sheet }),
+            Self::Retarder(sheet) => Self::Retarder(Retarder { axis: map.vector(sheet.axis), ..*sheet }),
             Self::Mask(Mask { material, opacity }) => {
                 Self::Mask(Mask { material: material.map(|material| material.turned(map)), opacity: opacity.clone() })
             }
