@@ -109,25 +109,24 @@ impl Progress {
         let is_known = rendering.is_work_known();
         self.counts.work.store(rendering.work(), Ordering::Relaxed);
         self.counts.is_known.store(is_known, Ordering::Relaxed);
-        if let Some(bar) = &self.bar {
-            bar.set_length(self.counts.total());
-            bar.set_message(self.counts.said());
-        }
+        self.advance(0);
     }
 
     /// Says something while it goes on.
     pub fn say(&self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| say(line)),
-            None => say(line),
-        }
+        self.aside(|| say(line));
     }
 
     /// Warns of something while it goes on.
     pub fn warn(&self, message: &str) {
+        self.aside(|| warn(message));
+    }
+
+    /// Speaks without the bar in its way.
+    fn aside(&self, speak: impl FnOnce()) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| warn(message)),
-            None => warn(message),
+            Some(bar) => bar.suspend(speak),
+            None => speak(),
         }
     }
 
