@@ -103,7 +103,7 @@ fn obj(number: &str) -> String {
 fn b3_mesh_files_with_vertices_that_are_not_finite_are_refused() {
     let refusal = |name, text: String| {
         let (_folder, path) = file(name, text);
-        read_mesh(&path).err()
+        read_mesh(&path, false).err()
     };
     for (name, text) in [("mesh.ply", ply as fn(&str) -> String), ("mesh.obj", obj)] {
         for number in ["nan", "inf", "-inf", "1e39"] {
