@@ -58,18 +58,18 @@ impl Index {
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &counts));
         let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
         let limit = nearest.map_or(distance, |hit| hit.intersection.t);
-        self.in_order(ray, limit, |object, limit| {
+        self.search::<true>(ray, limit, |object, limit| {
             if !counts(object) {
-                return limit;
+                return Some(limit);
             }
             let shape = &objects[object as usize].shape;
             if let Some(intersection) = shape.intersect_from(ray, limit, left.of(object)) {
                 if nearest.is_none_or(|n| intersection.t < n.intersection.t || object < n.object) {
                     nearest = Some(Hit { object, intersection });
                 }
-                return intersection.t;
+                return Some(intersection.t);
             }
-            limit
+            Some(limit)
         });
         nearest
     }
@@ -113,40 +113,27 @@ impl Index {
             return true;
         }
         let mut hidden = false;
-        self.any(ray, distance, |object| {
+        self.search::<false>(ray, distance, |object, limit| {
             hidden = Some(object) != last && hides(object);
             if hidden {
                 last_occluder.set(Some(object));
             }
-            hidden
+            (!hidden).then_some(limit)
         });
         hidden
     }
 
-    /// Calls `test(object, t_max)` for every object beside the pool that the ray may meet before `t_max`, nearer ones
-    /// first.
-    ///
-    /// `test` answers the new `t_max`.
+    /// Calls `test(object, t_max)` for objects beside the pool that the ray may meet before `t_max`, nearer ones first
+    /// if `ORDERED`; `test` answers the new `t_max`, or none to end.
     #[inline]
-    fn in_order(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> f64) {
+    fn search<const ORDERED: bool>(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> Option<f64>) {
         for &object in &self.always {
-            t_max = test(object, t_max);
+            let Some(limit) = test(object, t_max) else { return };
+            t_max = limit;
         }
         if !self.bounded.is_empty() {
-            let test = |object, t_max| Some(test(object, t_max));
-            self.tree.walk_in_order(ray, t_max, &mut Objects { index: self, test });
+            self.tree.walk::<ORDERED>(ray, t_max, &mut Objects { index: self, test });
         }
-    }
-
-    /// Calls `test(object)` for objects beside the pool that the ray may meet before `t_max`, in any order, until one
-    /// passes.
-    #[inline]
-    fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
-        if self.always.iter().any(|&object| test(object)) || self.bounded.is_empty() {
-            return;
-        }
-        let test = |object, t_max| (!test(object)).then_some(t_max);
-        self.tree.walk(ray, t_max, &mut Objects { index: self, test });
     }
 }
 

@@ -29,8 +29,8 @@ impl Visitor for Reached<'_> {
 fn reaches(boxes: &[Bounds], ray: &Ray, item: u32) -> bool {
     let bvh = &Bvh::new::<1>(boxes.iter().copied());
     let [mut any, mut nearest] = [(); 2].map(|()| Reached { bvh, item, reached: false });
-    bvh.walk(ray, f64::INFINITY, &mut any);
-    bvh.walk_in_order(ray, f64::INFINITY, &mut nearest);
+    bvh.walk::<false>(ray, f64::INFINITY, &mut any);
+    bvh.walk::<true>(ray, f64::INFINITY, &mut nearest);
     assert_eq!(any.reached, nearest.reached);
     any.reached
 }
