@@ -33,7 +33,7 @@ pub enum Listener {
     Farm,
 }
 
-/// The lines by which progress is told on stdout.
+/// The lines by which progress is reported on stdout.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Protocol {
     /// Those of Open Job Description
@@ -99,10 +99,10 @@ pub fn answer(text: &str) -> Result<()> {
     }
 }
 
-/// The same of lines.
+/// Prints lines as an answer on stdout.
 ///
 /// # Errors
-/// As of a text.
+/// As of [`answer`].
 pub fn answer_lines(lines: &[String]) -> Result<()> {
     answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
 }
@@ -179,7 +179,7 @@ pub fn print_error(error: &Error) {
     }
 }
 
-/// The same in one line.
+/// An error in one line.
 fn summary(error: &Error) -> String {
     let Error::Scene(mistakes) = error else { return problem(error) };
     let [first, more @ ..] = &**mistakes else { return problem(error) };

@@ -257,7 +257,7 @@ impl Drop for Lines {
     }
 }
 
-/// How far the work is after so many seconds, and how many are left, if that is known.
+/// How far the work is after `seconds`, and how many are left, if that is known.
 fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     let percent = (100.0 * part).floor().min(99.0);
     format!("{percent} %, {}", times(passed, left))

@@ -68,7 +68,8 @@ pub enum Layer {
     /// How much of the light is polarized along the image's rows more than along its columns: the second component of
     /// the Stokes vector, of which the image is the first.
     S1,
-    /// The same along the diagonal from the lower left to the upper right, and across it.
+    /// How much of the light is polarized along the diagonal from the lower left to the upper right more than across
+    /// it.
     S2,
     /// How much more of it turns right than left, seen toward the scene.
     S3,
@@ -226,7 +227,7 @@ pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
     }
 }
 
-/// What is told of names that no layer has, at least one.
+/// The message on names that no layer has, at least one.
 fn unknown_layers(unknown: &[&str]) -> String {
     let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
     let list = || known().collect::<Vec<_>>().join(", ");

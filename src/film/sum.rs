@@ -95,7 +95,7 @@ impl PassSum {
         self.taken - self.rejected
     }
 
-    /// How many of them met something.
+    /// How many of them hit a surface.
     pub fn met(&self) -> u32 {
         self.total().met
     }

@@ -19,7 +19,7 @@ pub struct TileValues {
 }
 
 impl TileValues {
-    /// Of so many pixels of which nothing is known, with all that a film has.
+    /// Pixels of which nothing is known yet, with all that a film has.
     pub fn blank(film: &Film, pixels: usize) -> Self {
         let layers = film.layers.iter().map(|layer| vec![0.0; pixels * layer.numbers()]).collect();
         let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);

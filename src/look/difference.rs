@@ -116,7 +116,7 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     Ok(found)
 }
 
-/// The same of mattes; `missing` is told if these are none either.
+/// Compares mattes; `missing` is the error if there is no such matte either.
 fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
     let all = files.map(Mattes::all);
     let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, wanted)) else {

@@ -36,7 +36,7 @@ pub enum Material<S> {
 }
 
 impl<S> Material<S> {
-    /// The same material with every spectrum converted; `convert` is told what the spectrum describes.
+    /// The same material with every spectrum converted; `convert` gets the quantity that a spectrum describes.
     pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Material<T> {
         match self {
             Self::Diffuse(diffuse) => Material::Diffuse(diffuse.map(convert)),

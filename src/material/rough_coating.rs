@@ -19,7 +19,7 @@ pub(super) struct MissingEnergy<'a> {
     /// Without a film, from both directions, and from all around on both sides.
     bare: [f64; 2],
     bare_around: [f64; 2],
-    /// The same of what a film adds.
+    /// What a film adds, from both directions, and from all around on both sides.
     hats: [HatWeights; 2],
     hats_around: [&'a HatWeights; 2],
 }

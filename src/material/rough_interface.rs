@@ -34,7 +34,7 @@ const RATIOS: usize = 160;
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
 const STEPS: usize = 192;
-/// The same of a film's kernel.
+/// Steps of a row of a film's kernel over the cosine.
 const KERNEL_STEPS: usize = 64;
 
 impl RoughInterface {

@@ -184,7 +184,7 @@ impl Stack {
         mean
     }
 
-    /// The same of light of one wavelength, where `turn` adds something to each layer's phase.
+    /// The shares of light of one wavelength, where `turn` adds something to each layer's phase.
     ///
     /// Abeles' matrices (Born & Wolf 1999, *Principles of Optics*, section 1.6.2), with y = q for s and q / n^2 for p,
     /// q = sqrt(n^2 - n1^2 sin^2), Im q <= 0: so p's amplitudes are those of the magnetic field, and r_p = -r_s at

@@ -87,8 +87,8 @@ pub struct Distribution2d {
 }
 
 impl Distribution2d {
-    /// A grid of so many columns and rows, at least one of each. A cell is drawn in proportion to its weight, given by
-    /// its column and row, times the weight of its row.
+    /// A grid of `width` columns and `height` rows, at least one of each. A cell is drawn in proportion to its weight,
+    /// given by its column and row, times the weight of its row.
     pub fn new([width, height]: [usize; 2], cell: impl Fn([usize; 2]) -> f64, row: impl Fn(usize) -> f64) -> Self {
         let cell = &cell;
         let columns: Vec<Distribution> =

@@ -61,7 +61,7 @@ pub struct NamedMaterial<S> {
 }
 
 impl<S> Scene<S> {
-    /// The same world with every spectrum converted; `convert` is told what the spectrum describes.
+    /// The same world with every spectrum converted; `convert` gets the quantity that a spectrum describes.
     pub fn map<T>(&self, mut convert: impl FnMut(Quantity, &S) -> T) -> Scene<T> {
         let materials = self.materials.iter();
         Scene {

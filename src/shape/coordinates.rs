@@ -38,9 +38,9 @@ pub enum Coordinates {
     Plane {
         /// Where u = v = 0.
         origin: DVec3,
-        /// What to multiply a way from there by to have u.
+        /// The gradient of u.
         u: DVec3,
-        /// The same for v.
+        /// The gradient of v.
         v: DVec3,
     },
 }

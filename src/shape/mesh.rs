@@ -104,7 +104,7 @@ impl Mesh {
         self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
     }
 
-    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, told its
+    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, by its
     /// triangle and t.
     pub(super) fn is_crossed(
         &self,

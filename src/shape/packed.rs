@@ -64,7 +64,7 @@ impl Packed {
         nearest
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told its triangle and t.
+    /// Whether there is a crossing with 0 < t <= `t_max` that counts, by its triangle and t.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, leaves: impl Fn(u32) -> bool, counts: impl Fn(u32, f64) -> bool) -> bool {
         let mut is_found = false;
@@ -164,7 +164,7 @@ fn next(lanes: &mut u32) -> Option<usize> {
     is_there.then_some(lane & (GROUP - 1))
 }
 
-/// The crossing with a triangle that is met.
+/// The crossing with one of the triangles.
 #[inline(always)]
 fn crossing_of(intersections: &Crossings, lane: usize) -> Intersection {
     let Crossings { t, v, w, determinant, .. } = intersections;

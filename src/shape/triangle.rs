@@ -163,7 +163,7 @@ impl Sheared {
         Self { origin: ray.origin, order: [x, y, z], shear }
     }
 
-    /// The same for the test of several triangles at once.
+    /// The ray as the test of four triangles at once takes it.
     pub(super) fn line(&self) -> Line {
         Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: NEAR }
     }

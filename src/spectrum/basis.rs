@@ -83,10 +83,10 @@ impl Basis {
         Self::bands_over(space, bands, Self::best_range_nm(bands), lines_nm)
     }
 
-    /// From where to where, in nm, wavelengths lie for dyes that ultraviolet light excites.
+    /// The range in nm of wavelengths for dyes that ultraviolet light excites.
     pub const FROM_ULTRAVIOLET_NM: [f64; 2] = [visible::START_NM, 730.0];
 
-    /// From where to where, in nm, so many wavelengths show colors best.
+    /// The range in nm over which that many wavelengths show colors best.
     pub(crate) fn best_range_nm(bands: usize) -> [f64; 2] {
         match bands {
             ..=8 => [410.0, 710.0],
@@ -435,7 +435,7 @@ impl Basis {
         Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
     }
 
-    /// How each part of a light is spread over the lanes: told is the number of the part, first the wavelengths of the
+    /// How each part of a light is spread over the lanes: `carries` gets the number of the part, first those of the
     /// visible grid, then the lines; a lane; and the share that it carries.
     fn spread(&self, functions: &[Vec<f64>], lines: &[[f64; 2]], mut carries: impl FnMut(usize, usize, f64)) {
         for part in 0..COUNT {

@@ -79,7 +79,7 @@ impl Primaries {
 /// `colorInteropID` of their space, or else its primaries and white. Without a word they are Rec.709 itself.
 ///
 /// # Errors
-/// Why it cannot be told what they mean.
+/// Why their meaning is not known.
 pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
     if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| primaries?.space()) {
         return Ok(space.to_rec709());

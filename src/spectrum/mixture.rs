@@ -120,7 +120,7 @@ fn eye() -> impl Iterator<Item = f64> {
     visible::observer().map(|cmf| cmf.iter().sum())
 }
 
-/// The same of a light.
+/// What the eye sees of a light at each wavelength of the grid.
 fn seen(light: &Emission) -> Vec<f64> {
     light.spectrum().iter().zip(eye()).map(|(power, eye)| power * eye).collect()
 }

@@ -40,7 +40,7 @@ const UNSEEN: f64 = 1e-3;
 const SHOWN: f64 = 1.0;
 /// The weight of a measure beside that of all wavelengths, where it shall be the spectrum's own.
 const EXACT: f64 = 1e5;
-/// The same where there are more measures than that is possible for: of weights from 0 to 1e5, close to the best for
+/// The weight of a measure where there are too many to be exact in all: of weights from 0 to 1e5, close to the best for
 /// one, two and four reflections by 123 measured colors under four lights in 8 to 32 lanes.
 const BALANCED: f64 = 10.0;
 

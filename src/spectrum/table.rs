@@ -89,7 +89,7 @@ impl Table {
         self.pattern.as_deref()
     }
 
-    /// Whether it is different at different places of a surface, so that `Draw::read_at` must be told the place.
+    /// Whether it is different at different places of a surface, so that `Draw::read_at` needs the place.
     pub fn varies(&self) -> bool {
         self.pattern.is_some()
     }
@@ -131,7 +131,7 @@ impl Table {
         self.fixed.first_chunk().expect("no more lanes are compiled than fit")
     }
 
-    /// The same as weights.
+    /// The numbers of the first N fixed lanes, as weights.
     pub(super) fn weights<const N: usize>(&self) -> &[f32; N] {
         self.weights.first_chunk().expect("no more lanes are compiled than fit")
     }

@@ -22,13 +22,13 @@ const LOOKS: u32 = 1 << 19;
 const FEW: u32 = 1 << 8;
 /// Rays after which no more lights are looked at.
 const MOST_RAYS: u64 = 1 << 20;
-/// Lights that are told of one by one.
+/// Most lights that are warned of one by one.
 const TOLD: usize = 4;
 
 /// What is wrong with each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut view = View::new(scene);
-    // One that is switched off is told nothing of.
+    // There is no warning of one that is switched off.
     let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
     let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
     view.look(|view, places| {

@@ -59,7 +59,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Follows a ray over surfaces that scatter evenly or mirror; `met` is told of each, and ends the walk by `true`,
+    /// Follows a ray over surfaces that scatter evenly or mirror; `met` gets each of them, and ends the walk by `true`,
     /// which is the answer then. A ray of the camera goes straight through what the camera does not see.
     pub(super) fn walk(
         &self,

@@ -15,13 +15,13 @@ use crate::error::{Diagnostic, Lines};
 pub(in crate::scene) struct Texts {
     whole: String,
     parts: Vec<TextPart>,
-    /// By what their places are told.
+    /// How places are named in messages.
     pub(in crate::scene) told_by: LocatedBy,
     /// What a program has given beside them.
     pub(in crate::scene) rows: Vec<Rows>,
 }
 
-/// By what a place is told.
+/// How a place is named in messages.
 #[derive(Clone, Copy, Default)]
 pub(in crate::scene) enum LocatedBy {
     #[default]

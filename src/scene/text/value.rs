@@ -1,4 +1,4 @@
-//! A value of a scene's text, read as what is wanted of it; what it is instead is told.
+//! A value of a scene's text, read as what is wanted of it; if it is something else, that is a mistake.
 
 use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -315,7 +315,7 @@ pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
 /// Mistakes in a scene that a person reads one by one.
 pub(super) const MANY: usize = 100;
 
-/// Most words that are all told of a value that is none.
+/// Up to this many known words are all listed in a mistake.
 const MOST_WORDS: usize = 10;
 
 /// Words as `a, b or c`.
