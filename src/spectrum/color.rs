@@ -230,6 +230,11 @@ pub fn apply(matrix: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * x + row[1] * y + row[2] * z)
 }
 
+/// The sum of colors times their weights.
+pub(super) fn weighted_sum(colors: impl Iterator<Item = (f64, [f64; 3])>) -> [f64; 3] {
+    colors.fold([0.0; 3], |sum, (weight, color)| std::array::from_fn(|i| sum[i] + weight * color[i]))
+}
+
 /// The matrix that applies `b`, then `a`.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     transpose(transpose(*b).map(|column| apply(a, column)))
@@ -258,11 +263,6 @@ pub fn encode_srgb(linear: [f32; 3]) -> [u8; 3] {
 /// The linear value of an sRGB value, both 0 to 1: IEC 61966-2-1, equations 5 and 6.
 pub fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
-}
-
-/// Factors that make one XYZ another.
-pub(super) fn factors(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| to[i] / from[i])
 }
 
 #[cfg(test)]
