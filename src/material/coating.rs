@@ -128,7 +128,7 @@ pub(super) struct LocalCoating<'a, const N: usize> {
     coating: &'a Coating<Table>,
     context: &'a ScatterContext<'a, N>,
     /// Whether it is hit from inside.
-    inside: bool,
+    pub(super) inside: bool,
     /// Of each layer, where any varies over the surface.
     thicknesses: Vec<Lanes<N>>,
     /// The layer that alone varies.
@@ -136,11 +136,6 @@ pub(super) struct LocalCoating<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> LocalCoating<'a, N> {
-    /// Whether it is hit from inside.
-    pub(super) fn is_inside(&self) -> bool {
-        self.inside
-    }
-
     /// What a film makes of light from many directions, between `indices`: made once where it is the same everywhere
     /// and in every sample, and read from a table where one layer's thickness varies. `inside`: of light that comes
     /// from inside.

@@ -121,7 +121,7 @@ impl RoughSurface {
 
     /// The share of light from all around that perfect mirrors would reflect more than once.
     pub fn mean_missing_energy(&self) -> f64 {
-        self.missing_energy.mean()
+        self.missing_energy.mean
     }
 
     /// What is left, beside perfect mirrors, of light that is reflected more than once by facets of reflectance `mean`.

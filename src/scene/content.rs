@@ -172,7 +172,7 @@ impl<S> Scene<S> {
 
     /// Objects without bounds: planes.
     pub fn unbounded(&self) -> impl Iterator<Item = (u32, &Object)> {
-        let all = self.index.always().iter().map(|&number| (number, &self.objects[number as usize]));
+        let all = self.index.always.iter().map(|&number| (number, &self.objects[number as usize]));
         all.filter(|(_, object)| !object.shape.is_bounded())
     }
 

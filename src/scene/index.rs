@@ -15,7 +15,7 @@ const FEW: usize = 12;
 #[derive(Clone, Debug)]
 pub(super) struct Index {
     /// Objects to try always: infinite ones, or all of a few.
-    always: Vec<u32>,
+    pub(super) always: Vec<u32>,
     tree: Bvh,
     /// Object of each item of the tree.
     bounded: Vec<u32>,
@@ -36,11 +36,6 @@ impl Index {
         }
         let [always, bounded] = [always, treed].map(|objects| objects.into_iter().map(|object| object.0).collect());
         Self { always, tree: Bvh::of_parts::<1>(boxes.into_iter()), bounded, pool }
-    }
-
-    /// Objects that have no bounds, and some that have.
-    pub(super) fn always(&self) -> &[u32] {
-        &self.always
     }
 
     /// The nearest surface along a ray up to a distance, of those objects that count; of equally near ones, that of the

@@ -6,7 +6,7 @@ use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 /// A sphere after an uneven scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
-    center: DVec3,
+    pub(super) center: DVec3,
     axes: DMat3,
     inverse: DMat3,
 }
@@ -39,10 +39,6 @@ impl Ellipsoid {
     /// The point of the unit sphere under a point of the surface.
     pub(super) fn unit_of(&self, point: DVec3) -> DVec3 {
         (self.inverse * (point - self.center)).normalize()
-    }
-
-    pub(super) fn center(&self) -> DVec3 {
-        self.center
     }
 
     /// From the center to three points of it, which need not be at right angles.

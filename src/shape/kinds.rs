@@ -156,10 +156,10 @@ impl Shape {
         // Points are rounded up to 12 times, as often as the boxes.
         let pad = whole.min.abs().max(whole.max.abs()) * gamma(32);
         let hull = match self {
-            Self::Ellipsoid(ellipsoid) => Hull::new(ellipsoid.center(), ellipsoid.half_axes(), true, pad),
+            Self::Ellipsoid(ellipsoid) => Hull::new(ellipsoid.center, ellipsoid.half_axes(), true, pad),
             Self::Disc(Disc { plane }) => Hull::new(plane.center, [plane.u, plane.v, DVec3::ZERO], true, pad),
             Self::Quad(Quad { plane }) => Hull::new(plane.center, [plane.u, plane.v, DVec3::ZERO], false, pad),
-            Self::Cube(cube) => Hull::new(cube.center(), cube.half_edges(), false, pad),
+            Self::Cube(cube) => Hull::new(cube.center, cube.half_edges, false, pad),
             Self::Instance(instance) => instance.hull(pad),
             Self::Plane(_) | Self::Triangle(_) | Self::Sphere(_) | Self::Mesh(_) => return add(whole),
         };

@@ -8,7 +8,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plane {
-    point: DVec3,
+    pub(super) point: DVec3,
     normal: DVec3,
 }
 
@@ -16,10 +16,6 @@ impl Plane {
     /// The plane through a point with a normal of any length above 0.
     pub fn new(point: DVec3, normal: DVec3) -> Self {
         Self { point, normal: normal.normalize() }
-    }
-
-    pub(super) fn origin(&self) -> DVec3 {
-        self.point
     }
 
     /// The unit vector on the side that is its front.

@@ -26,7 +26,7 @@ impl Pool {
         let (mut points, mut owners) = (Vec::<DVec3>::new(), Vec::new());
         for (number, shape) in shapes {
             let mut add = |triangle: &Triangle, part: u32| {
-                points.extend(triangle.points());
+                points.extend(triangle.points);
                 owners.push([number, part]);
             };
             match shape {

@@ -10,7 +10,7 @@ use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, ball_surface, gamm
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sphere {
-    center: DVec3,
+    pub(super) center: DVec3,
     radius: f64,
 }
 
@@ -21,10 +21,6 @@ impl Sphere {
     /// The sphere of a radius above 0.
     pub fn new(center: DVec3, radius: f64) -> Self {
         Self { center, radius }
-    }
-
-    pub(super) fn center(&self) -> DVec3 {
-        self.center
     }
 
     /// Whether more than a spot of the surface may lie in another's: only where centers and radii are about the same.

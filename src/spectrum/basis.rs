@@ -357,7 +357,7 @@ impl Basis {
     pub(super) fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
         let Some(Heroes { mixture, .. }) = &self.heroes else { return Vec::new() };
         let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
-        fine.extend(mixture.lines().iter().map(|&nm| line(nm)));
+        fine.extend(mixture.lines.iter().map(|&nm| line(nm)));
         // Reading between two entries never runs off the end.
         fine.push(fine[fine.len() - 1].clone());
         fine
@@ -431,7 +431,7 @@ impl Basis {
         });
         let at = |nm: f64| unit * emission.spectrum()[(nm - visible::START_NM) as usize];
         let line = |nm: f64| unit * emission.power_of_line(nm);
-        let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| heroes.mixture.lines());
+        let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| &*heroes.mixture.lines);
         Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
     }
 

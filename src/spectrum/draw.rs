@@ -136,7 +136,7 @@ impl<const N: usize> Draw<N> {
     /// The smallest and the largest number that a lane reads in a table.
     #[inline]
     pub fn range(&self, table: &Table) -> [f64; 2] {
-        self.heroes().fold(table.fixed_range(), |[least, most], (_, hero)| {
+        self.heroes().fold(table.fixed_range, |[least, most], (_, hero)| {
             let x = table.between(hero.below, hero.fraction);
             [if x < least { x } else { least }, if x > most { x } else { most }]
         })

@@ -12,8 +12,8 @@ use crate::math::Distribution;
 pub(super) struct Mixture {
     /// Each step of the visible grid, then each line.
     entries: Distribution,
-    /// The ideal lines, in nm.
-    lines: Vec<f64>,
+    /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
+    pub(super) lines: Vec<f64>,
 }
 
 /// Share of the wavelengths drawn by what lights send; the others are drawn by what the eye sees of an even spectrum.
@@ -90,11 +90,6 @@ impl Mixture {
         };
         let entries = Distribution::new(visible::wavelengths().take(COUNT - 1).map(density));
         Self { entries, lines: Vec::new() }
-    }
-
-    /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
-    pub(super) fn lines(&self) -> &[f64] {
-        &self.lines
     }
 
     /// Probability of each step of the visible grid, then of each line.

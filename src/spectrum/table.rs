@@ -16,7 +16,7 @@ pub struct Table {
     fine: Arc<[f64]>,
     flat: bool,
     /// The smallest and the largest number of the fixed lanes.
-    fixed_range: [f64; 2],
+    pub(super) fixed_range: [f64; 2],
     /// Of an index: the one by which all lanes are refracted.
     direction: Option<f64>,
     /// A factor that varies over the surface.
@@ -119,11 +119,6 @@ impl Table {
     /// Whether it is 1 in every bin and everywhere.
     pub fn is_one(&self) -> bool {
         self.flat && self.pattern.is_none() && self.fixed[0] == 1.0
-    }
-
-    /// Smallest and largest number of the fixed lanes.
-    pub(super) fn fixed_range(&self) -> [f64; 2] {
-        self.fixed_range
     }
 
     /// The numbers of the first N fixed lanes.

@@ -57,7 +57,7 @@ pub(super) const SECTIONS: [&str; 6] = ["camera", "film", "render", "material", 
 
 /// The world that a document describes; none if it has a mistake, which the document keeps.
 pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
-    let mut context = Context::new(document.texts.whole());
+    let mut context = Context::new(&document.texts.whole);
     document.texts.rows.iter().for_each(|rows| rows.digest(|bytes| context.hash.update(bytes)));
     let scene = Fields::of_document(document, |sections| scene(&mut context, sections));
     if document.told() > 0 {

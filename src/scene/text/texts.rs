@@ -13,7 +13,8 @@ use crate::error::{Diagnostic, Lines};
 /// one behind the other, so that a place in any of them is a range of bytes of the whole.
 #[derive(Default)]
 pub(in crate::scene) struct Texts {
-    whole: String,
+    /// All of them, one behind the other.
+    pub(in crate::scene) whole: String,
     parts: Vec<TextPart>,
     /// How places are named in messages.
     pub(in crate::scene) told_by: LocatedBy,
@@ -58,11 +59,6 @@ impl Texts {
             alone: OnceLock::new(),
         });
         span
-    }
-
-    /// All of them, one behind the other.
-    pub(in crate::scene) fn whole(&self) -> &str {
-        &self.whole
     }
 
     /// Adds lines, if there are any, as one text, and answers where each stands.

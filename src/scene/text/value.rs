@@ -109,7 +109,7 @@ impl<'d> Value<'d> {
 
     /// Tells what is wanted in its place.
     pub(in crate::scene) fn wanted<T>(self, wanted: &str) -> Option<T> {
-        let written = self.document.texts.whole().get(self.span()).unwrap_or_default();
+        let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
         let found = match self.node() {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
@@ -262,7 +262,7 @@ impl<'d> Value<'d> {
                 let name = self.list.map(|list| list.0).filter(|name| !name.is_empty());
                 let name = name.map_or_else(|| self.name(), str::to_owned);
                 let help = self.list.map(|list| list.1.to_owned()).filter(|help| !help.is_empty());
-                let written = self.document.texts.whole().get(self.span()).unwrap_or_default();
+                let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
                 let help = with_points(written, N).filter(|_| count > N).or(help);
                 self.tell(format!("{name} is a list of {N} numbers, not one of {count}"), help)
             }
