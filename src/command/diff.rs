@@ -55,7 +55,7 @@ pub struct Query {
     png: Option<PathBuf>,
 }
 
-/// Compares, and answers the exit code.
+/// Compares, and returns the exit code.
 pub fn run(query: &Query) -> ExitCode {
     match compared(query) {
         Ok(true) => ExitCode::SUCCESS,

@@ -14,7 +14,7 @@ use super::events::Event;
 use super::messages::{Listener, listener, say, warn};
 use super::openjd;
 
-/// How far a render is.
+/// The progress of a render, as a bar or in lines.
 pub struct Progress {
     bar: Option<ProgressBar>,
     lines: Option<Lines>,
@@ -73,7 +73,7 @@ const TICK: Duration = Duration::from_secs(1);
 const LOGGED: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Of a render, some of which an earlier run may have done.
+    /// Progress of a render, some of which an earlier run may have done.
     pub fn new(rendering: &Rendering) -> Self {
         let (work, before) = (rendering.work(), rendering.done());
         let counts = Arc::new(Counts {
@@ -213,7 +213,7 @@ fn share([done, total]: [u64; 2]) -> f64 {
     done as f64 / total.max(1) as f64
 }
 
-/// Seconds left after so many, in which the part that is done has grown.
+/// Seconds left after `passed` seconds, in which the part that is done has grown from `before` to `part`.
 fn left([before, part]: [f64; 2], passed: f64) -> f64 {
     passed * (1.0 - part).max(0.0) / (part - before)
 }
@@ -263,7 +263,7 @@ fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     format!("{percent} %, {}", times(passed, left))
 }
 
-/// What has been done for so many seconds and is not finished.
+/// A line on work that has taken `passed` seconds so far.
 fn going_on(doing: &str, passed: f64) -> String {
     format!("{doing}, {}", times(passed, None))
 }

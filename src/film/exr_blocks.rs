@@ -97,7 +97,7 @@ struct Block {
     rows: Range<u32>,
 }
 
-/// Writes a file of scan lines from its beginning, and answers how many values were too large. Its bytes are the same
+/// Writes a file of scan lines from its beginning, and returns how many values were too large. Its bytes are the same
 /// for any number of threads, and for any number of rows that come at once.
 ///
 /// All parts go down the image side by side, so that no row is needed twice.

@@ -29,7 +29,7 @@ const PICTURES: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JP
 /// An OpenEXR file, with all its parts.
 #[derive(Debug)]
 pub struct ExrFile {
-    /// How many bytes it has.
+    /// Size of the file in bytes.
     pub length: usize,
     /// The display window: the full image, of which a part may hold less or more.
     pub display: PixelBounds,

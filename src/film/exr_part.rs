@@ -29,7 +29,7 @@ impl PixelBounds {
         row * self.size[0] + column
     }
 
-    /// How many pixels it has.
+    /// Number of pixels.
     pub(crate) fn pixels(&self) -> usize {
         self.size[0] * self.size[1]
     }
@@ -66,7 +66,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Those of its pixels, if it has all of them.
+    /// The part cut to some of its pixels; none if it does not have all of them.
     pub(super) fn cut(&self, bounds: PixelBounds) -> Option<Self> {
         let [left, top] = [0, 1].map(|axis| (bounds.corner[axis] - self.bounds.corner[axis]) as usize);
         let row = |y: usize| {

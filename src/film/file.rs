@@ -158,7 +158,7 @@ pub fn remove_unfinished() {
 }
 
 impl Temporary {
-    /// In the folder of the target.
+    /// Creates one in the folder of the target.
     fn beside(target: &Path) -> io::Result<(File, Self)> {
         let mut number = 0;
         loop {

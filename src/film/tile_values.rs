@@ -47,7 +47,7 @@ impl TileValues {
     }
 }
 
-/// Puts the values of a tile's pixels, so many of each, into the rows that a window is.
+/// Puts the values of a tile's pixels, `each` of every pixel, into the rows of a window.
 fn put<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
     let length = place.width as usize * each;
     for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {

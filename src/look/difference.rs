@@ -354,7 +354,7 @@ fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
 }
 
 impl AlphaDifference {
-    /// Whether chance makes so many pixels opposite in at most one of a hundred pairs of images: no number that is
+    /// Whether chance makes this many pixels opposite in at most one of a hundred pairs of images: no number that is
     /// never negative is a hundred times its mean more often (Markov's inequality).
     pub fn contradicts(&self) -> bool {
         self.opposite_by_chance.is_some_and(|by_chance| FAMILY * self.opposite as f64 > by_chance)

@@ -54,7 +54,7 @@ impl Distribution {
         self.total
     }
 
-    /// How many entries there are.
+    /// Number of entries.
     pub fn count(&self) -> usize {
         self.cumulative.len()
     }
@@ -97,7 +97,7 @@ impl Distribution2d {
         Self { rows, columns }
     }
 
-    /// How many columns and rows there are.
+    /// Numbers of columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.columns[0].count(), self.columns.len()]
     }

@@ -95,7 +95,7 @@ pub(super) fn save(path: &Path, identity: &Identity, finished: &Finished, passes
     })
 }
 
-/// Goes on from a checkpoint. Answers as well which files were written, if the render had finished.
+/// Goes on from a checkpoint. Returns as well which files were written, if the render had finished.
 ///
 /// # Errors
 /// If it is of something else, damaged, or cannot be read.

@@ -47,7 +47,7 @@ pub(super) fn dark(scene: &Scene) -> Option<String> {
     scene.is_dark_by_surprise().then(|| format!("no light was found in any pixel{why}, so the image is black"))
 }
 
-/// Layers that tell nothing of so few samples per pixel.
+/// A warning of layers that need more samples per pixel.
 pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     let of_halves = [Layer::Variance, Layer::HalfA, Layer::HalfB];
     let asked: Vec<&str> = of_halves.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();

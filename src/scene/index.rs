@@ -119,7 +119,7 @@ impl Index {
     }
 
     /// Calls `test(object, t_max)` for objects beside the pool that the ray may meet before `t_max`, nearer ones first
-    /// if `ORDERED`; `test` answers the new `t_max`, or none to end.
+    /// if `ORDERED`; `test` returns the new `t_max`, or none to end.
     #[inline]
     fn search<const ORDERED: bool>(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> Option<f64>) {
         for &object in &self.always {
@@ -137,7 +137,7 @@ pub(super) fn every(_: u32) -> bool {
     true
 }
 
-/// Shows the objects of a leaf to a test, which answers the new `t_max`, or none to end the walk.
+/// Shows the objects of a leaf to a test, which returns the new `t_max`, or none to end the walk.
 struct Objects<'a, F> {
     index: &'a Index,
     test: F,

@@ -59,7 +59,7 @@ impl Mesh {
         Self { packed, facets, vertices, triangles, bounds, areas, attributes, degenerate, open_edges }
     }
 
-    /// How many triangles there are, at least one.
+    /// Number of triangles, at least one.
     pub fn count(&self) -> u32 {
         self.triangles.len() as u32
     }

@@ -75,7 +75,7 @@ impl Packed {
         is_found
     }
 
-    /// Hands over crossings, nearer boxes first if `ORDERED`; `take` answers how far to search on, or none to end.
+    /// Hands over crossings, nearer boxes first if `ORDERED`; `take` returns how far to search on, or none to end.
     #[inline]
     fn search<const ORDERED: bool>(
         &self,

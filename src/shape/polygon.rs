@@ -33,7 +33,7 @@ impl Polygon<'_> {
         }
     }
 
-    /// Its area, in scene units.
+    /// Its area, in square scene units.
     pub fn area(&self) -> f64 {
         match self {
             Self::Triangle(triangle) => triangle.area(),

@@ -228,12 +228,12 @@ impl Basis {
         }
     }
 
-    /// How many lanes a camera sample carries.
+    /// Number of lanes that a camera sample carries.
     pub fn lanes(&self) -> usize {
         self.wavelengths_nm.len() + self.heroes.as_ref().map_or(0, |heroes| heroes.count)
     }
 
-    /// How many of them are the same in every sample.
+    /// Number of lanes that stand for the same light in every sample.
     pub fn fixed_lanes(&self) -> usize {
         self.wavelengths_nm.len()
     }

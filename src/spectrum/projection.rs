@@ -24,9 +24,9 @@ pub(super) struct Projection {
 
 /// How the functions of all lanes share a wavelength, and what light of it is worth.
 pub(super) struct Part {
-    /// In nm.
+    /// The wavelength, in nm.
     pub(super) at_nm: f64,
-    /// By lane.
+    /// The share of each lane.
     pub(super) shares: Vec<f64>,
     /// To each measure, which is CIE X, Y or Z under one light, or a dye that it excites: over all that the light is
     /// worth to it.

@@ -42,7 +42,7 @@ impl<'a> View<'a> {
         Self { scene, places: Vec::new(), rays: Cell::new(0), occluder: Cell::new(None) }
     }
 
-    /// Follows the camera's rays, far ones first, until `found` answers `true` to the places of one of them.
+    /// Follows the camera's rays, far ones first, until `found` returns `true` to the places of one of them.
     pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[SurfaceSide]) -> bool) {
         // A stride that is coprime to the number of rays visits them all.
         for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {

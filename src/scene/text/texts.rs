@@ -43,7 +43,7 @@ struct TextPart {
 }
 
 impl Texts {
-    /// Adds a text, and answers where it stands.
+    /// Adds a text, and returns where it stands.
     pub(in crate::scene) fn add(&mut self, path: &Path, folder: &Path, text: &str) -> Range<usize> {
         if !self.parts.is_empty() {
             // TOML has no such character: the end of a text is not the start of the next one.
@@ -61,7 +61,7 @@ impl Texts {
         span
     }
 
-    /// Adds lines, if there are any, as one text, and answers where each stands.
+    /// Adds lines, if there are any, as one text, and returns where each stands.
     pub(in crate::scene) fn add_lines(&mut self, path: &Path, folder: &Path, lines: &[String]) -> Vec<Range<usize>> {
         if lines.is_empty() {
             return Vec::new();

@@ -45,7 +45,7 @@ impl<'d> Value<'d> {
         self.node.get_ref()
     }
 
-    /// Its entry of a position, if it is a list.
+    /// The entry of that number, if it is a list; else the value itself.
     pub(in crate::scene) fn entry(self, number: usize) -> Self {
         let entry = self.node().as_array().and_then(|entries| entries.get(number));
         entry.map_or(self, |node| Self { is_entry: true, node, list: None, ..self })
