@@ -71,7 +71,6 @@ impl ScanLinePart {
         Self { columns, header }
     }
 
-    /// Rows of a block.
     fn block_rows(&self) -> u32 {
         self.header.compression.scan_lines_per_block() as u32
     }

@@ -66,7 +66,6 @@ impl Context {
         }
     }
 
-    /// All warnings of a document.
     pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
         let places = self.warnings.iter().filter_map(|warning| warning.place.clone());
         let paths = match document.texts.told_by {

@@ -31,7 +31,6 @@ pub(in crate::scene) enum LocatedBy {
     Key,
 }
 
-/// One of the texts.
 struct TextPart {
     /// As it is called in messages.
     path: PathBuf,
