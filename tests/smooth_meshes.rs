@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use abbe::math::{DVec3, Ray, Transform};
-use abbe::shape::{Attributes, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
+use abbe::shape::{Attributes, Mesh, Shape, Vertices, read_mesh, vertex_normals};
 
 use crate::meshes::files::file;
 use crate::support::bodies::ball_faces;
@@ -258,7 +258,7 @@ fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
     let refusals = |normal, coordinates, smooth: bool| {
         files_with(normal, coordinates).map(|(name, bytes)| {
             let (_folder, path) = file(name, bytes);
-            let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
+            let mesh = read_mesh(&path, smooth);
             mesh.err().unwrap_or_default()
         })
     };
@@ -280,7 +280,8 @@ fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
 /// What a file's vertices carry, read with and without normals.
 fn attributes(name: &str, text: &str) -> [Attributes; 2] {
     let (_folder, path) = file(name, text);
-    [read_mesh(&path), read_smooth_mesh(&path)]
+    [false, true]
+        .map(|smooth| read_mesh(&path, smooth))
         .map(|mesh| mesh.unwrap_or_else(|message| panic!("{message}")).attributes)
 }
 
@@ -299,7 +300,7 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
     };
     let read = |faces: &str, of_vertices: bool| {
         let (_folder, path) = file("a.ply", ply(faces, of_vertices));
-        let mesh = read_smooth_mesh(&path)?;
+        let mesh = read_mesh(&path, true)?;
         let place = |corner: &u32| mesh.vertices.at(*corner).to_array().map(|x| x as u32);
         let places: Vec<_> = mesh.faces.iter().flatten().map(place).collect();
         let pairs: Vec<_> = mesh.faces.iter().flatten().map(|c| mesh.attributes.coordinates[*c as usize]).collect();
@@ -325,7 +326,7 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
     let none = "3 0 1 2 0 0\n3 0 2 3 0 0\n";
     assert_eq!(read(none, true).expect("two faces").2, [[7.0, 8.0]; 6]);
     let (_folder, path) = file("a.ply", ply(none, false));
-    let mesh = read_smooth_mesh(&path).expect("two faces");
+    let mesh = read_mesh(&path, true).expect("two faces");
     assert!(mesh.attributes.coordinates.is_empty() && mesh.attributes.bare == 0 && mesh.vertices.count() == 4);
     for (faces, message) in [
         ("3 0 1 2 6 0 0 1 0 1 1e39 0\n", "texture coordinates at vertex 2 (counted from 0) are not finite"),
@@ -390,10 +391,10 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
 "bufferViews":[{"buffer":0,"byteLength":96}],"buffers":[{"uri":"a.bin","byteLength":96}]}"#;
     folder.write("a.gltf", text);
     let path = folder.path_of("a.gltf");
-    let found = read_smooth_mesh(&path).expect("a glTF file").attributes;
+    let found = read_mesh(&path, true).expect("a glTF file").attributes;
     assert_eq!(found.coordinates, expected.coordinates);
     for (found, expected) in found.normals.iter().flatten().zip(expected.normals.iter().flatten()) {
         assert!((found - expected).abs() < 1e-7);
     }
-    assert!(read_mesh(&path).expect("a glTF file").attributes.normals.is_empty());
+    assert!(read_mesh(&path, false).expect("a glTF file").attributes.normals.is_empty());
 }

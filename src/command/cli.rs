@@ -218,7 +218,7 @@ fn layers(text: &str) -> std::result::Result<LayerList, String> {
 pub struct Jobs(Box<Arguments>);
 
 impl Jobs {
-    /// How many there are.
+    /// Number of renders.
     pub fn count(&self) -> u64 {
         self.0.frame.as_ref().map_or(1, Frames::count)
     }

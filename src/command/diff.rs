@@ -55,7 +55,7 @@ pub struct Query {
     png: Option<PathBuf>,
 }
 
-/// Compares, and answers the exit code.
+/// Compares, and returns the exit code.
 pub fn run(query: &Query) -> ExitCode {
     match compared(query) {
         Ok(true) => ExitCode::SUCCESS,
@@ -107,7 +107,7 @@ fn compared(query: &Query) -> Result<bool> {
     Ok(agrees)
 }
 
-/// What is told of equal images.
+/// The answer for equal images.
 fn of_equal(found: &Difference) -> String {
     match &*found.layers_apart {
         _ if !found.is_equal => String::new(),
@@ -120,7 +120,7 @@ fn of_equal(found: &Difference) -> String {
     }
 }
 
-/// What is told of a difference; `gathers` says that an image has a photon map.
+/// The answer for images that differ; `gathers` says that an image has a photon map.
 fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     let mut put = |key: &str, text: String| rows.push(vec![key.to_owned(), text]);

@@ -98,7 +98,7 @@ impl<'e> Event<'e> {
         }
     }
 
-    /// As a line of JSON; none where a path in it is no text.
+    /// The event as a line of JSON; none where a path in it is no text.
     pub fn line(&self) -> Option<String> {
         serde_json::to_string(self).ok()
     }

@@ -9,7 +9,7 @@ use abbe::{Error, Result};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames(Vec<Run>);
 
-/// From one frame to another in equal steps.
+/// Frames from a first to a last one in equal steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run {
     first: u32,
@@ -34,7 +34,7 @@ impl Frames {
         least.into_iter().chain(greatest)
     }
 
-    /// How many they are.
+    /// Number of frames.
     pub fn count(&self) -> u64 {
         match &self.0[..] {
             [run] => u64::from((run.last - run.first) / run.step) + 1,

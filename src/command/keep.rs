@@ -39,7 +39,7 @@ pub struct Flags {
     shard: Option<Shard>,
 }
 
-/// How often where --resume alone is given.
+/// Time between checkpoints where --resume is given without --checkpoint.
 const OFTEN: Duration = Duration::from_secs(60);
 
 pub fn time(text: &str) -> std::result::Result<Duration, String> {
@@ -190,7 +190,7 @@ impl Keep {
         finished.inspect(|path| say_finished(path)).is_some()
     }
 
-    /// Goes on from the checkpoint, if it shall and there is one. Answers whether anything is left to be done:
+    /// Goes on from the checkpoint, if it shall and there is one. Returns whether anything is left to be done:
     /// `outputs` are the files that shall be there in the end.
     ///
     /// # Errors
@@ -229,7 +229,7 @@ impl Keep {
         }
     }
 
-    /// Renders what is left; answers whether all of it was, or somebody stopped it.
+    /// Renders what is left; returns whether all of it was, or somebody stopped it.
     ///
     /// # Errors
     /// If it was stopped, and what is done cannot be kept.

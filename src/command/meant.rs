@@ -87,7 +87,7 @@ const LISTS: [(&str, &str); 3] = [
     ("--overscan", "the numbers of an overscan"),
 ];
 
-/// What is told of a list whose entries stand alone: how they are joined.
+/// The message on a list whose entries are separate arguments: how they are joined.
 fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
     let (from, (flag, what)) = words.iter().enumerate().find_map(|(place, word)| {
         let list = LISTS.iter().find(|(flag, _)| word == flag)?;
@@ -103,7 +103,7 @@ fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
     })
 }
 
-/// What is told of a setting that is not one word behind a `--set` of its own.
+/// The message on a setting that is not one word behind a `--set` of its own.
 fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
     let is_setting = |word: &OsString| word.to_str().is_some_and(|word| word.contains('='));
     if words.windows(2).any(|pair| pair[0] == "--set" && !is_setting(&pair[1])) {
@@ -115,7 +115,7 @@ fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
     words.windows(2).any(follows).then(said)
 }
 
-/// The same of the arguments of a command, whose name is the first word.
+/// What to write in place of an argument that a command does not have; its name is the first word.
 pub fn meant_below(said: &clap::Error, words: &[OsString]) -> Option<(String, String)> {
     let given = match said.kind() {
         ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),

@@ -33,7 +33,7 @@ pub enum Listener {
     Farm,
 }
 
-/// The lines by which progress is told on stdout.
+/// The lines by which progress is reported on stdout.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Protocol {
     /// Those of Open Job Description
@@ -64,7 +64,7 @@ pub fn say(line: &str) {
     }
 }
 
-/// That one of several frames begins.
+/// Says that one of several frames begins.
 pub fn say_frame(frame: u32, number: u64, count: u64) {
     match listener() {
         Listener::Program => Event::Frame { frame, number, count }.tell(),
@@ -99,10 +99,10 @@ pub fn answer(text: &str) -> Result<()> {
     }
 }
 
-/// The same of lines.
+/// Prints lines as an answer on stdout.
 ///
 /// # Errors
-/// As of a text.
+/// As of [`answer`].
 pub fn answer_lines(lines: &[String]) -> Result<()> {
     answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
 }
@@ -179,7 +179,7 @@ pub fn print_error(error: &Error) {
     }
 }
 
-/// The same in one line.
+/// An error in one line.
 fn summary(error: &Error) -> String {
     let Error::Scene(mistakes) = error else { return problem(error) };
     let [first, more @ ..] = &**mistakes else { return problem(error) };
@@ -227,7 +227,7 @@ fn answer_event(event: &Event) -> Result<()> {
     event.line().map_or(Ok(()), |line| answer_lines(&[line]))
 }
 
-/// That a scene is right.
+/// Says that a scene has no mistakes.
 ///
 /// # Errors
 /// If a program is to be answered, and the answer cannot be written.
@@ -240,7 +240,7 @@ pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
     Ok(())
 }
 
-/// How a scene would be rendered, on stdout.
+/// Prints on stdout how a scene would be rendered.
 ///
 /// # Errors
 /// As of a text.
@@ -264,7 +264,7 @@ pub fn print_plan(plan: &Plan) {
     }
 }
 
-/// That a file was written.
+/// Says that a file was written.
 pub fn print_written(path: &Path) {
     match listener() {
         Listener::Program => Event::Written { path }.tell(),
@@ -283,7 +283,7 @@ pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
     format!("{} samples per pixel: the image is off by at most {off}{rare}{asked}{more}", error.noise.samples)
 }
 
-/// How far it is off in the end, and whether that was asked for.
+/// Says how large the error of the image is, and whether that was asked for.
 fn print_error_of_image(error: &ImageError) {
     let noise = &error.noise;
     let [at_most, expected, of_color] = [error.at_most(), noise.expected, error.model].map(percent);

@@ -14,7 +14,7 @@ use super::events::Event;
 use super::messages::{Listener, listener, say, warn};
 use super::openjd;
 
-/// How far a render is.
+/// The progress of a render, as a bar or in lines.
 pub struct Progress {
     bar: Option<ProgressBar>,
     lines: Option<Lines>,
@@ -73,7 +73,7 @@ const TICK: Duration = Duration::from_secs(1);
 const LOGGED: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Of a render, some of which an earlier run may have done.
+    /// Progress of a render, some of which an earlier run may have done.
     pub fn new(rendering: &Rendering) -> Self {
         let (work, before) = (rendering.work(), rendering.done());
         let counts = Arc::new(Counts {
@@ -109,25 +109,24 @@ impl Progress {
         let is_known = rendering.is_work_known();
         self.counts.work.store(rendering.work(), Ordering::Relaxed);
         self.counts.is_known.store(is_known, Ordering::Relaxed);
-        if let Some(bar) = &self.bar {
-            bar.set_length(self.counts.total());
-            bar.set_message(self.counts.said());
-        }
+        self.advance(0);
     }
 
     /// Says something while it goes on.
     pub fn say(&self, line: &str) {
-        match &self.bar {
-            Some(bar) => bar.suspend(|| say(line)),
-            None => say(line),
-        }
+        self.aside(|| say(line));
     }
 
     /// Warns of something while it goes on.
     pub fn warn(&self, message: &str) {
+        self.aside(|| warn(message));
+    }
+
+    /// Speaks without the bar in its way.
+    fn aside(&self, speak: impl FnOnce()) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| warn(message)),
-            None => warn(message),
+            Some(bar) => bar.suspend(speak),
+            None => speak(),
         }
     }
 
@@ -214,7 +213,7 @@ fn share([done, total]: [u64; 2]) -> f64 {
     done as f64 / total.max(1) as f64
 }
 
-/// Seconds left after so many, in which the part that is done has grown.
+/// Seconds left after `passed` seconds, in which the part that is done has grown from `before` to `part`.
 fn left([before, part]: [f64; 2], passed: f64) -> f64 {
     passed * (1.0 - part).max(0.0) / (part - before)
 }
@@ -258,13 +257,13 @@ impl Drop for Lines {
     }
 }
 
-/// How far the work is after so many seconds, and how many are left, if that is known.
+/// How far the work is after `seconds`, and how many are left, if that is known.
 fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     let percent = (100.0 * part).floor().min(99.0);
     format!("{percent} %, {}", times(passed, left))
 }
 
-/// What has been done for so many seconds and is not finished.
+/// A line on work that has taken `passed` seconds so far.
 fn going_on(doing: &str, passed: f64) -> String {
     format!("{doing}, {}", times(passed, None))
 }

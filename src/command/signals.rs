@@ -33,7 +33,7 @@ pub fn is_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// Begins another image; answers whether the command was told to stop during the last one.
+/// Begins another image; returns whether the command was told to stop during the last one.
 pub fn begin_image() -> bool {
     HAS_BEGUN.store(false, Ordering::Relaxed);
     HAS_WRITTEN.store(false, Ordering::Relaxed);
@@ -109,7 +109,7 @@ fn handle(stop: impl FnMut() + Send + 'static) -> Result<()> {
     caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })
 }
 
-/// Ignores SIGHUP; answers whether it was ignored before.
+/// Ignores SIGHUP; returns whether it was ignored before.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 fn ignore_end_of_terminal() -> bool {

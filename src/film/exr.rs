@@ -113,7 +113,7 @@ pub struct Heading<'a> {
     pub provenance: &'a Provenance,
 }
 
-/// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Answers how many values were too
+/// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Returns how many values were too
 /// large for the precision and became the largest that fits.
 ///
 /// What was made is the data window, the format the display window, which is also what the screen window spans:

@@ -71,7 +71,6 @@ impl ScanLinePart {
         Self { columns, header }
     }
 
-    /// Rows of a block.
     fn block_rows(&self) -> u32 {
         self.header.compression.scan_lines_per_block() as u32
     }
@@ -97,7 +96,7 @@ struct Block {
     rows: Range<u32>,
 }
 
-/// Writes a file of scan lines from its beginning, and answers how many values were too large. Its bytes are the same
+/// Writes a file of scan lines from its beginning, and returns how many values were too large. Its bytes are the same
 /// for any number of threads, and for any number of rows that come at once.
 ///
 /// All parts go down the image side by side, so that no row is needed twice.

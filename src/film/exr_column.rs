@@ -36,8 +36,8 @@ impl Column {
         Self { name: Text::new_or_panic(name), is_half, of }
     }
 
-    /// Adds the bytes of so many pixels, the first of which has a number. Answers how many values were too large for 16
-    /// bits and became the largest that fits.
+    /// Adds the bytes of `pixels` pixels from number `first` on. Returns how many values were too large for 16 bits and
+    /// became the largest that fits.
     pub(super) fn put(&self, film: &Film, first: usize, pixels: usize, bytes: &mut Vec<u8>) -> u64 {
         let all = &film.pixels[first..first + pixels];
         match self.of {

@@ -29,7 +29,7 @@ const PICTURES: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JP
 /// An OpenEXR file, with all its parts.
 #[derive(Debug)]
 pub struct ExrFile {
-    /// How many bytes it has.
+    /// Size of the file in bytes.
     pub length: usize,
     /// The display window: the full image, of which a part may hold less or more.
     pub display: PixelBounds,
@@ -51,7 +51,7 @@ impl ExrFile {
         Self::of_bytes(&bytes(path)?, path)
     }
 
-    /// The same of a file's bytes; `path` is what it is called if they are none of an image.
+    /// Reads the bytes of a file; `path` is its name in error messages.
     ///
     /// # Errors
     /// [`Error::Decode`] as of a file.
@@ -211,7 +211,7 @@ impl ExrFile {
         (2.0 * off(centers[at]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
     }
 
-    /// What is told of a layer that is not there: the nearest name and those that there are, of layers and of what else
+    /// The message on a layer that is not there: the nearest name and those that there are, of layers and of what else
     /// may be named, such as mattes.
     pub fn no_layer(&self, wanted: &str, shown: &str, others: &[&str]) -> Error {
         let layers = self.layers();

@@ -52,7 +52,7 @@ pub(super) fn set_count(head: &mut [u8], name: &str, count: u64) {
 
 /// Where the attributes stand.
 struct Attributes {
-    /// Of each part, one after another.
+    /// The bytes of each attribute, part by part.
     of_parts: Vec<Vec<Range<usize>>>,
     /// Where the last part's end.
     end: usize,

@@ -18,18 +18,18 @@ impl PixelBounds {
         Self { corner: [position.x().into(), position.y().into()], size: [size.width(), size.height()] }
     }
 
-    /// The column and row of a pixel that is told by its number, row by row from the top left.
+    /// The column and row of a pixel by its number, counted row by row from the top left.
     pub fn place(&self, index: usize) -> [i64; 2] {
         [self.corner[0] + (index % self.size[0]) as i64, self.corner[1] + (index / self.size[0]) as i64]
     }
 
-    /// The number of a pixel of its, which is told by its column and row.
+    /// The number of a pixel by its column and row.
     pub(crate) fn index(&self, [x, y]: [i64; 2]) -> usize {
         let [column, row] = [(x - self.corner[0]) as usize, (y - self.corner[1]) as usize];
         row * self.size[0] + column
     }
 
-    /// How many pixels it has.
+    /// Number of pixels.
     pub(crate) fn pixels(&self) -> usize {
         self.size[0] * self.size[1]
     }
@@ -66,7 +66,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Those of its pixels, if it has all of them.
+    /// The part cut to some of its pixels; none if it does not have all of them.
     pub(super) fn cut(&self, bounds: PixelBounds) -> Option<Self> {
         let [left, top] = [0, 1].map(|axis| (bounds.corner[axis] - self.bounds.corner[axis]) as usize);
         let row = |y: usize| {

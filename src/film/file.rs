@@ -30,8 +30,8 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
     replace_by(path, |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
 }
 
-/// The same of bytes that come one after another, of which those of a device are all in memory before it has any.
-/// Answers what writing them did.
+/// Replaces a file, as [`replace_file`] does, by bytes that come one after another; those of a device are all in memory
+/// before it gets any. Returns what `write` returns.
 ///
 /// # Errors
 /// As [`replace_file`], and what the bytes come with.
@@ -158,7 +158,7 @@ pub fn remove_unfinished() {
 }
 
 impl Temporary {
-    /// In the folder of the target.
+    /// Creates one in the folder of the target.
     fn beside(target: &Path) -> io::Result<(File, Self)> {
         let mut number = 0;
         loop {

@@ -30,7 +30,7 @@ pub struct Format {
     pub owner: Option<String>,
     /// What there is to say about it.
     pub comments: Option<String>,
-    /// Frames of the sequence to which it belongs, in so many seconds.
+    /// Frame rate of the sequence to which it belongs: frames, and the seconds that they take.
     pub frames_per_second: Option<[u32; 2]>,
 }
 

@@ -16,7 +16,7 @@ pub const DEPTH_OF_NOTHING: f32 = 1e10;
 pub struct Sample {
     /// Film red, green and blue, linear.
     pub rgb: [f64; 3],
-    /// Depth of what the camera ray met, if it met anything.
+    /// Depth of the surface that the camera ray hit, if it hit any.
     pub depth: Option<f64>,
     /// Whether it fell where the filter is negative.
     pub is_subtracted: bool,
@@ -27,7 +27,7 @@ pub struct Sample {
 pub struct Pixel {
     /// Film red, green and blue, linear, the mean of the samples as the filter weighs them.
     pub rgb: [f32; 3],
-    /// Share of the camera rays that met something, as the filter weighs them, within 0 and 1.
+    /// Share of the camera rays that hit something, weighed by the filter, from 0 to 1.
     pub alpha: f32,
     /// The nearest depth among the samples, [`DEPTH_OF_NOTHING`] where none met anything.
     pub depth: f32,
@@ -70,7 +70,7 @@ impl Film {
         Window { left, top, width: self.width, height: self.height }
     }
 
-    /// Makes room for so many rows.
+    /// Makes room for a number of rows.
     pub fn resize(&mut self, rows: u32) {
         self.height = rows;
         let pixels = self.width as usize * rows as usize;

@@ -15,9 +15,9 @@ pub enum Layer {
     Direct,
     /// Light that was scattered more often.
     Indirect,
-    /// Of the direct light, what the first surface reflects diffusely.
+    /// Direct light that the first surface reflects diffusely.
     DiffuseDirect,
-    /// What it reflects glossily: rough metal, the coat of rough plastic.
+    /// Direct light that it reflects glossily: rough metal, the coat of rough plastic.
     GlossyDirect,
     /// What it mirrors.
     SpecularDirect,
@@ -57,7 +57,7 @@ pub enum Layer {
     HalfB,
     /// The energy audit: of weight 1 that left the camera, what has not ended at a light, in the sky or absorbed.
     Residual,
-    /// How much of the light on shadow catchers other objects take.
+    /// The share of the light on shadow catchers that other objects block.
     Shadow,
     /// A matte of each object that the camera sees, by Cryptomatte.
     CryptoObject,
@@ -68,9 +68,10 @@ pub enum Layer {
     /// How much of the light is polarized along the image's rows more than along its columns: the second component of
     /// the Stokes vector, of which the image is the first.
     S1,
-    /// The same along the diagonal from the lower left to the upper right, and across it.
+    /// How much of the light is polarized along the diagonal from the lower left to the upper right more than across
+    /// it.
     S2,
-    /// How much more of it turns right than left, seen toward the scene.
+    /// How much more of the light is circularly polarized to the right than to the left, seen toward the scene.
     S3,
     /// The degree of polarization, that of linear polarization, and the angle of the latter: see [`polarization`].
     Polarization,
@@ -226,7 +227,7 @@ pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
     }
 }
 
-/// What is told of names that no layer has, at least one.
+/// The message on names that no layer has, at least one.
 fn unknown_layers(unknown: &[&str]) -> String {
     let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
     let list = || known().collect::<Vec<_>>().join(", ");

@@ -15,7 +15,7 @@
 /// Farthest from the middle where a filter is not 0.
 pub(super) const RADIUS: f64 = 2.0;
 
-/// A cubic filter, told by its two parameters, each from 0 to 1.
+/// A cubic filter of two parameters, each from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mitchell {
     /// How far it blurs: 1 is the cubic B-spline, if c is 0.

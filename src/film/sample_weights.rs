@@ -23,8 +23,8 @@ pub struct SampleWeights {
 }
 
 impl SampleWeights {
-    /// Of so many samples that are added, and so many that are subtracted. Where none is added there is nothing to
-    /// subtract from, and the others are the image.
+    /// Weights for a number of samples that are added, and one of samples that are subtracted. Where none is added
+    /// there is nothing to subtract from, and the others are the image.
     pub fn new(filter: Filter, counts: [u32; 2]) -> Self {
         Self::by(filter.absolute_integral(), counts)
     }

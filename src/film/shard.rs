@@ -49,12 +49,12 @@ impl Shard {
         self.number
     }
 
-    /// How many there are.
+    /// Number of parts of the image.
     pub fn count(self) -> u32 {
         self.count
     }
 
-    /// Its tiles of a window, in the order of their numbers.
+    /// The tiles of a window that belong to this part, in ascending order of their numbers.
     pub fn tiles(self, window: Window) -> impl Iterator<Item = TilePlace> {
         let [columns, rows] = [window.width, window.height].map(|side| side.div_ceil(TILE));
         (self.number - 1..columns * rows).step_by(self.count as usize).map(move |number| {
@@ -76,7 +76,7 @@ impl Shard {
 }
 
 impl TilePlace {
-    /// How many pixels it has.
+    /// Number of pixels.
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }

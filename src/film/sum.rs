@@ -90,12 +90,12 @@ impl PassSum {
         self.total().rgb
     }
 
-    /// How many samples were kept.
+    /// Number of samples that were kept.
     pub fn kept(&self) -> u32 {
         self.taken - self.rejected
     }
 
-    /// How many of them met something.
+    /// Number of samples that hit a surface.
     pub fn met(&self) -> u32 {
         self.total().met
     }
@@ -118,7 +118,7 @@ impl PixelSum {
         self.total.rgb
     }
 
-    /// How many samples were kept.
+    /// Number of samples that were kept.
     pub fn kept(&self) -> u32 {
         self.kept
     }

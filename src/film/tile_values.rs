@@ -19,7 +19,7 @@ pub struct TileValues {
 }
 
 impl TileValues {
-    /// Of so many pixels of which nothing is known, with all that a film has.
+    /// Pixels of which nothing is known yet, with all that a film has.
     pub fn blank(film: &Film, pixels: usize) -> Self {
         let layers = film.layers.iter().map(|layer| vec![0.0; pixels * layer.numbers()]).collect();
         let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
@@ -47,7 +47,7 @@ impl TileValues {
     }
 }
 
-/// Puts the values of a tile's pixels, so many of each, into the rows that a window is.
+/// Puts the values of a tile's pixels, `each` of every pixel, into the rows of a window.
 fn put<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
     let length = place.width as usize * each;
     for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {

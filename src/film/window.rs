@@ -33,7 +33,7 @@ impl Window {
         (0..side * side).map(move |i| self.middle_of_cell(side, (i * 229) % (side * side)))
     }
 
-    /// How many pixels it has.
+    /// Number of pixels.
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }

@@ -116,7 +116,7 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     Ok(found)
 }
 
-/// The same of mattes; `missing` is told if these are none either.
+/// Compares mattes; `missing` is the error if there is no such matte either.
 fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
     let all = files.map(Mattes::all);
     let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, wanted)) else {
@@ -354,7 +354,7 @@ fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
 }
 
 impl AlphaDifference {
-    /// Whether chance makes so many pixels opposite in at most one of a hundred pairs of images: no number that is
+    /// Whether chance makes this many pixels opposite in at most one of a hundred pairs of images: no number that is
     /// never negative is a hundred times its mean more often (Markov's inequality).
     pub fn contradicts(&self) -> bool {
         self.opposite_by_chance.is_some_and(|by_chance| FAMILY * self.opposite as f64 > by_chance)

@@ -23,7 +23,7 @@ pub enum Shows {
 }
 
 impl Shows {
-    /// The same of a picture of some name, as a sentence begins.
+    /// What is wrong with a picture of that name, as the beginning of a sentence.
     pub fn told_of(self, picture: &str) -> String {
         match self {
             Self::White => format!("nearly all of {picture} is brighter than white"),
@@ -39,7 +39,7 @@ const CUT_OFF: f64 = 1.02;
 const SEEN: f64 = 0.0015;
 /// The brightness of most of a picture, in stops: about that of middle gray, 0.18.
 const MIDDLE: i32 = -2;
-/// Stops of a pixel's luminance that are told apart.
+/// Stops of a pixel's luminance that are distinguished.
 const STOPS: std::ops::RangeInclusive<i32> = -126..=127;
 
 impl Misexposure {

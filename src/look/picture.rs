@@ -162,7 +162,7 @@ fn span(channel: &Channel) -> (f64, f64) {
     (low.unwrap_or(0.0), high.unwrap_or(1.0))
 }
 
-/// The value below which about so many of a hundred lie; none of no values.
+/// The value at a percentile, 0 to 100; none of no values.
 pub(super) fn percentile(mut values: Vec<f64>, percent: usize) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
     Some(*values.select_nth_unstable_by((last * percent + 50) / 100, f64::total_cmp).1)

@@ -2,7 +2,7 @@
 
 use std::f64::consts::SQRT_2;
 
-/// The deviation, in standard deviations of either sign, that the largest of so many independent normal numbers
+/// The deviation, in standard deviations of either sign, that the largest of `count` independent normal numbers
 /// exceeds with the probability `family`. Šidák 1967, *Rectangular Confidence Regions for the Means of Multivariate
 /// Normal Distributions*: each may exceed it with 1 - (1 - family)^(1 / tests).
 ///

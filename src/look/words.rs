@@ -5,7 +5,7 @@ pub fn number(value: f64) -> String {
     number_of_digits(value, 5)
 }
 
-/// The same of another number of digits.
+/// A number of so many significant digits, without a power of ten where that is as short.
 fn number_of_digits(value: f64, digits: i32) -> String {
     let size = value.abs();
     let scientific = || format!("{value:.*e}", digits as usize - 1);

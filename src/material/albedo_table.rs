@@ -14,8 +14,8 @@ pub(super) struct AlbedoTable {
     /// ln(1 + 1 / alpha).
     span: f64,
     values: Vec<f64>,
-    /// Their mean over the hemisphere, by cosine.
-    mean: f64,
+    /// Their mean over the hemisphere, by cosine: the share of light that comes evenly from all around.
+    pub(super) mean: f64,
     /// Density of the places of the drawn directions, linear between them.
     lobe: Vec<f64>,
     /// The part of the lobe below each place.
@@ -77,11 +77,6 @@ impl AlbedoTable {
             }
         }
         sum / steps
-    }
-
-    /// The mean over the hemisphere, by cosine: the share of light that comes evenly from all around.
-    pub(super) fn mean(&self) -> f64 {
-        self.mean
     }
 
     /// The share at the cosine `z`.

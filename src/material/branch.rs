@@ -82,7 +82,7 @@ impl<const N: usize> Branch<N> {
 /// What goes straight on through a surface, as a share of each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Straight<const N: usize> {
-    /// Through holes, where nothing is met.
+    /// Through holes, where nothing is hit.
     pub holes: Lanes<N>,
     /// Through panes.
     pub panes: Lanes<N>,

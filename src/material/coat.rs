@@ -136,7 +136,7 @@ impl Coat {
             let more: f64 = rows.iter().map(|(part, row)| part * row.at(place)).sum();
             (smooth - more - multiple * surface.missing_energy(cos)).clamp(0.0, 1.0)
         };
-        let more: f64 = rows.iter().map(|(part, row)| part * row.mean()).sum();
+        let more: f64 = rows.iter().map(|(part, row)| part * row.mean).sum();
         let around = around - more - multiple * surface.mean_missing_energy();
         CoatTransmittance {
             from: rough(from_smooth, from),
@@ -156,7 +156,7 @@ impl Coat {
             surface,
             by_mirrors: cosines.map(|cos| surface.missing_energy(cos)),
             by_hats: cosines.map(|cos| kernel.at(cos)),
-            by_hats_around: kernel.mean(),
+            by_hats_around: &kernel.mean,
         })
     }
 

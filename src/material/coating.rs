@@ -16,7 +16,7 @@ use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 /// Iridescence*, without its integration over the eye's curves: lanes do that). Beyond
 /// [`COHERENT_NM`](super::COHERENT_NM) a lane sees the mean over all phases; lines and heroes see every fringe.
 ///
-/// Layers turn no ray, and are flat where they are met. A rough surface between equal indices shows none.
+/// Layers bend no ray, and are flat where one hits them. A rough surface between equal indices shows none.
 ///
 /// ```toml
 /// coating = [{ index = 1.38, thickness_nm = 99.6 }]     # from the outside inward, at most 32
@@ -29,7 +29,7 @@ pub struct Coating<S> {
     pub layers: Vec<CoatingLayer<S>>,
     /// From outside and from inside, what the film makes of light from many directions, by the indices around it.
     known: [LaneCache<[f64; 4], FilmAverages>; 2],
-    /// The same by the thickness of the layer that alone varies over the surface.
+    /// What the film makes of light, by the thickness of the only layer that varies over the surface.
     by_thickness: [LaneCache<[f64; 4], FilmTable>; 2],
 }
 
@@ -127,8 +127,8 @@ impl Deref for Averages<'_> {
 pub(super) struct LocalCoating<'a, const N: usize> {
     coating: &'a Coating<Table>,
     context: &'a ScatterContext<'a, N>,
-    /// Whether it is met at its inner side.
-    inside: bool,
+    /// Whether it is hit from inside.
+    pub(super) inside: bool,
     /// Of each layer, where any varies over the surface.
     thicknesses: Vec<Lanes<N>>,
     /// The layer that alone varies.
@@ -136,11 +136,6 @@ pub(super) struct LocalCoating<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> LocalCoating<'a, N> {
-    /// Whether it is met at its inner side.
-    pub(super) fn is_inside(&self) -> bool {
-        self.inside
-    }
-
     /// What a film makes of light from many directions, between `indices`: made once where it is the same everywhere
     /// and in every sample, and read from a table where one layer's thickness varies. `inside`: of light that comes
     /// from inside.
@@ -197,7 +192,7 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
         })
     }
 
-    /// The same of light that meets them at an angle of a cosine.
+    /// The shares of light that meets the layers at an angle with cosine `cos`.
     pub(super) fn at_cosine(&self, lane: usize, n1: f64, n2: impl Into<Complex>, cos: f64) -> StackShares {
         self.shares(lane, n1, n2.into(), n1 * cos.clamp(0.0, 1.0))
     }

@@ -165,7 +165,7 @@ impl<const N: usize> LocalConductor<'_, N> {
         array::from_fn(|lane| if is_here(lane) { [s[lane], p[lane]] } else { [0.0; 2] })
     }
 
-    /// The same of one lane, on the ray or not.
+    /// Reflectances (s, p) of one lane, on the ray or not.
     fn reflected_of(&self, lane: usize, cos: f64) -> [f64; 2] {
         match self.coated(lane, cos) {
             Some(PolarizedShare { s, p, .. }) => [s, p],
@@ -176,7 +176,7 @@ impl<const N: usize> LocalConductor<'_, N> {
         }
     }
 
-    /// The same under layers, if it has any.
+    /// What layers on the metal reflect of one lane, if it has any.
     fn coated(&self, lane: usize, cos: f64) -> Option<PolarizedShare> {
         let [n1, n, k] = self.indices(lane);
         Some(self.coating.as_ref()?.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected)

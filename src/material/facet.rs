@@ -33,7 +33,7 @@ pub struct Facet {
     pub(super) ways: [DVec3; 2],
     /// The shares of the light that leave by these.
     pub(super) single: [f64; 2],
-    /// The same if it reflected, or let through, all light.
+    /// The shares that would leave by these if it reflected, or let through, all light.
     pub(super) all: [f64; 2],
     /// The share that meets a second facet.
     pub(super) multiple: f64,

@@ -7,7 +7,7 @@ use crate::shape::{Computation, Instructions, Vectors};
 ///
 /// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*; masking and shadowing as correlated
 /// by height, Heitz 2014, *Understanding the Masking-Shadowing Function*, equation 99. Where a direction meets them is
-/// told by [`Facets::slant`], never by a tangent: nothing overflows along the surface.
+/// measured by [`Facets::slant`], never by a tangent: nothing overflows along the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facets {
     alpha: f64,
@@ -102,7 +102,7 @@ impl Facets {
         self.visible_normal_from_end(wo, [cos, sin], 1.0 - u[1])
     }
 
-    /// The same for `left` = 1 - `u[1]`, with all its digits where few facets are left.
+    /// As `visible_normal`, for `left` = 1 - `u[1]`, with all its digits where few facets are left.
     #[inline(always)]
     fn visible_normal_from_end(&self, wo: DVec3, around: [f64; 2], left: f64) -> DVec3 {
         let slant = self.slant(wo);

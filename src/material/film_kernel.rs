@@ -13,7 +13,7 @@ pub(super) struct FilmKernel {
     grid: AlbedoTable,
     rows: Vec<HatWeights>,
     /// Their means over the hemisphere, by cosine.
-    mean: HatWeights,
+    pub(super) mean: HatWeights,
 }
 
 impl FilmKernel {
@@ -38,7 +38,7 @@ impl FilmKernel {
         let rows: Vec<_> = (0..=steps).map(row).collect();
         let mean = |number: usize, way: usize| {
             let mut values = rows.iter().map(|row| row[number][way]);
-            AlbedoTable::new(alpha, steps, |_| values.next().unwrap_or_default()).mean()
+            AlbedoTable::new(alpha, steps, |_| values.next().unwrap_or_default()).mean
         };
         let mean = array::from_fn(|number| array::from_fn(|way| mean(number, way)));
         Self { grid, rows, mean }
@@ -49,10 +49,5 @@ impl FilmKernel {
         let (below, part) = step_at(self.grid.place(cos), self.rows.len() - 1);
         let [low, high] = [&self.rows[below], &self.rows[below + 1]];
         array::from_fn(|hat| array::from_fn(|way| low[hat][way] + part * (high[hat][way] - low[hat][way])))
-    }
-
-    /// The mean of that over the hemisphere, by cosine.
-    pub(super) fn mean(&self) -> &HatWeights {
-        &self.mean
     }
 }

@@ -74,7 +74,7 @@ mod tests {
     use crate::material::{Interface, Stack};
     use crate::math::Complex;
 
-    /// A layer of index `n` and extinction `k` on an index `n2`, met in air, at 550 nm.
+    /// A layer of index `n` and extinction `k` on an index `n2`, in air, at 550 nm.
     fn film([n, k]: [f64; 2], n2: f64, thickness_nm: f64) -> (Layer, FilmAverages) {
         let layer = Layer { index: Complex::new(n, -k), thickness_nm };
         let stack = Stack::new([550.0, 0.0], std::iter::once(layer));

@@ -2,7 +2,7 @@
 
 use crate::math::{DVec3, unit};
 
-/// A smooth boundary between two clear media, met at an angle.
+/// A smooth boundary between two clear media, at one angle of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interface {
     /// Share of the light that is reflected.
@@ -13,14 +13,14 @@ pub struct Interface {
     pub cos_beyond: f64,
     /// Degree of polarization (s - p) / (s + p) of the reflected light.
     pub polarization_reflected: f64,
-    /// The same of the refracted light.
+    /// Degree of polarization (s - p) / (s + p) of the refracted light.
     pub polarization_refracted: f64,
     eta: f64,
 }
 
 impl Interface {
-    /// The boundary from index `n1` to `n2`, met at an angle with cosine `c1` in 0..1. Between equal indices nothing
-    /// happens at all, even along the surface.
+    /// The boundary from index `n1` to `n2` at an angle of incidence with cosine `c1` in 0..1. Between equal indices
+    /// nothing happens at all, even along the surface.
     ///
     /// Fresnel 1823, Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance has its own formula,
     /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which keeps its digits at grazing angles; the
@@ -180,7 +180,7 @@ pub fn diffuse_transmittance(m: f64) -> f64 {
     1.0 - reflected
 }
 
-/// Reflectances (s, p) of a metal n - i k under a medium of index `n1`, met at an angle with cosine `c`.
+/// Reflectances (s, p) of a metal n - i k under a medium of index `n1`, at an angle of incidence with cosine `c`.
 ///
 /// Born & Wolf 1999, section 14.4, in the real form of Lagarde 2013, *Memo on Fresnel equations*.
 #[inline]

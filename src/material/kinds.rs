@@ -36,7 +36,7 @@ pub enum Material<S> {
 }
 
 impl<S> Material<S> {
-    /// The same material with every spectrum converted; `convert` is told what the spectrum describes.
+    /// The same material with every spectrum converted; `convert` gets the quantity that a spectrum describes.
     pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Material<T> {
         match self {
             Self::Diffuse(diffuse) => Material::Diffuse(diffuse.map(convert)),
@@ -201,8 +201,8 @@ impl Material<Curve> {
     #[must_use]
     pub fn turned(&self, map: &Transform) -> Self {
         match self {
-            Self::Polarizer(polarizer) => Self::Polarizer(polarizer.turned(map)),
-            Self::Retarder(retarder) => Self::Retarder(retarder.turned(map)),
+            Self::Polarizer(sheet) => Self::Polarizer(Polarizer { axis: map.vector(sheet.axis), ..*sheet }),
+            Self::Retarder(sheet) => Self::Retarder(Retarder { axis: map.vector(sheet.axis), ..*sheet }),
             Self::Mask(Mask { material, opacity }) => {
                 Self::Mask(Mask { material: material.map(|material| material.turned(map)), opacity: opacity.clone() })
             }

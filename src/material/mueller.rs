@@ -1,6 +1,6 @@
 //! What a surface does to the polarization of light.
 //!
-//! Light is told by its Stokes vector (S0, S1, S2, S3) in a frame whose z is the light's direction: S1 is what is
+//! Light is described by its Stokes vector (S0, S1, S2, S3) in a frame whose z is the light's direction: S1 is what is
 //! polarized along x less what is along y = z x x, S2 the same at 45 degrees from x toward y, S3 what turns right less
 //! what turns left, seen looking toward the source (Hecht 2017, *Optics*, section 8.13; Born & Wolf 1999, *Principles
 //! of Optics*, section 1.4.2). Fields vary as e^(i omega t), and an absorbing index is n - i k.
@@ -61,7 +61,7 @@ impl Block<f64> {
         Fresnel::new(n1, n2, cos).map_or(Self::default(), |fresnel| fresnel.refracted())
     }
 
-    /// What becomes of radiance at a smooth boundary between two indices, met at an angle of a cosine, where it crosses
+    /// What becomes of radiance at a smooth boundary between two indices, hit at an angle of a cosine, where it crosses
     /// it or is reflected. Between equal indices nothing happens.
     #[inline]
     pub(super) fn at_boundary([n1, n2, cos]: [f64; 3], crosses: bool) -> Self {

@@ -1,5 +1,5 @@
 use super::{Block, Mueller, ScatterContext, Straight};
-use crate::math::{DVec3, Transform};
+use crate::math::DVec3;
 use crate::spectrum::Lanes;
 
 /// A sheet that lets light through which is polarized along its axis. Light goes straight on, as through `thin`.
@@ -21,12 +21,6 @@ pub struct Polarizer {
 }
 
 impl Polarizer {
-    /// Turned with the object that it lies on.
-    #[must_use]
-    pub fn turned(self, map: &Transform) -> Self {
-        Self { axis: map.vector(self.axis), ..self }
-    }
-
     /// What goes straight on.
     pub(super) fn straight<const N: usize>(&self) -> Straight<N> {
         let panes = Lanes([(0.5 * (1.0 + self.extinction)) as f32; N]);

@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use super::polarizer::let_through;
 use super::stack::PHASE_STEP;
 use super::{Block, Mueller, ScatterContext, Straight};
-use crate::math::{DVec3, Transform};
+use crate::math::DVec3;
 use crate::spectrum::Lanes;
 
 /// A sheet in which light polarized along its fast axis is ahead of light across it: a wave plate. All light goes
@@ -61,12 +61,6 @@ impl PathDifference {
 }
 
 impl Retarder {
-    /// Turned with the object that it lies on.
-    #[must_use]
-    pub fn turned(self, map: &Transform) -> Self {
-        Self { axis: map.vector(self.axis), ..self }
-    }
-
     /// All light goes straight on.
     pub(super) fn straight<const N: usize>(&self) -> Straight<N> {
         Straight { holes: Lanes::ZERO, panes: Lanes::ONE, polarization: 0.0 }

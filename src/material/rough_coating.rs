@@ -19,7 +19,7 @@ pub(super) struct MissingEnergy<'a> {
     /// Without a film, from both directions, and from all around on both sides.
     bare: [f64; 2],
     bare_around: [f64; 2],
-    /// The same of what a film adds.
+    /// What a film adds, from both directions, and from all around on both sides.
     hats: [HatWeights; 2],
     hats_around: [&'a HatWeights; 2],
 }
@@ -34,7 +34,7 @@ impl<'a> MissingEnergy<'a> {
             bare: [near.missing_energy(from), if crosses { far } else { near }.missing_energy(to)],
             bare_around: [near.mean_missing_energy(), far.mean_missing_energy()],
             hats: [kernels[0].at(from), kernels[side].at(to)],
-            hats_around: kernels.map(FilmKernel::mean),
+            hats_around: kernels.map(|kernel| &kernel.mean),
         }
     }
 
@@ -66,7 +66,7 @@ pub(super) fn averages<'a, const N: usize>(
     let turned = context.turned_around();
     [(context, false), (&turned, true)].map(|(from, is_beyond)| {
         let ([here, there], own) = (from.refracting(lane), [from.incident_of(lane), from.beyond_of(lane)]);
-        local.averages(lane, local.is_inside() != is_beyond, [own[0], own[1], here, there], |stack| {
+        local.averages(lane, local.inside != is_beyond, [own[0], own[1], here, there], |stack| {
             let stack = if is_beyond { &stack.turned_around() } else { stack };
             let bare = |cos: f64| {
                 let interface = Interface::new(here, there, cos);

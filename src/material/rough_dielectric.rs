@@ -114,7 +114,7 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         self.lanes(kind) * light
     }
 
-    /// The same at a boundary without a coating, whether or not a lane goes on.
+    /// What is scattered at a boundary without a coating, whether or not a lane goes on.
     fn bare(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let (BsdfValue { value, facet, cos, .. }, crosses) = (kind.flow, self.crosses);
         let Some(own) = self.context.own_transmittance(cos) else {
@@ -132,7 +132,7 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         })
     }
 
-    /// The same at a coated one.
+    /// What is scattered at a coated boundary.
     fn coated(&self, interface: &RoughInterface, local: &LocalCoating<N>, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let ([here, beyond], crosses) = (kind.indices, self.crosses);
         let kernels = interface.film_kernels(here, beyond);

@@ -34,7 +34,7 @@ const RATIOS: usize = 160;
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
 const STEPS: usize = 192;
-/// The same of a film's kernel.
+/// Steps of a row of a film's kernel over the cosine.
 const KERNEL_STEPS: usize = 64;
 
 impl RoughInterface {
@@ -160,7 +160,7 @@ impl Side<'_> {
 
     /// The share of light from all around that meets a second facet.
     pub fn mean_missing_energy(&self) -> f64 {
-        self.mix(AlbedoTable::mean)
+        self.mix(|row| row.mean)
     }
 
     /// The missing energy at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
@@ -173,7 +173,7 @@ impl Side<'_> {
 
     /// How often the second row is drawn from.
     fn often(&self) -> f64 {
-        self.part * self.rows[1].mean() / self.mean_missing_energy()
+        self.part * self.rows[1].mean / self.mean_missing_energy()
     }
 
     /// A direction above the surface, drawn by nearly the missing energy times the cosine.

@@ -62,7 +62,7 @@ impl Roughness {
         self.value * self.value
     }
 
-    /// Whether the surface is too smooth to be told from a mirror.
+    /// Whether the surface is too smooth to be distinguished from a mirror.
     pub fn is_smooth(&self) -> bool {
         self.alpha() < SMOOTH
     }
@@ -97,7 +97,7 @@ pub struct RoughReflection {
     pub wi: DVec3,
     /// BRDF times cosine of light reflected once, by perfect mirrors.
     pub single: f64,
-    /// The same of light reflected more often.
+    /// BRDF times cosine of light reflected more than once.
     pub multiple: f64,
     /// Cosine of the angle at which a facet meets the light that is reflected once.
     pub cos: f64,
@@ -121,7 +121,7 @@ impl RoughSurface {
 
     /// The share of light from all around that perfect mirrors would reflect more than once.
     pub fn mean_missing_energy(&self) -> f64 {
-        self.missing_energy.mean()
+        self.missing_energy.mean
     }
 
     /// What is left, beside perfect mirrors, of light that is reflected more than once by facets of reflectance `mean`.
@@ -153,7 +153,7 @@ impl RoughSurface {
         self.reflection(wo, wi, (wo + wi).try_normalize()?)
     }
 
-    /// The same where light arrives; `wi` and the viewer's direction are those of the world.
+    /// What is reflected from `wi` to the viewer of a context, both directions in the world; none from below.
     pub(super) fn evaluate_at<const N: usize>(
         &self,
         context: &ScatterContext<N>,

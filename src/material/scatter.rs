@@ -31,6 +31,6 @@ pub trait Scatter {
     /// how much leaves.
     fn mueller<const N: usize>(&self, context: &ScatterContext<N>, incoming: Incoming, mueller: &mut Mueller<N>);
 
-    /// The same of light that goes straight on, as `straight` says.
+    /// Makes `mueller` what becomes of the polarization of light that goes straight on, as `straight` says.
     fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>);
 }

@@ -12,7 +12,7 @@ pub struct ScatterContext<'a, const N: usize> {
     pub wo: DVec3,
     /// Unit normal by which the surface scatters, on the viewer's side: on smooth meshes not that of the triangle.
     pub normal: DVec3,
-    /// Where the surface is met, for what varies over it.
+    /// Where the surface is hit, for what varies over it.
     pub uv: [f64; 2],
     /// Which bin each lane reads.
     pub draw: &'a Draw<N>,
@@ -87,7 +87,7 @@ impl<const N: usize> ScatterContext<'_, N> {
         if table.is_one() { Lanes::ONE } else { self.read(table) }
     }
 
-    /// The same surface as it is met from beyond.
+    /// The same surface, seen from its other side.
     pub fn turned_around(self) -> Self {
         let [here, beyond] = self.direction_indices;
         let (incident, beyond_it) = (self.beyond, self.incident);

@@ -54,7 +54,7 @@ impl Distribution {
         self.total
     }
 
-    /// How many entries there are.
+    /// Number of entries.
     pub fn count(&self) -> usize {
         self.cumulative.len()
     }
@@ -87,8 +87,8 @@ pub struct Distribution2d {
 }
 
 impl Distribution2d {
-    /// A grid of so many columns and rows, at least one of each. A cell is drawn in proportion to its weight, given by
-    /// its column and row, times the weight of its row.
+    /// A grid of `width` columns and `height` rows, at least one of each. A cell is drawn in proportion to its weight,
+    /// given by its column and row, times the weight of its row.
     pub fn new([width, height]: [usize; 2], cell: impl Fn([usize; 2]) -> f64, row: impl Fn(usize) -> f64) -> Self {
         let cell = &cell;
         let columns: Vec<Distribution> =
@@ -97,7 +97,7 @@ impl Distribution2d {
         Self { rows, columns }
     }
 
-    /// How many columns and rows there are.
+    /// Numbers of columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.columns[0].count(), self.columns.len()]
     }

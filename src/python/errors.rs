@@ -42,7 +42,7 @@ pub(super) fn raised(error: Error) -> PyErr {
     }
 }
 
-/// The same of a file that was to be read, which may not be there.
+/// The exception for a file that cannot be read, maybe because it is not there.
 pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
     match error {
         Error::Arguments { message, help } if !path.exists() => {

@@ -38,7 +38,7 @@ pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> 
     Ok((work::run(py, planned)?.map_err(raised)?, threads))
 }
 
-/// Renders; `progress` is told how much is done of how much, after how many seconds.
+/// Renders; `progress` gets how much is done, of how much, after how many seconds.
 #[pyfunction]
 pub(super) fn render(
     py: Python<'_>,
@@ -88,7 +88,7 @@ struct State {
 }
 
 impl State {
-    /// Says that a render begins which has so much done of so much work.
+    /// Reports that a render begins, with the work done so far and all of it.
     fn begin(&self, done: u64, work: u64) -> Instant {
         self.done.store(done, Relaxed);
         self.work.store(work, Relaxed);

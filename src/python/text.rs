@@ -68,7 +68,7 @@ impl Writer {
         Err(raised(Error::Scene(self.mistakes.into_iter().map(file).collect())))
     }
 
-    /// Keeps a mistake. Writing goes on, so that all are told at once.
+    /// Keeps a mistake. Writing continues, so that all are reported together.
     fn refuse<'h>(&mut self, message: impl Into<String>, help: impl Into<Option<&'h str>>) -> PyResult<()> {
         let mut path = String::new();
         for step in &self.path {

@@ -1,4 +1,4 @@
-//! What is known of a plan and of a render, as programs are told it.
+//! What is known of a plan and of a render, as programs read it.
 
 use std::time::Duration;
 
@@ -74,7 +74,7 @@ pub struct RenderAccount<'a> {
     pub unmatched: u64,
     /// Share of the light that polarization may change, where it is not traced.
     pub polarization: f64,
-    /// The same in the 16 x 16 pixels where it is largest.
+    /// Share of the light that polarization may change in the 16 x 16 pixels where it is largest.
     pub polarization_of_tile: f64,
     /// What ended it: error, time or samples; none where it has no stop rule.
     pub stopped_by: Option<&'static str>,
@@ -126,11 +126,11 @@ pub struct ErrorAccount<'a> {
     pub at_most: f64,
     /// The part of it that is chance, as it is expected.
     pub noise: f64,
-    /// The same at most.
+    /// What the noise is at most in 95 of 100 renders.
     pub noise_at_most: f64,
     /// The part of photons that are gathered, which blur, as it is expected.
     pub blur: f64,
-    /// The same at most.
+    /// What the blur is at most in 95 of 100 renders.
     pub blur_at_most: f64,
     /// The noise of alpha, relative to alpha, as it is expected; none without shadow catchers.
     pub alpha: Option<f64>,

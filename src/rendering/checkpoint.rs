@@ -22,7 +22,7 @@ pub enum Resumed {
     Continues,
     /// All samples that are asked for had been taken.
     Finished,
-    /// More than that had been taken, so many of each pixel. Nothing was read.
+    /// More samples than that had been taken: this many of each pixel. Nothing was read.
     HasMore(u32),
 }
 
@@ -70,7 +70,7 @@ pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], w
         let is_there = |file: &&Path| Written::of(file, way).is_some_and(|file| written.contains(&file));
         Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_there))
     };
-    // Whatever is wrong with it is told when the render would go on from it.
+    // Whatever is wrong with it is reported when the render would continue from it.
     read().unwrap_or(false)
 }
 
@@ -95,7 +95,7 @@ pub(super) fn save(path: &Path, identity: &Identity, finished: &Finished, passes
     })
 }
 
-/// Goes on from a checkpoint. Answers as well which files were written, if the render had finished.
+/// Goes on from a checkpoint. Returns as well which files were written, if the render had finished.
 ///
 /// # Errors
 /// If it is of something else, damaged, or cannot be read.

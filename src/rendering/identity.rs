@@ -58,7 +58,7 @@ impl Identity {
         own.eq(&Self::without_plan(scene, shard).0)
     }
 
-    /// The same of all parts of an image.
+    /// The identity that all parts of an image share.
     pub(super) fn of_all_parts(&self) -> Self {
         Self(self.0.iter().filter(|(name, _)| name != "part").cloned().collect())
     }

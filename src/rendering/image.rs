@@ -124,7 +124,7 @@ impl Image {
     }
 
     /// Writes a linear OpenEXR file with all layers, the camera, and everything that another run needs to make the same
-    /// bytes. Answers how many values were too large for 16 bits, if it has those, and became 65504.
+    /// bytes. Returns how many values were too large for 16 bits, if it has those, and became 65504.
     ///
     /// # Errors
     /// If it cannot be written; a file that was there before is then untouched.

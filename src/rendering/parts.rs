@@ -116,7 +116,7 @@ impl Parts {
         write_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
     }
 
-    /// Writes the spectra as [`Image::write_spectral_exr`] does, in as little memory. Answers whether there are any.
+    /// Writes the spectra as [`Image::write_spectral_exr`] does, in as little memory. Returns whether there are any.
     ///
     /// # Errors
     /// As [`write_exr`](Self::write_exr).

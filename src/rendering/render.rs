@@ -163,10 +163,10 @@ impl Rendering {
         self.plan.processor_time.mul_f64(part / self.threads.current_num_threads() as f64)
     }
 
-    /// Renders the next pass, if one is left, and answers whether another one is. Passes take more and more samples, or
+    /// Renders the next pass, if one is left, and returns whether another one is. Passes take more and more samples, or
     /// gather photons of their own.
     ///
-    /// `progress` is told how much of the [`work`](Self::work) was done since it was last told, from any thread.
+    /// `progress` gets how much of the [`work`](Self::work) was done since its last call, on any thread.
     ///
     /// ```
     /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }

@@ -36,7 +36,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     warnings
 }
 
-/// What to say of an image of a scene if there is no light in it; nothing where that is meant or told before.
+/// A warning of an image without any light; none where that is meant or was warned of before.
 pub(super) fn dark(scene: &Scene) -> Option<String> {
     let limits = [("max_bounces", scene.render.max_bounces), ("diffuse_bounces", scene.render.diffuse_bounces)];
     let limits: Vec<String> = limits.iter().filter_map(|(key, limit)| Some(format!("{key} = {}", (*limit)?))).collect();
@@ -47,7 +47,7 @@ pub(super) fn dark(scene: &Scene) -> Option<String> {
     scene.is_dark_by_surprise().then(|| format!("no light was found in any pixel{why}, so the image is black"))
 }
 
-/// Layers that tell nothing of so few samples per pixel.
+/// A warning of layers that need more samples per pixel.
 pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     let of_halves = [Layer::Variance, Layer::HalfA, Layer::HalfB];
     let asked: Vec<&str> = of_halves.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();
@@ -83,7 +83,7 @@ fn missed(error: &ImageError) -> Option<String> {
     Some(format!("the error of {} that was asked for is not reached{why}", percent(asked)))
 }
 
-/// An image without any light, of which no noise can be told.
+/// A warning of an image without any light, whose noise is not known.
 fn unmeasured(report: &Report, error: &ImageError) -> Option<String> {
     let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
     is_dark.then(|| "no light was found in any pixel, so that nothing tells how far the image is off".into())

@@ -269,7 +269,7 @@ impl Camera {
         self.forward
     }
 
-    /// How directions become places in the image.
+    /// The projection onto the film.
     pub fn projection(&self) -> Projection {
         self.projection
     }

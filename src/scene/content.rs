@@ -18,13 +18,13 @@ use crate::spectrum::{Curve, Quantity};
 /// A world in which every name has been found and every number checked.
 #[derive(Clone, Debug)]
 pub struct Scene<S = Curve> {
-    /// From where it is seen.
+    /// The camera.
     pub camera: Camera,
     /// The image to make.
     pub film: FilmSettings,
     /// What its file holds.
     pub format: Format,
-    /// How to make it.
+    /// How to render the image.
     pub render: RenderText,
     /// Surfaces, in the order of the file: shared by all scenes that differ only in their spectra.
     pub objects: Arc<[Object]>,
@@ -36,7 +36,7 @@ pub struct Scene<S = Curve> {
     pub infinite_lights: Vec<LightId>,
     /// The group of each light, by its name: lights of one group share a layer.
     pub light_groups: Vec<String>,
-    /// Those of the infinite lights that the camera does not see straight.
+    /// Infinite lights that the camera does not see directly.
     pub hidden_lights: Vec<LightId>,
     /// What the author should know but need not change.
     pub warnings: Vec<String>,
@@ -61,7 +61,7 @@ pub struct NamedMaterial<S> {
 }
 
 impl<S> Scene<S> {
-    /// The same world with every spectrum converted; `convert` is told what the spectrum describes.
+    /// The same world with every spectrum converted; `convert` gets the quantity that a spectrum describes.
     pub fn map<T>(&self, mut convert: impl FnMut(Quantity, &S) -> T) -> Scene<T> {
         let materials = self.materials.iter();
         Scene {
@@ -172,7 +172,7 @@ impl<S> Scene<S> {
 
     /// Objects without bounds: planes.
     pub fn unbounded(&self) -> impl Iterator<Item = (u32, &Object)> {
-        let all = self.index.always().iter().map(|&number| (number, &self.objects[number as usize]));
+        let all = self.index.always.iter().map(|&number| (number, &self.objects[number as usize]));
         all.filter(|(_, object)| !object.shape.is_bounded())
     }
 

@@ -15,7 +15,7 @@ const FEW: usize = 12;
 #[derive(Clone, Debug)]
 pub(super) struct Index {
     /// Objects to try always: infinite ones, or all of a few.
-    always: Vec<u32>,
+    pub(super) always: Vec<u32>,
     tree: Bvh,
     /// Object of each item of the tree.
     bounded: Vec<u32>,
@@ -38,11 +38,6 @@ impl Index {
         Self { always, tree: Bvh::of_parts::<1>(boxes.into_iter()), bounded, pool }
     }
 
-    /// Objects that have no bounds, and some that have.
-    pub(super) fn always(&self) -> &[u32] {
-        &self.always
-    }
-
     /// The nearest surface along a ray up to a distance, of those objects that count; of equally near ones, that of the
     /// object listed first.
     pub(super) fn nearest(
@@ -58,18 +53,18 @@ impl Index {
         let pooled = self.pool.as_ref().and_then(|pool| pool.nearest(ray, distance, triangle, &counts));
         let mut nearest = pooled.map(|(object, intersection)| Hit { object, intersection });
         let limit = nearest.map_or(distance, |hit| hit.intersection.t);
-        self.in_order(ray, limit, |object, limit| {
+        self.search::<true>(ray, limit, |object, limit| {
             if !counts(object) {
-                return limit;
+                return Some(limit);
             }
             let shape = &objects[object as usize].shape;
             if let Some(intersection) = shape.intersect_from(ray, limit, left.of(object)) {
                 if nearest.is_none_or(|n| intersection.t < n.intersection.t || object < n.object) {
                     nearest = Some(Hit { object, intersection });
                 }
-                return intersection.t;
+                return Some(intersection.t);
             }
-            limit
+            Some(limit)
         });
         nearest
     }
@@ -113,40 +108,27 @@ impl Index {
             return true;
         }
         let mut hidden = false;
-        self.any(ray, distance, |object| {
+        self.search::<false>(ray, distance, |object, limit| {
             hidden = Some(object) != last && hides(object);
             if hidden {
                 last_occluder.set(Some(object));
             }
-            hidden
+            (!hidden).then_some(limit)
         });
         hidden
     }
 
-    /// Calls `test(object, t_max)` for every object beside the pool that the ray may meet before `t_max`, nearer ones
-    /// first.
-    ///
-    /// `test` answers the new `t_max`.
+    /// Calls `test(object, t_max)` for objects beside the pool that the ray may meet before `t_max`, nearer ones first
+    /// if `ORDERED`; `test` returns the new `t_max`, or none to end.
     #[inline]
-    fn in_order(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> f64) {
+    fn search<const ORDERED: bool>(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> Option<f64>) {
         for &object in &self.always {
-            t_max = test(object, t_max);
+            let Some(limit) = test(object, t_max) else { return };
+            t_max = limit;
         }
         if !self.bounded.is_empty() {
-            let test = |object, t_max| Some(test(object, t_max));
-            self.tree.walk_in_order(ray, t_max, &mut Objects { index: self, test });
+            self.tree.walk::<ORDERED>(ray, t_max, &mut Objects { index: self, test });
         }
-    }
-
-    /// Calls `test(object)` for objects beside the pool that the ray may meet before `t_max`, in any order, until one
-    /// passes.
-    #[inline]
-    fn any(&self, ray: &Ray, t_max: f64, mut test: impl FnMut(u32) -> bool) {
-        if self.always.iter().any(|&object| test(object)) || self.bounded.is_empty() {
-            return;
-        }
-        let test = |object, t_max| (!test(object)).then_some(t_max);
-        self.tree.walk(ray, t_max, &mut Objects { index: self, test });
     }
 }
 
@@ -155,7 +137,7 @@ pub(super) fn every(_: u32) -> bool {
     true
 }
 
-/// Shows the objects of a leaf to a test, which answers the new `t_max`, or none to end the walk.
+/// Shows the objects of a leaf to a test, which returns the new `t_max`, or none to end the walk.
 struct Objects<'a, F> {
     index: &'a Index,
     test: F,

@@ -170,7 +170,7 @@ fn whole<'d>(
     settings: &[Range<usize>],
 ) -> std::result::Result<(DeTable<'d>, Vec<String>), Vec<Mistake>> {
     let mut root = merged(texts, files)?;
-    let text = |span: &Range<usize>| &texts.whole()[span.clone()];
+    let text = |span: &Range<usize>| &texts.whole[span.clone()];
     let wrong = settings.iter().filter_map(|span| set(&mut root, text(span), span.start, &SECTIONS).err());
     let wrong: Vec<Mistake> = wrong.collect();
     if !wrong.is_empty() {
@@ -183,7 +183,7 @@ fn whole<'d>(
 /// The keys where mistakes in the first file stand.
 fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<Range<usize>, String> {
     let spans = mistakes.iter().map(|mistake| mistake.span.clone()).filter(|span| texts.is_in_first(span.start));
-    let first = files.first().and_then(|file| parsed(&texts.whole()[file.clone()], file.start).ok());
+    let first = files.first().and_then(|file| parsed(&texts.whole[file.clone()], file.start).ok());
     first.map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
 }
 

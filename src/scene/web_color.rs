@@ -17,13 +17,13 @@ pub fn web_color(text: &str) -> Option<String> {
     }
 }
 
-/// The same of numbers from 0 to 255, one above 1 at least.
+/// sRGB numbers from 0 to 255, one of them above 1, as linear light; none if they are not that.
 pub fn of_bytes(bytes: [f64; 3]) -> Option<String> {
     let are_bytes = bytes.iter().all(|x| (0.0..=255.0).contains(x) && x.fract() == 0.0);
     (are_bytes && bytes.iter().any(|x| *x > 1.0)).then(|| of_srgb(bytes.map(|x| x / 255.0)))
 }
 
-/// The same of shares of sRGB.
+/// sRGB numbers from 0 to 1 as linear light, to three digits.
 pub fn of_srgb(color: [f64; 3]) -> String {
     let three_digits = |x: f64| format!("{:.2e}", decode_srgb(x)).parse().unwrap_or(x);
     let color: Vec<String> = color.map(three_digits).iter().map(f64::to_string).collect();

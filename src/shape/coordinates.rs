@@ -38,9 +38,9 @@ pub enum Coordinates {
     Plane {
         /// Where u = v = 0.
         origin: DVec3,
-        /// What to multiply a way from there by to have u.
+        /// The gradient of u.
         u: DVec3,
-        /// The same for v.
+        /// The gradient of v.
         v: DVec3,
     },
 }
@@ -53,12 +53,12 @@ impl Coordinates {
             Shape::Quad(_) | Shape::Disc(_) => Self::Square,
             Shape::Triangle(_) => Self::Triangle { swapped: map.mirrors() },
             Shape::Cube(_) => Self::Cube,
-            Shape::Sphere(sphere) => Self::Sphere { center: map.point(sphere.center()), inverse },
+            Shape::Sphere(sphere) => Self::Sphere { center: map.point(sphere.center), inverse },
             Shape::Plane(plane) => {
                 let normal = plane.normal();
                 let u = level(normal);
                 let [u, v] = [u, normal.cross(u)].map(|axis| inverse.transpose() * axis);
-                Self::Plane { origin: map.point(plane.origin()), u, v }
+                Self::Plane { origin: map.point(plane.point), u, v }
             }
             Shape::Mesh(mesh) if mesh.has_coordinates() => Self::Mesh,
             Shape::Ellipsoid(_) | Shape::Mesh(_) | Shape::Instance(_) => return None,
@@ -98,7 +98,7 @@ impl Coordinates {
             }
             Self::Triangle { swapped } => {
                 let Shape::Triangle(triangle) = shape else { return None };
-                let [p1, p2, p3] = triangle.points();
+                let [p1, p2, p3] = triangle.points;
                 Some(swapped_if(*swapped, [p2 - p1, p3 - p1]))
             }
             Self::Cube => {

@@ -9,8 +9,9 @@ use crate::math::{Bounds, DVec3, Ray, Transform, UNIT_ROUNDOFF};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Cube {
-    center: DVec3,
-    half_edges: [DVec3; 3],
+    pub(super) center: DVec3,
+    /// From the center to the middles of three of its faces.
+    pub(super) half_edges: [DVec3; 3],
     duals: [DVec3; 3],
     /// Face 2 i + s lies at the end (s = 1) or the start (s = 0) of half edge i.
     faces: Box<[AffinePlane; 6]>,
@@ -85,15 +86,6 @@ impl Cube {
 
     pub(super) fn point(&self, intersection: &Intersection) -> SurfacePoint {
         self.faces[intersection.part as usize].point(intersection.uv)
-    }
-
-    pub(super) fn center(&self) -> DVec3 {
-        self.center
-    }
-
-    /// From the center to the middles of three of its faces.
-    pub(super) fn half_edges(&self) -> [DVec3; 3] {
-        self.half_edges
     }
 
     /// Three of its edges, each along one axis before a transform.

@@ -5,7 +5,7 @@ use crate::math::DVec2;
 /// Most corners of a polygon that is cut: the time grows with their square.
 pub(super) const MOST_CORNERS: usize = 1 << 12;
 
-/// The triangles of a polygon that runs counterclockwise, told by its corners, of which each is off by up to `reach`;
+/// The triangles of a polygon that runs counterclockwise, given by its corners, of which each is off by up to `reach`;
 /// none if its sides cross. Every corner is one of a triangle.
 ///
 /// A corner is an ear where the triangle with both its neighbors lies inside: it is cut off, and what is left has ears

@@ -6,7 +6,7 @@ use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 /// A sphere after an uneven scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
-    center: DVec3,
+    pub(super) center: DVec3,
     axes: DMat3,
     inverse: DMat3,
 }
@@ -24,12 +24,7 @@ impl Ellipsoid {
         let length = direction.length();
         let n = direction / length;
         let s2 = 1.0 - d.cross(n).length_squared();
-        if s2 >= 0.0 {
-            let (middle, s) = (d.dot(n), s2.sqrt());
-            Some([(middle - s) / length, (middle + s) / length])
-        } else {
-            None
-        }
+        (s2 >= 0.0).then(|| [-1.0, 1.0].map(|side| (d.dot(n) + side * s2.sqrt()) / length))
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
@@ -44,10 +39,6 @@ impl Ellipsoid {
     /// The point of the unit sphere under a point of the surface.
     pub(super) fn unit_of(&self, point: DVec3) -> DVec3 {
         (self.inverse * (point - self.center)).normalize()
-    }
-
-    pub(super) fn center(&self) -> DVec3 {
-        self.center
     }
 
     /// From the center to three points of it, which need not be at right angles.

@@ -12,7 +12,7 @@ use super::Bvh;
 use super::bvh::GROUP;
 use crate::math::{Bounds, DVec3, gamma};
 
-/// A cut saves at least so many times half the surface of a box that the triangle would fill.
+/// A cut saves at least this many times half the surface of a box that the triangle would fill.
 const LEAST_GAIN: f64 = 8.0;
 /// Cuts at most for each triangle, unless these are more than `FREE` in all.
 const MOST_CUTS: usize = 8;

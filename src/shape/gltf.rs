@@ -221,7 +221,7 @@ impl Document {
         Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
     }
 
-    /// The corners of a primitive with so many places.
+    /// The corners of a primitive with `count` vertices.
     fn corners(&self, primitive: &Primitive, count: usize, store: &Store) -> Result<Vec<u32>, String> {
         let corners = match primitive.indices {
             Some(indices) => self.accessor(indices, store)?.whole_numbers()?,
@@ -233,7 +233,7 @@ impl Document {
         }
     }
 
-    /// What each of so many places of a primitive carries; zeros where it carries none.
+    /// The normals and texture coordinates of the `count` vertices of a primitive; zeros where it has none.
     fn attributes(
         &self,
         primitive: &Primitive,

@@ -6,12 +6,12 @@
 
 use crate::math::{Bounds, DVec3};
 
-/// Each more piece saves at least so many times half the surface of a box that the shape would fill: fewer than of
-/// triangles, several of which are met at once.
+/// A further piece saves at least this many times half the surface of a box that the shape would fill. It is less than
+/// for triangles, several of which are tested at once.
 const LEAST_GAIN: f64 = 2.0;
 /// Pieces of a shape at most.
 const MOST: usize = 16;
-/// So many pieces there are in any scene, for their boxes take memory. In one of more shapes each has two at most.
+/// Pieces that any scene may have, for their boxes take memory. With more shapes than this each has two at most.
 const FREE: usize = 1 << 20;
 
 /// What contains a shape that may run aslant: `center` and each of three axes up to its length either way. What is
@@ -31,7 +31,7 @@ impl Hull {
         Self { center, axes, is_round, pad }
     }
 
-    /// How many pieces are worth their boxes, of one of so many shapes.
+    /// How many pieces are worth their boxes in a scene of `shapes` shapes.
     pub(super) fn count(&self, shapes: usize) -> usize {
         let [a, b, c] = self.axes.map(|axis| 2.0 * axis.length());
         let (most, least) = (MOST.min((FREE / shapes.max(1)).max(2)), LEAST_GAIN * (a * b + b * c + c * a));
@@ -47,7 +47,7 @@ impl Hull {
         count
     }
 
-    /// The boxes of so many pieces of equal length.
+    /// The boxes of `count` pieces of equal length.
     pub(super) fn pieces(&self, count: usize) -> impl Iterator<Item = Bounds> {
         let [a, b, c] = self.axes;
         let half = 1.0 / count as f64;

@@ -20,8 +20,8 @@ pub struct Instance {
     bounds: Bounds,
 }
 
-/// Most that a map back may stretch a ray's direction: boxes are met by its reciprocal in 32 bits, which is rounded as
-/// others are above 2^-126, and a map has three axes.
+/// Most that a map back may stretch a ray's direction: boxes are tested by its reciprocal in 32 bits, which is rounded
+/// as others are above 2^-126, and a map has three axes.
 const LARGEST: f64 = 1e37;
 
 impl Instance {

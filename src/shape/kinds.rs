@@ -38,7 +38,7 @@ impl Shape {
         self.intersect_from(ray, t_max, None)
     }
 
-    /// The same of a ray that may leave one of the shape's own parts. A flat one is not met again, which is not tested.
+    /// The nearest crossing with 0 < t <= `t_max` of a ray that may leave the triangle `left` of the shape.
     pub fn intersect_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
         match self {
             Self::Plane(plane) => plane.intersect(ray, t_max),
@@ -92,7 +92,7 @@ impl Shape {
         self.are_triangles_crossed(ray, t, None, |other, nearer| is_before([other, part], [nearer, t]))
     }
 
-    /// Whether its parts are triangles, which can be met one by one.
+    /// Whether it is made of triangles, which can be tested one by one.
     pub fn has_triangles(&self) -> bool {
         self.mesh().is_some()
     }
@@ -150,16 +150,16 @@ impl Shape {
     }
 
     /// Calls `add` with boxes that contain all there is of the shape together, if it is finite: one, or several of a
-    /// long one that runs aslant. It is one of so many shapes.
+    /// long one that runs aslant. `shapes` is the number of shapes in the scene.
     pub fn boxes(&self, shapes: usize, mut add: impl FnMut(Bounds)) {
         let Some(whole) = self.bounds() else { return };
         // Points are rounded up to 12 times, as often as the boxes.
         let pad = whole.min.abs().max(whole.max.abs()) * gamma(32);
         let hull = match self {
-            Self::Ellipsoid(ellipsoid) => Hull::new(ellipsoid.center(), ellipsoid.half_axes(), true, pad),
+            Self::Ellipsoid(ellipsoid) => Hull::new(ellipsoid.center, ellipsoid.half_axes(), true, pad),
             Self::Disc(Disc { plane }) => Hull::new(plane.center, [plane.u, plane.v, DVec3::ZERO], true, pad),
             Self::Quad(Quad { plane }) => Hull::new(plane.center, [plane.u, plane.v, DVec3::ZERO], false, pad),
-            Self::Cube(cube) => Hull::new(cube.center(), cube.half_edges(), false, pad),
+            Self::Cube(cube) => Hull::new(cube.center, cube.half_edges, false, pad),
             Self::Instance(instance) => instance.hull(pad),
             Self::Plane(_) | Self::Triangle(_) | Self::Sphere(_) | Self::Mesh(_) => return add(whole),
         };

@@ -59,7 +59,7 @@ impl Mesh {
         Self { packed, facets, vertices, triangles, bounds, areas, attributes, degenerate, open_edges }
     }
 
-    /// How many triangles there are, at least one.
+    /// Number of triangles, at least one.
     pub fn count(&self) -> u32 {
         self.triangles.len() as u32
     }
@@ -104,7 +104,7 @@ impl Mesh {
         self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
     }
 
-    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, told its
+    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, by its
     /// triangle and t.
     pub(super) fn is_crossed(
         &self,

@@ -6,24 +6,12 @@ use std::path::Path;
 
 use super::mesh_data::{MeshFile, check_finite, no_such_vertex};
 
-/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`; checks that corners exist and that
-/// vertices and what they carry are finite.
+/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`, and the normals of its vertices if it is to be
+/// `smooth`; checks that corners exist and that vertices and what they carry are finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.
-pub fn read(path: &Path) -> Result<MeshFile, String> {
-    read_with(path, false)
-}
-
-/// The same with the normals of the file's vertices, if it has any.
-///
-/// # Errors
-/// A sentence that says what is wrong with the file.
-pub fn read_smooth(path: &Path) -> Result<MeshFile, String> {
-    read_with(path, true)
-}
-
-fn read_with(path: &Path, smooth: bool) -> Result<MeshFile, String> {
+pub fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     if is_packed(path) {
         return Err("it is compressed by gzip: unpack it first".into());

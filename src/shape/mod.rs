@@ -55,7 +55,7 @@ pub use instance::Instance;
 pub use intersection::{Intersection, SurfacePoint};
 pub use kinds::{Shape, is_before};
 pub use mesh::Mesh;
-pub use mesh_file::{read as read_mesh, read_smooth as read_smooth_mesh};
+pub use mesh_file::read as read_mesh;
 pub use plane::Plane;
 pub use polygon::Polygon;
 pub use pool::Pool;

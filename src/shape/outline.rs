@@ -7,7 +7,8 @@ use crate::math::{DVec3, unit};
 pub(super) struct Outline {
     corners: [DVec3; 4],
     parts: [Part; 2],
-    solid_angle: f64,
+    /// Steradians within.
+    pub(super) solid_angle: f64,
 }
 
 /// Terms of one spherical triangle's solid angle, 2 atan2(volume, across + along).
@@ -58,11 +59,6 @@ impl Outline {
         }
         let solid_angle = 2.0 * libm::atan2(imaginary, real);
         (solid_angle >= LEAST).then_some(Self { corners: units, parts, solid_angle })
-    }
-
-    /// Steradians within.
-    pub(super) fn solid_angle(&self) -> f64 {
-        self.solid_angle
     }
 
     /// A direction within, with density 1 / `solid_angle`.

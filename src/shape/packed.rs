@@ -51,18 +51,48 @@ impl Packed {
         leaves: impl Fn(u32) -> bool,
         counts: impl Fn(u32) -> bool,
     ) -> Option<Intersection> {
-        match &self.blocks {
-            Blocks::Single(blocks) => nearest(blocks, &self.bvh, ray, t_max, leaves, counts),
-            Blocks::Double(blocks) => nearest(blocks, &self.bvh, ray, t_max, leaves, counts),
-        }
+        let mut nearest: Option<Intersection> = None;
+        self.search::<true>(ray, t_max, leaves, |found, t_max| {
+            if !counts(found.part) {
+                return Some(t_max);
+            }
+            if nearest.is_none_or(|nearest| found.t < nearest.t || found.part < nearest.part) {
+                nearest = Some(found);
+            }
+            Some(found.t)
+        });
+        nearest
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told its triangle and t.
+    /// Whether there is a crossing with 0 < t <= `t_max` that counts, by its triangle and t.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, leaves: impl Fn(u32) -> bool, counts: impl Fn(u32, f64) -> bool) -> bool {
+        let mut is_found = false;
+        self.search::<false>(ray, t_max, leaves, |found, t_max| {
+            is_found = counts(found.part, found.t);
+            (!is_found).then_some(t_max)
+        });
+        is_found
+    }
+
+    /// Hands over crossings, nearer boxes first if `ORDERED`; `take` returns how far to search on, or none to end.
+    #[inline]
+    fn search<const ORDERED: bool>(
+        &self,
+        ray: &Ray,
+        t_max: f64,
+        leaves: impl Fn(u32) -> bool,
+        take: impl FnMut(Intersection, f64) -> Option<f64>,
+    ) {
+        let (sheared, items) = (Sheared::new(ray), self.bvh.items());
+        let line = sheared.line();
         match &self.blocks {
-            Blocks::Single(blocks) => any(blocks, &self.bvh, ray, t_max, leaves, counts),
-            Blocks::Double(blocks) => any(blocks, &self.bvh, ray, t_max, leaves, counts),
+            Blocks::Single(blocks) => {
+                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, leaves, take });
+            }
+            Blocks::Double(blocks) => {
+                self.bvh.walk::<ORDERED>(ray, t_max, &mut Search { blocks, items, line, sheared, leaves, take });
+            }
         }
     }
 }
@@ -88,121 +118,32 @@ fn blocks<P: Copy + Into<[T; 3]>, T: Copy>(
     items.chunks_exact(GROUP).map(block).collect()
 }
 
-#[inline]
-fn nearest<T: Number>(
-    blocks: &[Block<T>],
-    bvh: &Bvh,
-    ray: &Ray,
-    t_max: f64,
-    leaves: impl Fn(u32) -> bool,
-    counts: impl Fn(u32) -> bool,
-) -> Option<Intersection> {
-    let sheared = Sheared::new(ray);
-    let mut visitor =
-        Nearest { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: None };
-    bvh.walk_in_order(ray, t_max, &mut visitor);
-    visitor.found.map(|found| Intersection { part: bvh.items()[found.part as usize], ..found })
-}
-
-#[inline]
-fn any<T: Number>(
-    blocks: &[Block<T>],
-    bvh: &Bvh,
-    ray: &Ray,
-    t_max: f64,
-    leaves: impl Fn(u32) -> bool,
-    counts: impl Fn(u32, f64) -> bool,
-) -> bool {
-    let sheared = Sheared::new(ray);
-    let mut visitor = Any { blocks, items: bvh.items(), line: sheared.line(), sheared, leaves, counts, found: false };
-    bvh.walk(ray, t_max, &mut visitor);
-    visitor.found
-}
-
-struct Nearest<'a, T, L, F> {
+struct Search<'a, T, L, F> {
     blocks: &'a [Block<T>],
     items: &'a [u32],
     line: Line,
     sheared: Sheared,
     leaves: L,
-    counts: F,
-    /// Its part is the place in `items`.
-    found: Option<Intersection>,
+    take: F,
 }
 
-impl<T, L, F: Fn(u32) -> bool> Nearest<'_, T, L, F> {
-    /// Takes a crossing in place of what was found, if it counts and lies before that, and answers the new `t_max`.
-    #[inline(always)]
-    fn take(&mut self, intersection: Intersection, t_max: f64) -> f64 {
-        let item = |place: u32| self.items[place as usize];
-        if !(self.counts)(item(intersection.part)) {
-            return t_max;
-        }
-        if self.found.is_none_or(|found| intersection.t < found.t || item(intersection.part) < item(found.part)) {
-            self.found = Some(intersection);
-        }
-        intersection.t
-    }
-}
-
-impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32) -> bool> Visitor for Nearest<'_, T, L, F> {
+impl<T: Number, L: Fn(u32) -> bool, F: FnMut(Intersection, f64) -> Option<f64>> Visitor for Search<'_, T, L, F> {
     #[inline(always)]
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, mut t_max: f64) -> Option<f64> {
         for group in first..first + groups {
-            let block = &self.blocks[group];
-            let Some(mut intersections) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
-            while let Some(lane) = next(&mut intersections.met) {
-                if intersections.t[lane] <= t_max {
-                    let part = (group * GROUP + lane) as u32;
-                    t_max = self.take(Intersection { part, ..crossing_of(&intersections, lane) }, t_max);
+            let (block, items) = (&self.blocks[group], &self.items[group * GROUP..][..GROUP]);
+            let Some(mut crossings) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
+            while let Some(lane) = next(&mut crossings.met) {
+                if crossings.t[lane] <= t_max {
+                    t_max = (self.take)(Intersection { part: items[lane], ..crossing_of(&crossings, lane) }, t_max)?;
                 }
             }
-            while let Some(lane) = next(&mut intersections.unsure) {
-                let part = (group * GROUP + lane) as u32;
-                if !(self.leaves)(self.items[part as usize])
-                    && let Some(intersection) = block.exactly(lane, &self.sheared, t_max)
+            while let Some(lane) = next(&mut crossings.unsure) {
+                if !(self.leaves)(items[lane])
+                    && let Some(crossing) = block.exactly(lane, &self.sheared, t_max)
                 {
-                    t_max = self.take(Intersection { part, ..intersection }, t_max);
+                    t_max = (self.take)(Intersection { part: items[lane], ..crossing }, t_max)?;
                 }
-            }
-        }
-        Some(t_max)
-    }
-
-    #[inline(always)]
-    fn prefetch(&self, group: usize) {
-        prefetch(&self.blocks[group]);
-    }
-}
-
-struct Any<'a, T, L, F> {
-    blocks: &'a [Block<T>],
-    items: &'a [u32],
-    line: Line,
-    sheared: Sheared,
-    leaves: L,
-    counts: F,
-    found: bool,
-}
-
-impl<T: Number, L: Fn(u32) -> bool, F: Fn(u32, f64) -> bool> Visitor for Any<'_, T, L, F> {
-    #[inline(always)]
-    fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64> {
-        for group in first..first + groups {
-            let block = &self.blocks[group];
-            let Some(mut intersections) = block.meet(vectors, &self.line, &self.sheared, t_max) else { continue };
-            let counts = |lane: usize, t: f64| (self.counts)(self.items[group * GROUP + lane], t);
-            while let Some(lane) = next(&mut intersections.met) {
-                self.found |= counts(lane, intersections.t[lane]);
-            }
-            while let Some(lane) = next(&mut intersections.unsure).filter(|_| !self.found) {
-                self.found = !(self.leaves)(self.items[group * GROUP + lane])
-                    && block
-                        .exactly(lane, &self.sheared, t_max)
-                        .is_some_and(|intersection| counts(lane, intersection.t));
-            }
-            if self.found {
-                return None;
             }
         }
         Some(t_max)
@@ -223,7 +164,7 @@ fn next(lanes: &mut u32) -> Option<usize> {
     is_there.then_some(lane & (GROUP - 1))
 }
 
-/// The crossing with a triangle that is met.
+/// The crossing with one of the triangles.
 #[inline(always)]
 fn crossing_of(intersections: &Crossings, lane: usize) -> Intersection {
     let Crossings { t, v, w, determinant, .. } = intersections;

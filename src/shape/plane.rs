@@ -8,7 +8,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Plane {
-    point: DVec3,
+    pub(super) point: DVec3,
     normal: DVec3,
 }
 
@@ -18,23 +18,19 @@ impl Plane {
         Self { point, normal: normal.normalize() }
     }
 
-    pub(super) fn origin(&self) -> DVec3 {
-        self.point
-    }
-
     /// The unit vector on the side that is its front.
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
 
-    /// Whether another plane lies in the same place, to so small a part of its distance from the world's origin.
+    /// Whether another plane lies in the same place, to within `near` times its distance from the world's origin.
     pub fn coincides(&self, other: &Self, near: f64) -> bool {
         let far = self.point.length().max(other.point.length());
         let is_parallel = self.normal.cross(other.normal).length() < 1e-6;
         is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
     }
 
-    /// Whether it cuts a box or passes it as near as so small a part of the box's size.
+    /// Whether it cuts a box, or passes it within `near` times the box's diagonal.
     pub fn meets(&self, bounds: &Bounds, near: f64) -> bool {
         let size = bounds.max - bounds.min;
         let half = 0.5 * size.dot(self.normal.abs());

@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::str::FromStr;
 
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
@@ -103,50 +102,33 @@ fn end_of_lines(text: &[u8]) -> u8 {
     }
 }
 
+/// What `$read` makes of words, as a property of each type.
+macro_rules! property {
+    ($kind:expr, $read:expr, $($type:ident => $property:ident),*) => {
+        match $kind {
+            $(ScalarType::$type => Property::$property($read?),)*
+        }
+    };
+}
+
 /// What stands in a line; none if that is not what the header says.
 fn of_line<E: PropertyAccess>(line: &str, element: &ElementDef) -> Option<E> {
     let (mut words, mut read) = (line.split_ascii_whitespace(), E::new());
     for (name, property) in &element.properties {
         let value = match &property.data_type {
-            PropertyType::Scalar(kind) => scalar(kind, words.next()?),
+            PropertyType::Scalar(kind) => property!(kind, words.next()?.parse().ok(),
+                Char => Char, UChar => UChar, Short => Short, UShort => UShort,
+                Int => Int, UInt => UInt, Float => Float, Double => Double),
             PropertyType::List(_, kind) => {
-                let count = words.next()?.parse().ok()?;
-                list(kind, count, &mut words)
+                let count: usize = words.next()?.parse().ok()?;
+                property!(kind, (0..count).map(|_| words.next()?.parse().ok()).collect::<Option<_>>(),
+                    Char => ListChar, UChar => ListUChar, Short => ListShort, UShort => ListUShort,
+                    Int => ListInt, UInt => ListUInt, Float => ListFloat, Double => ListDouble)
             }
         };
-        read.set_property(name, value?);
+        read.set_property(name, value);
     }
     Some(read)
-}
-
-fn scalar(kind: &ScalarType, word: &str) -> Option<Property> {
-    Some(match kind {
-        ScalarType::Char => Property::Char(word.parse().ok()?),
-        ScalarType::UChar => Property::UChar(word.parse().ok()?),
-        ScalarType::Short => Property::Short(word.parse().ok()?),
-        ScalarType::UShort => Property::UShort(word.parse().ok()?),
-        ScalarType::Int => Property::Int(word.parse().ok()?),
-        ScalarType::UInt => Property::UInt(word.parse().ok()?),
-        ScalarType::Float => Property::Float(word.parse().ok()?),
-        ScalarType::Double => Property::Double(word.parse().ok()?),
-    })
-}
-
-fn list<'l>(kind: &ScalarType, count: usize, words: &mut impl Iterator<Item = &'l str>) -> Option<Property> {
-    Some(match kind {
-        ScalarType::Char => Property::ListChar(numbers(count, words)?),
-        ScalarType::UChar => Property::ListUChar(numbers(count, words)?),
-        ScalarType::Short => Property::ListShort(numbers(count, words)?),
-        ScalarType::UShort => Property::ListUShort(numbers(count, words)?),
-        ScalarType::Int => Property::ListInt(numbers(count, words)?),
-        ScalarType::UInt => Property::ListUInt(numbers(count, words)?),
-        ScalarType::Float => Property::ListFloat(numbers(count, words)?),
-        ScalarType::Double => Property::ListDouble(numbers(count, words)?),
-    })
-}
-
-fn numbers<'l, T: FromStr>(count: usize, words: &mut impl Iterator<Item = &'l str>) -> Option<Vec<T>> {
-    (0..count).map(|_| words.next()?.parse().ok()).collect()
 }
 
 fn no_fit(line: usize) -> String {

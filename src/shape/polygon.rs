@@ -33,7 +33,7 @@ impl Polygon<'_> {
         }
     }
 
-    /// Its area, in scene units.
+    /// Its area, in square scene units.
     pub fn area(&self) -> f64 {
         match self {
             Self::Triangle(triangle) => triangle.area(),
@@ -45,7 +45,7 @@ impl Polygon<'_> {
     /// A direction from a point toward it: evenly over its solid angle nearby, through a point drawn by area far away.
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         if let Some(outline) = self.outline(from) {
-            return Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle()));
+            return Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle));
         }
         let point = match self {
             Self::Triangle(triangle) | Self::Facet(Facet { triangle, .. }) => triangle.sample_area(u),
@@ -57,7 +57,7 @@ impl Polygon<'_> {
     /// How densely `sample` draws from a point.
     pub(super) fn density(&self, from: DVec3) -> Density {
         match self.outline(from) {
-            Some(outline) => Density::SolidAngle(1.0 / outline.solid_angle()),
+            Some(outline) => Density::SolidAngle(1.0 / outline.solid_angle),
             None => Density::Area(1.0 / self.area()),
         }
     }

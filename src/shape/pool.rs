@@ -26,7 +26,7 @@ impl Pool {
         let (mut points, mut owners) = (Vec::<DVec3>::new(), Vec::new());
         for (number, shape) in shapes {
             let mut add = |triangle: &Triangle, part: u32| {
-                points.extend(triangle.points());
+                points.extend(triangle.points);
                 owners.push([number, part]);
             };
             match shape {
@@ -58,7 +58,7 @@ impl Pool {
         Some((number, Intersection { part, ..intersection }))
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` that counts, told the shape's number, the part and t.
+    /// Whether there is a crossing with 0 < t <= `t_max` that counts, by the shape's number, the part and t.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, left: Option<[u32; 2]>, counts: impl Fn([u32; 2], f64) -> bool) -> bool {
         let owner = |item: u32| self.owners[item as usize];

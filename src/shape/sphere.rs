@@ -10,7 +10,7 @@ use crate::math::{Bounds, Cone, DMat3, DVec3, Ray, Transform, ball_surface, gamm
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sphere {
-    center: DVec3,
+    pub(super) center: DVec3,
     radius: f64,
 }
 
@@ -21,10 +21,6 @@ impl Sphere {
     /// The sphere of a radius above 0.
     pub fn new(center: DVec3, radius: f64) -> Self {
         Self { center, radius }
-    }
-
-    pub(super) fn center(&self) -> DVec3 {
-        self.center
     }
 
     /// Whether more than a spot of the surface may lie in another's: only where centers and radii are about the same.
@@ -42,12 +38,7 @@ impl Sphere {
     fn roots(&self, ray: &Ray) -> Option<[f64; 2]> {
         let d = self.center - ray.origin;
         let s2 = self.radius * self.radius - d.cross(ray.direction).length_squared();
-        if s2 >= 0.0 {
-            let (middle, s) = (d.dot(ray.direction), s2.sqrt());
-            Some([middle - s, middle + s])
-        } else {
-            None
-        }
+        (s2 >= 0.0).then(|| [-1.0, 1.0].map(|side| d.dot(ray.direction) + side * s2.sqrt()))
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {

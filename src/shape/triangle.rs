@@ -12,7 +12,7 @@ use crate::math::{Bounds, DVec3, Ray, Transform, gamma, triangle_coordinates};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Triangle {
-    points: [DVec3; 3],
+    pub(super) points: [DVec3; 3],
 }
 
 impl Triangle {
@@ -24,10 +24,6 @@ impl Triangle {
     /// Whether three points span no area: they coincide or lie on a line as exactly as f64 can tell.
     pub fn is_degenerate(points: [DVec3; 3]) -> bool {
         scaled_normal(points).length_squared() == 0.0
-    }
-
-    pub(super) fn points(&self) -> [DVec3; 3] {
-        self.points
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
@@ -163,7 +159,7 @@ impl Sheared {
         Self { origin: ray.origin, order: [x, y, z], shear }
     }
 
-    /// The same for the test of several triangles at once.
+    /// The ray as the test of four triangles at once takes it.
     pub(super) fn line(&self) -> Line {
         Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: NEAR }
     }

@@ -16,7 +16,7 @@ impl Default for Vertices {
 }
 
 impl Vertices {
-    /// How many there are.
+    /// Number of vertices.
     pub fn count(&self) -> usize {
         match self {
             Self::Single(points) => points.len(),

@@ -35,7 +35,7 @@ impl BandResponse {
         }
     }
 
-    /// Whether heroes carry light that arrives in lanes; `found` is told the band and the light of each.
+    /// Whether heroes carry light that arrives in lanes; `found` gets the band and the light of each.
     pub fn heroes<const N: usize>(
         &self,
         draw: &Draw<N>,

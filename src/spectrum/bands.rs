@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::color::{ColorSpace, apply};
+use super::color::{ColorSpace, apply, weighted_sum};
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Emission, Quantity};
 
@@ -43,12 +43,7 @@ impl Bands {
 
     /// The mean over each band.
     fn mean(&self, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (nm, share) in &self.parts {
-            let value = value(*nm);
-            (0..3).for_each(|c| sum[c] += share[c] * value);
-        }
-        sum
+        weighted_sum(self.parts.iter().map(|&(nm, share)| (value(nm), share)))
     }
 
     /// The numbers of a curve: colors as they look under the light; a metal of the catalog so that its reflectance at

@@ -83,10 +83,10 @@ impl Basis {
         Self::bands_over(space, bands, Self::best_range_nm(bands), lines_nm)
     }
 
-    /// From where to where, in nm, wavelengths lie for dyes that ultraviolet light excites.
+    /// The range in nm of wavelengths for dyes that ultraviolet light excites.
     pub const FROM_ULTRAVIOLET_NM: [f64; 2] = [visible::START_NM, 730.0];
 
-    /// From where to where, in nm, so many wavelengths show colors best.
+    /// The range in nm over which that many wavelengths show colors best.
     pub(crate) fn best_range_nm(bands: usize) -> [f64; 2] {
         match bands {
             ..=8 => [410.0, 710.0],
@@ -228,12 +228,12 @@ impl Basis {
         }
     }
 
-    /// How many lanes a camera sample carries.
+    /// Number of lanes that a camera sample carries.
     pub fn lanes(&self) -> usize {
         self.wavelengths_nm.len() + self.heroes.as_ref().map_or(0, |heroes| heroes.count)
     }
 
-    /// How many of them are the same in every sample.
+    /// Number of lanes that stand for the same light in every sample.
     pub fn fixed_lanes(&self) -> usize {
         self.wavelengths_nm.len()
     }
@@ -357,7 +357,7 @@ impl Basis {
     pub(super) fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
         let Some(Heroes { mixture, .. }) = &self.heroes else { return Vec::new() };
         let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
-        fine.extend(mixture.lines().iter().map(|&nm| line(nm)));
+        fine.extend(mixture.lines.iter().map(|&nm| line(nm)));
         // Reading between two entries never runs off the end.
         fine.push(fine[fine.len() - 1].clone());
         fine
@@ -431,11 +431,11 @@ impl Basis {
         });
         let at = |nm: f64| unit * emission.spectrum()[(nm - visible::START_NM) as usize];
         let line = |nm: f64| unit * emission.power_of_line(nm);
-        let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| heroes.mixture.lines());
+        let lines_nm = self.heroes.as_ref().map_or(&[][..], |heroes| &*heroes.mixture.lines);
         Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
     }
 
-    /// How each part of a light is spread over the lanes: told is the number of the part, first the wavelengths of the
+    /// How each part of a light is spread over the lanes: `carries` gets the number of the part, first those of the
     /// visible grid, then the lines; a lane; and the share that it carries.
     fn spread(&self, functions: &[Vec<f64>], lines: &[[f64; 2]], mut carries: impl FnMut(usize, usize, f64)) {
         for part in 0..COUNT {

@@ -79,7 +79,7 @@ impl Primaries {
 /// `colorInteropID` of their space, or else its primaries and white. Without a word they are Rec.709 itself.
 ///
 /// # Errors
-/// Why it cannot be told what they mean.
+/// Why their meaning is not known.
 pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
     if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| primaries?.space()) {
         return Ok(space.to_rec709());
@@ -230,6 +230,11 @@ pub fn apply(matrix: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * x + row[1] * y + row[2] * z)
 }
 
+/// The sum of colors times their weights.
+pub(super) fn weighted_sum(colors: impl Iterator<Item = (f64, [f64; 3])>) -> [f64; 3] {
+    colors.fold([0.0; 3], |sum, (weight, color)| std::array::from_fn(|i| sum[i] + weight * color[i]))
+}
+
 /// The matrix that applies `b`, then `a`.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     transpose(transpose(*b).map(|column| apply(a, column)))
@@ -258,11 +263,6 @@ pub fn encode_srgb(linear: [f32; 3]) -> [u8; 3] {
 /// The linear value of an sRGB value, both 0 to 1: IEC 61966-2-1, equations 5 and 6.
 pub fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
-}
-
-/// Factors that make one XYZ another.
-pub(super) fn factors(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| to[i] / from[i])
 }
 
 #[cfg(test)]
@@ -303,11 +303,5 @@ mod tests {
         let line = Primaries { red: [0.2, 0.2], green: [0.3, 0.3], blue: [0.4, 0.4], white: D65 };
         assert_eq!(line.to_rec709(), None);
         assert_eq!(Primaries { white: [0.3, 0.0], ..ColorSpace::Rec709.primaries() }.to_rec709(), None);
-    }
-
-    #[test]
-    fn the_equal_energy_spectrum_is_pink_in_rec709() {
-        let [r, g, b] = apply(&ColorSpace::Rec709.of_xyz(), [1.0; 3]);
-        assert_near([r, g, b], [1.2048, 0.9483, 0.9089], 1e-3);
     }
 }

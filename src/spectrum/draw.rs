@@ -136,7 +136,7 @@ impl<const N: usize> Draw<N> {
     /// The smallest and the largest number that a lane reads in a table.
     #[inline]
     pub fn range(&self, table: &Table) -> [f64; 2] {
-        self.heroes().fold(table.fixed_range(), |[least, most], (_, hero)| {
+        self.heroes().fold(table.fixed_range, |[least, most], (_, hero)| {
             let x = table.between(hero.below, hero.fraction);
             [if x < least { x } else { least }, if x > most { x } else { most }]
         })
@@ -175,8 +175,8 @@ impl<const N: usize> Draw<N> {
         (self.fixed..).zip(&self.heroes[..self.count])
     }
 
-    /// The same with the weight of the light that arrives in its lane, where heroes carry it; none where the fixed
-    /// lanes do.
+    /// The lane of each hero, the hero, and the weight of the light that arrives in that lane; none where the fixed
+    /// lanes carry the light.
     pub(super) fn carrying(&self, lanes: &Lanes<N>, parted: bool) -> Option<impl Iterator<Item = (usize, &Hero, f64)>> {
         let factor = self.hero_factor(parted)?;
         Some(self.heroes().map(move |(lane, hero)| (lane, hero, factor * hero.factor * f64::from(lanes[lane]))))

@@ -1,6 +1,6 @@
 //! What a light shines, with its true colors: a spectrum on the visible grid and ideal lines.
 
-use super::color::{ColorSpace, Matrix, apply, factors, product};
+use super::color::{ColorSpace, Matrix, apply, weighted_sum};
 use super::curve::interpolate;
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Quantity, Upsampler};
@@ -28,10 +28,7 @@ pub struct FilmColors {
 impl FilmColors {
     /// The film color of what is left of the light at each wavelength.
     pub fn color(&self, left: &[f64]) -> [f64; 3] {
-        left.iter().zip(&self.columns).fold([0.0; 3], |mut color, (left, column)| {
-            (0..3).for_each(|c| color[c] += left * column[c]);
-            color
-        })
+        weighted_sum(left.iter().copied().zip(self.columns.iter().copied()))
     }
 }
 
@@ -54,7 +51,7 @@ impl Emission {
             CurveKind::Samples(samples) => plain(&|nm| unit * on_grid(samples, nm)),
             kind => plain(&*kind.values(Quantity::Emission)),
         };
-        let film_of_xyz = product(&space.of_xyz(), &diagonal(correction));
+        let film_of_xyz = space.of_xyz().map(|row| std::array::from_fn(|i| row[i] * correction[i]));
         let mut emission = Self { spectrum, lines, correction, film_of_xyz };
         let luminance = emission.xyz()[1];
         let is_absolute =
@@ -116,11 +113,8 @@ impl Emission {
     }
 
     fn uncorrected(&self) -> [f64; 3] {
-        self.lines.iter().fold(visible::xyz(&self.spectrum), |mut sum, &[nm, power]| {
-            let cmf = color_matching(nm);
-            (0..3).for_each(|i| sum[i] += power * cmf[i]);
-            sum
-        })
+        let lines = self.lines.iter().map(|&[nm, power]| (power, color_matching(nm)));
+        weighted_sum(self.spectrum.iter().copied().zip(visible::observer()).chain(lines))
     }
 
     /// Film color of a power of 1 at a wavelength.
@@ -162,9 +156,7 @@ impl Emission {
 
 /// A multiple of the film's white on the grid, and the factors on XYZ that make the white exactly the film's.
 fn colored(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
-    let white = space.white_light();
-    let mut spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
-    let correction = factors(visible::xyz(&spectrum), space.white());
+    let (mut spectrum, correction) = visible::white(space);
     let [r, g, b] = rgb;
     if r == g && g == b {
         spectrum.iter_mut().for_each(|power| *power *= r);
@@ -203,10 +195,6 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
         (b - a) / 6.0 * (inside(1e-9) + 4.0 * inside(0.5) + inside(1.0 - 1e-9))
     };
     ends.windows(2).map(|pair| part(pair[0], pair[1])).sum()
-}
-
-fn diagonal([x, y, z]: [f64; 3]) -> Matrix {
-    [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]
 }
 
 #[cfg(test)]

@@ -86,7 +86,7 @@ impl<const N: usize> Matching<N> {
         Self { weights: basis.fine(between, line), bins, chances }
     }
 
-    /// Whether heroes carry light that arrives in lanes; `found` is told the lane, the wavelength
+    /// Whether heroes carry light that arrives in lanes; `found` gets the lane, the wavelength
     /// and the weight of each.
     pub fn alone(draw: &Draw<N>, lanes: Lanes<N>, parted: bool, mut found: impl FnMut(usize, Wavelength, f64)) -> bool {
         let Some(heroes) = draw.carrying(&lanes, parted) else { return false };

@@ -12,8 +12,8 @@ use crate::math::Distribution;
 pub(super) struct Mixture {
     /// Each step of the visible grid, then each line.
     entries: Distribution,
-    /// The ideal lines, in nm.
-    lines: Vec<f64>,
+    /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
+    pub(super) lines: Vec<f64>,
 }
 
 /// Share of the wavelengths drawn by what lights send; the others are drawn by what the eye sees of an even spectrum.
@@ -92,11 +92,6 @@ impl Mixture {
         Self { entries, lines: Vec::new() }
     }
 
-    /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
-    pub(super) fn lines(&self) -> &[f64] {
-        &self.lines
-    }
-
     /// Probability of each step of the visible grid, then of each line.
     pub(super) fn probabilities(&self) -> impl Iterator<Item = f64> {
         (0..self.entries.count()).map(|entry| self.entries.probability(entry))
@@ -120,7 +115,7 @@ fn eye() -> impl Iterator<Item = f64> {
     visible::observer().map(|cmf| cmf.iter().sum())
 }
 
-/// The same of a light.
+/// What the eye sees of a light at each wavelength of the grid.
 fn seen(light: &Emission) -> Vec<f64> {
     light.spectrum().iter().zip(eye()).map(|(power, eye)| power * eye).collect()
 }

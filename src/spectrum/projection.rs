@@ -24,9 +24,9 @@ pub(super) struct Projection {
 
 /// How the functions of all lanes share a wavelength, and what light of it is worth.
 pub(super) struct Part {
-    /// In nm.
+    /// The wavelength, in nm.
     pub(super) at_nm: f64,
-    /// By lane.
+    /// The share of each lane.
     pub(super) shares: Vec<f64>,
     /// To each measure, which is CIE X, Y or Z under one light, or a dye that it excites: over all that the light is
     /// worth to it.
@@ -40,7 +40,7 @@ const UNSEEN: f64 = 1e-3;
 const SHOWN: f64 = 1.0;
 /// The weight of a measure beside that of all wavelengths, where it shall be the spectrum's own.
 const EXACT: f64 = 1e5;
-/// The same where there are more measures than that is possible for: of weights from 0 to 1e5, close to the best for
+/// The weight of a measure where there are too many to be exact in all: of weights from 0 to 1e5, close to the best for
 /// one, two and four reflections by 123 measured colors under four lights in 8 to 32 lanes.
 const BALANCED: f64 = 10.0;
 

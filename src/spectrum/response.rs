@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use super::color::weighted_sum;
 use super::draw::Hero;
 use super::table::MAX_LANES;
 use super::{Draw, Lanes};
@@ -26,12 +27,8 @@ impl Response {
     /// The film's red, green and blue of light that arrives in lanes; `parted` says whether they parted on the way.
     pub fn sensor<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
         if let Some(heroes) = draw.carrying(&lanes, parted) {
-            let mut sensor = [0.0; 3];
-            for (_, hero, weight) in heroes.filter(|(.., weight)| *weight != 0.0) {
-                let color = self.hero(hero);
-                (0..3).for_each(|c| sensor[c] += weight * color[c]);
-            }
-            return sensor;
+            let weighted = heroes.filter(|(.., weight)| *weight != 0.0);
+            return weighted_sum(weighted.map(|(_, hero, weight)| (weight, self.hero(hero))));
         }
         // Four sums side by side, so that the processor need not wait for each addition.
         let columns: &[[f64; 4]; N] = self.columns.first_chunk().expect("no more lanes are compiled than fit");

@@ -16,7 +16,7 @@ pub struct Table {
     fine: Arc<[f64]>,
     flat: bool,
     /// The smallest and the largest number of the fixed lanes.
-    fixed_range: [f64; 2],
+    pub(super) fixed_range: [f64; 2],
     /// Of an index: the one by which all lanes are refracted.
     direction: Option<f64>,
     /// A factor that varies over the surface.
@@ -89,7 +89,7 @@ impl Table {
         self.pattern.as_deref()
     }
 
-    /// Whether it is different at different places of a surface, so that `Draw::read_at` must be told the place.
+    /// Whether it is different at different places of a surface, so that `Draw::read_at` needs the place.
     pub fn varies(&self) -> bool {
         self.pattern.is_some()
     }
@@ -121,17 +121,12 @@ impl Table {
         self.flat && self.pattern.is_none() && self.fixed[0] == 1.0
     }
 
-    /// Smallest and largest number of the fixed lanes.
-    pub(super) fn fixed_range(&self) -> [f64; 2] {
-        self.fixed_range
-    }
-
     /// The numbers of the first N fixed lanes.
     pub(super) fn fixed<const N: usize>(&self) -> &[f64; N] {
         self.fixed.first_chunk().expect("no more lanes are compiled than fit")
     }
 
-    /// The same as weights.
+    /// The numbers of the first N fixed lanes, as weights.
     pub(super) fn weights<const N: usize>(&self) -> &[f32; N] {
         self.weights.first_chunk().expect("no more lanes are compiled than fit")
     }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-use super::color::{ColorSpace, Matrix, adaptation, apply, factors, inverse, product};
+use super::color::{ColorSpace, Matrix, adaptation, apply, inverse, product};
 use super::data;
 use super::visible::{self, ULTRAVIOLET};
 
@@ -58,8 +58,6 @@ impl PartialEq for Upsampler {
 
 /// Most colors that are kept, which take 8 MB.
 const MOST_FOUND: usize = 1 << 16;
-/// How many color spaces there are.
-const SPACES: usize = ColorSpace::Xyz as usize + 1;
 
 /// Largest residual of a fit, in linear Rec.709.
 const CLOSE: f64 = 1e-4;
@@ -68,14 +66,12 @@ impl Upsampler {
     /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white. All of one space know what any has
     /// found.
     pub fn new(space: ColorSpace) -> Self {
-        static MADE: [OnceLock<Upsampler>; SPACES] = [const { OnceLock::new() }; SPACES];
+        static MADE: [OnceLock<Upsampler>; ColorSpace::ALL.len()] = [const { OnceLock::new() }; ColorSpace::ALL.len()];
         MADE[space as usize].get_or_init(|| Self::made(space)).clone()
     }
 
     fn made(space: ColorSpace) -> Self {
-        let white = space.white_light();
-        let spectrum: Vec<f64> = visible::wavelengths().map(|nm| white.at(nm)).collect();
-        let correction = factors(visible::xyz(&spectrum), space.white());
+        let (spectrum, correction) = visible::white(space);
         let adapted = adaptation(space.white(), ColorSpace::Rec709.white());
         let to_rec709 = product(&ColorSpace::Rec709.of_xyz(), &adapted);
         let steps = spectrum.iter().skip(ULTRAVIOLET).zip(data::color_matching());

@@ -1,6 +1,7 @@
 //! The grid on which light is integrated, 300 to 830 nm in steps of 1 nm: the visible range, and the ultraviolet light
 //! below it that dyes make visible.
 
+use super::color::{ColorSpace, weighted_sum};
 use super::data;
 
 /// The first wavelength of the grid, in nm: CIE illuminants have no light below it.
@@ -53,11 +54,15 @@ pub fn observer() -> impl Iterator<Item = [f64; 3]> {
 
 /// CIE XYZ of a spectrum on the grid: the sum over 1 nm steps (CIE 15:2018, equation 7.1) with k = 1.
 pub fn xyz(spectrum: &[f64]) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for (value, cmf) in spectrum.iter().skip(ULTRAVIOLET).zip(data::color_matching()) {
-        (0..3).for_each(|i| sum[i] += value * cmf[i]);
-    }
-    sum
+    weighted_sum(spectrum.iter().copied().zip(observer()))
+}
+
+/// The spectrum of a film's white on the grid, and the factors on its XYZ that make it exactly that white.
+pub(super) fn white(space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
+    let light = space.white_light();
+    let spectrum: Vec<f64> = wavelengths().map(|nm| light.at(nm)).collect();
+    let (found, white) = (xyz(&spectrum), space.white());
+    (spectrum, std::array::from_fn(|i| white[i] / found[i]))
 }
 
 /// The integral of y-bar over the visible range: Y of a flat spectrum of 1 before it is scaled.

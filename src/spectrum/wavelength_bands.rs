@@ -33,17 +33,17 @@ impl WavelengthBands {
         fits.then(|| Self { first_nm: from_nm, step_nm, count: steps as usize + 1 })
     }
 
-    /// How many they are.
+    /// Number of bands.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// From center to center, which is also the width of each, in nm.
+    /// Distance from center to center, which is also the width of each band, in nm.
     pub fn step_nm(&self) -> f64 {
         self.step_nm
     }
 
-    /// From where to where they reach, in nm, as far as light is known.
+    /// The range of all bands, in nm, cut to the grid on which light is known.
     pub fn range_nm(&self) -> [f64; 2] {
         let start = self.first_nm - 0.5 * self.step_nm;
         [start.max(START_NM), (start + self.count as f64 * self.step_nm).min(LAST_NM)]

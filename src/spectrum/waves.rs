@@ -19,7 +19,7 @@ impl Waves {
         [&self.wavelengths, &self.widths].map(|table| draw.read_lane(table, lane))
     }
 
-    /// The same of all fixed lanes.
+    /// The wavelength in nm and the relative bandwidth of every fixed lane.
     pub fn of_fixed_lanes(&self) -> impl Iterator<Item = [f64; 2]> {
         self.wavelengths.bins().iter().zip(self.widths.bins()).map(|(&nm, &width)| [nm, width])
     }

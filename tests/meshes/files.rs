@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use abbe::math::{DVec3, Ray, Transform};
-use abbe::shape::{Mesh, Shape, Vertices, read_mesh, read_smooth_mesh};
+use abbe::shape::{Mesh, Shape, Vertices, read_mesh};
 
 use crate::support::random::Random;
 use crate::support::run::Folder;
@@ -31,7 +31,7 @@ pub fn file(name: &str, bytes: impl AsRef<[u8]>) -> (Folder, PathBuf) {
 /// The triangles of a file, and whether it names materials.
 pub fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
     let (_folder, path) = file(name, bytes);
-    let mesh = read_mesh(&path).unwrap_or_else(|message| panic!("{name}: {message}"));
+    let mesh = read_mesh(&path, false).unwrap_or_else(|message| panic!("{name}: {message}"));
     (mesh.faces.iter().map(|face| face.map(|corner| mesh.vertices.at(corner))).collect(), mesh.materials > 0)
 }
 
@@ -126,8 +126,8 @@ fn a_ply_in_lines_may_write_numbers_and_comments_in_any_way() {
         + &["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
     let header = header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     let (_folder, path) = file("a.ply", header + "0 0 0 nan -nan NaN\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
-    assert_eq!(read_mesh(&path).expect("its normals are not used").faces, [[0, 1, 2]]);
-    let told = read_smooth_mesh(&path).err();
+    assert_eq!(read_mesh(&path, false).expect("its normals are not used").faces, [[0, 1, 2]]);
+    let told = read_mesh(&path, true).err();
     assert_eq!(told.as_deref(), Some("the normal of vertex 0 (counted from 0) is not finite"));
 }
 
@@ -139,14 +139,14 @@ fn strips_of_a_ply_are_cut_into_triangles() {
     let strips = "8 0 3 2 -1 2 1 0 4\n13 1 2 4 3 -1 -7 0 4 3 -1 4 4 0\n";
     let (_folder, path) = file("a.ply", header.replace("uchar int", "int int") + &vertices + strips);
     let expected = [[0, 3, 2], [2, 1, 0], [0, 1, 4], [1, 2, 4], [4, 2, 3], [0, 4, 3]];
-    assert_eq!(read_mesh(&path).expect("strips").faces, expected);
+    assert_eq!(read_mesh(&path, false).expect("strips").faces, expected);
 }
 
 #[test]
 fn what_a_ply_cannot_say_with_its_faces_is_told() {
     let refusal = |from: &str, to: &str| {
         let (_folder, path) = file("a.ply", ply_text().replace(from, to));
-        read_mesh(&path).err().unwrap_or_default()
+        read_mesh(&path, false).err().unwrap_or_default()
     };
     let list = "list uchar int vertex_indices";
     assert_eq!(refusal(list, list), "");
@@ -160,11 +160,11 @@ fn what_a_ply_cannot_say_with_its_faces_is_told() {
     );
     let header = ply_header("binary_little_endian", "float", "int").replace("uchar int", "int int");
     let (_folder, path) = file("a.ply", [header.as_bytes(), &[0; 13 * 5], &[255; 4 * 4 * 5]].concat());
-    let told = read_mesh(&path).err();
+    let told = read_mesh(&path, false).err();
     assert_eq!(told.as_deref(), Some("its bytes do not fit a PLY file with this header"));
     for name in ["a.ply", "a.obj", "a.glb"] {
         let (_folder, path) = file(name, b"\x1f\x8b\x08\0\0\0\0\0");
-        assert_eq!(read_mesh(&path).err().as_deref(), Some("it is compressed by gzip: unpack it first"));
+        assert_eq!(read_mesh(&path, false).err().as_deref(), Some("it is compressed by gzip: unpack it first"));
     }
 }
 
@@ -222,7 +222,7 @@ fn an_obj_far_from_the_origin_is_as_exact_as_near_it() {
     for (far, is_rounded) in [(0.0, true), (1e7 + 0.1, false)] {
         let text = POINTS.map(|[x, y, z]| format!("v {} {y} {z}\n", x + far)).concat() + faces;
         let (_folder, path) = file("far.obj", text);
-        let mesh = read_mesh(&path).expect("it is right");
+        let mesh = read_mesh(&path, false).expect("it is right");
         assert_eq!(matches!(mesh.vertices, Vertices::Single(_)), is_rounded);
         for [x, y, z] in POINTS {
             let there = DVec3::new(x + far, y, z);
@@ -254,10 +254,10 @@ fn broken_obj_files_are_refused_with_the_line() {
         ("f 1/1/1", "f 1/1/-2", "the face in line 6 asks for a normal that the file does not have"),
     ] {
         let (_folder, path) = file("a.obj", good.replace(old, new));
-        assert_eq!(read_smooth_mesh(&path).err().unwrap_or_default(), message, "{new}");
+        assert_eq!(read_mesh(&path, true).err().unwrap_or_default(), message, "{new}");
         // Normals that are not used may be anything, as for faces without area.
         let is_of_normal = message.starts_with("the normal");
-        assert_eq!(read_mesh(&path).is_err(), !message.is_empty() && !is_of_normal, "{new}");
+        assert_eq!(read_mesh(&path, false).is_err(), !message.is_empty() && !is_of_normal, "{new}");
     }
 }
 
@@ -453,7 +453,7 @@ fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
 
 #[test]
 fn a_missing_file_and_another_ending_are_refused() {
-    assert!(read_mesh(Path::new("no/such/file.ply")).is_err());
+    assert!(read_mesh(Path::new("no/such/file.ply"), false).is_err());
     let (_folder, path) = file("a.stl", b"solid");
-    assert_eq!(read_mesh(&path).err().as_deref(), Some("a mesh file ends in .ply, .obj, .gltf or .glb"));
+    assert_eq!(read_mesh(&path, false).err().as_deref(), Some("a mesh file ends in .ply, .obj, .gltf or .glb"));
 }

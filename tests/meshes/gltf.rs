@@ -53,7 +53,7 @@ fn every_way_to_store_a_gltf_gives_the_same_triangles() {
         assert_eq!(read("a.gltf", marked.as_bytes()).0, triangles(true));
         let (folder, path) = file("a.GLTF", document(r#""uri":"a%20b.bin","#, width, ""));
         std::fs::write(folder.path().join("a b.bin"), binary(width)).expect("the file can be written");
-        let mesh = read_mesh(&path).expect("a glTF file");
+        let mesh = read_mesh(&path, false).expect("a glTF file");
         assert_eq!(mesh.faces, FACES);
         assert_eq!(mesh.others, [folder.path().join("a b.bin")]);
     }
@@ -101,7 +101,7 @@ fn places_may_be_whole_numbers() {
     let numbers = [[-128_i8, -127, 127, 0], [0; 4], [127, 0, 0, 0], [0, 127, 0, 0], [0; 4]].concat();
     let numbers: Vec<u8> = numbers.into_iter().map(|number| number as u8).collect();
     let (_folder, path) = file("a.glb", glb(&text(5120, 1, true), &[&numbers[..], &corners].concat()));
-    let mesh = read_mesh(&path).expect("a glTF file");
+    let mesh = read_mesh(&path, false).expect("a glTF file");
     assert_eq!(mesh.vertices.at(0), DVec3::new(-2.0, -2.0, 2.0));
     assert!(mesh.ignored.is_empty(), "no texture coordinates are moved where there are none");
 }
@@ -115,7 +115,7 @@ fn texture_transforms_are_said_to_be_ignored() {
         .replace(r#""type":"SCALAR"}"#, accessor)
         .replace(r#""scene":0"#, r#""extensionsUsed":["KHR_texture_transform"],"scene":0"#);
     let (_folder, path) = file("a.gltf", text);
-    assert_eq!(read_mesh(&path).expect("a glTF file").ignored, ["texture transforms"]);
+    assert_eq!(read_mesh(&path, false).expect("a glTF file").ignored, ["texture transforms"]);
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn strips_fans_and_bare_points_become_triangles() {
             .replace("18,", &format!("{count},"))
             .replace(r#""byteLength":18"#, &format!(r#""byteLength":{count}"#));
         let (_folder, path) = file("a.gltf", text.replace(r#""byteLength":78"#, r#""byteLength":60"#));
-        read_mesh(&path).map(|mesh| mesh.faces)
+        read_mesh(&path, false).map(|mesh| mesh.faces)
     };
     assert_eq!(with_mode(5, &[0, 1, 2, 3, 4]).expect("a strip"), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
     assert_eq!(with_mode(6, &[0, 1, 2, 3, 4]).expect("a fan"), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
@@ -175,7 +175,7 @@ fn sparse_entries_without_a_view_replace_zeros() {
     assert_eq!(read("a.gltf", text.as_bytes()).0, FACES.map(|face| face.map(point)));
     let countless = text.replace(r#""count":5"#, r#""count":1000000000000"#);
     let (_folder, path) = file("a.gltf", countless);
-    let message = read_mesh(&path).err();
+    let message = read_mesh(&path, false).err();
     assert_eq!(message.as_deref(), Some("accessor 0 has more entries than the buffers have bytes"));
 }
 
@@ -184,9 +184,9 @@ fn copies_that_only_an_extension_tells_of_are_said_to_be_ignored() {
     let used = r#""scene":0,"extensionsUsed":["KHR_materials_ior","EXT_mesh_gpu_instancing"]"#;
     let text = document(&embedded(1), 1, "");
     let (_folder, path) = file("a.gltf", text.replace(r#""scene":0"#, used));
-    assert_eq!(read_mesh(&path).expect("a glTF file").ignored, ["copies by EXT_mesh_gpu_instancing"]);
+    assert_eq!(read_mesh(&path, false).expect("a glTF file").ignored, ["copies by EXT_mesh_gpu_instancing"]);
     let (_folder, path) = file("a.gltf", text);
-    assert_eq!(read_mesh(&path).expect("a glTF file").ignored, [""; 0]);
+    assert_eq!(read_mesh(&path, false).expect("a glTF file").ignored, [""; 0]);
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_matrix_of_a_node_may_have_the_rounding_of_32_bits() {
         |last: &str| document(&embedded(1), 1, &format!(r#","matrix":[1,0,0,0,0,1,0,1e-9,0,0,1,0,0,0,0,{last}]"#));
     assert_eq!(read("a.gltf", text("1.0000001").as_bytes()).0, triangles(true));
     let (_folder, path) = file("a.gltf", text("1.00001"));
-    assert_eq!(read_mesh(&path).err().as_deref(), Some("the matrix of node 0 is not affine"));
+    assert_eq!(read_mesh(&path, false).err().as_deref(), Some("the matrix of node 0 is not affine"));
 }
 
 #[test]
@@ -252,7 +252,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
     for (old, new, message) in cases {
         assert!(good.contains(old), "{old}");
         let (_folder, path) = file("a.gltf", good.replacen(old, new, 1));
-        match read_mesh(&path) {
+        match read_mesh(&path, false) {
             Err(found) => assert!(found == message || message.is_empty(), "{new}: {found}"),
             Ok(_) => assert!(message.is_empty(), "{new} is accepted"),
         }
@@ -261,11 +261,11 @@ fn broken_gltf_files_are_refused_with_the_reason() {
         [("", "its JSON is not that of glTF: EOF"), ("[1]", "it is glTF"), ("glTF", "it is not version 2")]
     {
         let (_folder, path) = file("a.glb", text);
-        let message = read_mesh(&path).err().expect("no glTF");
+        let message = read_mesh(&path, false).err().expect("no glTF");
         assert!(message.starts_with(start) || text == "[1]", "{message}");
     }
     let (_folder, path) = file("a.gltf", document(r#""uri":"absent.bin","#, 1, ""));
-    assert_eq!(read_mesh(&path).err().as_deref(), Some("there is no file absent.bin beside it"));
+    assert_eq!(read_mesh(&path, false).err().as_deref(), Some("there is no file absent.bin beside it"));
 }
 
 #[test]
@@ -283,7 +283,10 @@ fn a_small_file_cannot_ask_for_much_memory() {
         .replace(r#"[{"mesh":0}]"#, &format!("[{nodes}]"))
         .replace(r#""nodes":[0]"#, &format!(r#""nodes":[{}]"#, children.join(",")));
     let (_folder, path) = file("a.gltf", text);
-    assert_eq!(read_mesh(&path).err().as_deref(), Some("its nodes place more than 134217728 triangles or vertices"));
+    assert_eq!(
+        read_mesh(&path, false).err().as_deref(),
+        Some("its nodes place more than 134217728 triangles or vertices")
+    );
 }
 
 #[test]
@@ -306,7 +309,7 @@ fn no_bytes_make_the_gltf_reader_panic() {
             }
         }
         std::fs::write(&path, &bytes).expect("the file can be written");
-        match read_mesh(&path) {
+        match read_mesh(&path, false) {
             Ok(mesh) => {
                 read += 1;
                 drop(Mesh::new(mesh.vertices, mesh.faces));

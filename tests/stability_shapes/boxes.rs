@@ -29,8 +29,8 @@ impl Visitor for Reached<'_> {
 fn reaches(boxes: &[Bounds], ray: &Ray, item: u32) -> bool {
     let bvh = &Bvh::new::<1>(boxes.iter().copied());
     let [mut any, mut nearest] = [(); 2].map(|()| Reached { bvh, item, reached: false });
-    bvh.walk(ray, f64::INFINITY, &mut any);
-    bvh.walk_in_order(ray, f64::INFINITY, &mut nearest);
+    bvh.walk::<false>(ray, f64::INFINITY, &mut any);
+    bvh.walk::<true>(ray, f64::INFINITY, &mut nearest);
     assert_eq!(any.reached, nearest.reached);
     any.reached
 }
@@ -103,7 +103,7 @@ fn obj(number: &str) -> String {
 fn b3_mesh_files_with_vertices_that_are_not_finite_are_refused() {
     let refusal = |name, text: String| {
         let (_folder, path) = file(name, text);
-        read_mesh(&path).err()
+        read_mesh(&path, false).err()
     };
     for (name, text) in [("mesh.ply", ply as fn(&str) -> String), ("mesh.obj", obj)] {
         for number in ["nan", "inf", "-inf", "1e39"] {

@@ -157,7 +157,7 @@ fn t5_triangles_without_area_are_dropped_and_reported() {
     let points: String = POINTS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
     let faces: String = FACES.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect();
     let (_folder, path) = file("flat.obj", points + &faces);
-    let file = read_mesh(&path).expect("the file is sound");
+    let file = read_mesh(&path, false).expect("the file is sound");
     let mesh = Mesh::new(file.vertices, file.faces).expect("one triangle has an area");
     assert_eq!((mesh.count(), mesh.degenerate()), (1, 3));
     let only_flat = Mesh::new(Vertices::Single(POINTS.to_vec()), FACES[1..].to_vec());

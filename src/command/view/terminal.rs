@@ -48,7 +48,7 @@ fn knows_kitty() -> bool {
     std::io::stdout().is_terminal() && known && !inside
 }
 
-/// The picture at most so wide, its height a multiple of `rows` where there are so many.
+/// The picture, scaled to a width of at most `most` pixels; its height is a multiple of `rows` if it has that many.
 fn fitted(picture: &Picture, most: usize, rows: usize) -> Picture {
     let [width, height] = [picture.width(), picture.height()];
     if width <= most {

@@ -4,6 +4,7 @@
 //! sees: one that is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks
 //! for the light.
 
+use super::probe::met_from_outside;
 use super::view::{SurfaceSide, View};
 use crate::light::{Area, Light, LightId};
 use crate::material::Material;
@@ -21,13 +22,13 @@ const LOOKS: u32 = 1 << 19;
 const FEW: u32 = 1 << 8;
 /// Rays after which no more lights are looked at.
 const MOST_RAYS: u64 = 1 << 20;
-/// Lights that are told of one by one.
+/// Most lights that are warned of one by one.
 const TOLD: usize = 4;
 
 /// What is wrong with each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut view = View::new(scene);
-    // One that is switched off is told nothing of.
+    // There is no warning of one that is switched off.
     let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
     let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
     view.look(|view, places| {
@@ -161,7 +162,7 @@ fn paths_of(view: &View, light: &Light<Curve>) -> Paths {
         if first.is_some_and(|hit| view.scene.is_clear(hit.object)) {
             return Paths::Seen;
         }
-        let seen = view.walk(ray, &sampler, |place| {
+        let seen = view.walk(false, ray, &sampler, |place| {
             meets_others |= own != Some(place.object);
             let shines = matches!(view.scene.material_of(place.object), Material::Emissive(_));
             !shines && view.is_seen(&place, number)
@@ -192,17 +193,11 @@ fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
     }
 }
 
-/// A point of a lamp, met by a line through its box, and a direction from there by the cosine.
+/// A point of a lamp, met from outside, and a direction from there by the cosine.
 fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 1);
     let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 2);
-    let bounds = area.shape.bounds()?;
-    let size = bounds.max - bounds.min;
-    let direction = ball_surface([a, b]);
-    let origin = bounds.min + size * DVec3::new(x, y, z) - direction * (2.0 * size.length());
-    let line = Ray { origin, direction };
-    let intersection = area.shape.intersect(&line, f64::INFINITY)?;
-    let point = area.shape.point(&line, &intersection);
+    let (point, direction) = met_from_outside(&area.shape, DVec3::new(x, y, z), [a, b])?;
     let back = area.sides == Sides::Both && point.normal.dot(direction) > 0.0;
     let normal = if back { -point.normal } else { point.normal };
     let ray = point.leave(cosine_about(normal, [c, d]));

@@ -42,12 +42,12 @@ impl<'a> View<'a> {
         Self { scene, places: Vec::new(), rays: Cell::new(0), occluder: Cell::new(None) }
     }
 
-    /// Follows the camera's rays, far ones first, until `found` answers `true` to the places of one of them.
+    /// Follows the camera's rays, far ones first, until `found` returns `true` to the places of one of them.
     pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[SurfaceSide]) -> bool) {
         // A stride that is coprime to the number of rays visits them all.
         for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {
             let mut places = Vec::new();
-            self.walk_from(true, self.camera_ray(i), &Sampler::new(1, [i, 0], 0), |place| {
+            self.walk(true, self.camera_ray(i), &Sampler::new(1, [i, 0], 0), |place| {
                 places.push(place);
                 false
             });
@@ -59,14 +59,9 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Follows a ray over surfaces that scatter evenly or mirror; `met` is told of each, and ends the walk by `true`,
-    /// which is the answer then.
-    pub(super) fn walk(&self, ray: Ray, sampler: &Sampler, met: impl FnMut(SurfaceSide) -> bool) -> bool {
-        self.walk_from(false, ray, sampler, met)
-    }
-
-    /// The same of a ray from the camera or from elsewhere: the camera's goes straight through what it does not see.
-    fn walk_from(
+    /// Follows a ray over surfaces that scatter evenly or mirror; `met` gets each of them, and ends the walk by `true`,
+    /// which is the answer then. A ray of the camera goes straight through what the camera does not see.
+    pub(super) fn walk(
         &self,
         is_camera: bool,
         mut ray: Ray,

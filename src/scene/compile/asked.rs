@@ -7,7 +7,7 @@ use crate::scene::text::{Fields, Value};
 pub(super) enum Asked<'d> {
     There(Value<'d>),
     Default(f64),
-    /// It is missing or wrong, which is told.
+    /// It is missing or wrong: a mistake is kept.
     Lacking,
 }
 

@@ -16,9 +16,9 @@ use crate::spectrum::{Channel, Image};
 #[derive(Default)]
 pub(super) struct Context {
     warnings: Vec<Warning>,
-    /// Those of values: one may be read for two purposes.
+    /// Warnings of values, which may be read for two purposes and are warned of once.
     warned: HashSet<Warning>,
-    /// Of the texts of the scene and the files that they name.
+    /// The hash of the scene's texts and the files that they name.
     pub(super) hash: Sha256,
     /// The files that they name and that were read.
     pub(super) files: Vec<PathBuf>,
@@ -28,9 +28,9 @@ pub(super) struct Context {
     pub(super) few_bounces: bool,
     /// Luminance of the film's white in cd/m^2, if the scene's light is absolute.
     pub(super) white_luminance: Option<f64>,
-    /// By file and by what was read of it.
+    /// Images by their file and by what was read of it.
     pub(super) images: BTreeMap<(PathBuf, Meaning, Option<Channel>), Arc<Image>>,
-    /// By file and whether it is smooth.
+    /// Meshes by their file and whether they are smooth.
     pub(super) meshes: HashMap<(PathBuf, bool), Arc<Mesh>>,
     /// Meshes whose normals are means of those of their faces.
     pub(super) averaged: HashSet<*const Mesh>,
@@ -66,7 +66,6 @@ impl Context {
         }
     }
 
-    /// All warnings of a document.
     pub(super) fn warnings(&self, document: &Document) -> Vec<String> {
         let places = self.warnings.iter().filter_map(|warning| warning.place.clone());
         let paths = match document.texts.told_by {

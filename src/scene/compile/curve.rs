@@ -143,7 +143,7 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
     }
 }
 
-/// That a share is no color from 0 to 255, as screens have it.
+/// Refuses a share that is a color from 0 to 255, as screens have it.
 fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> {
     let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
     let first = rgb.iter().position(|x| *x > 1.0).filter(|_| is_share && text.scale.it == 1.0);
@@ -156,7 +156,7 @@ fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> 
     text.place.entry(first).advise(message, help)
 }
 
-/// That every value of a list is possible.
+/// Refuses a list with an impossible value.
 fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
     let scale = text.scale.it;
     values.enumerate().try_for_each(|(number, value)| {
@@ -175,7 +175,7 @@ fn is_transposed(pairs: &[[f64; 2]]) -> bool {
     matches!(pairs, [first, second] if first.iter().all(is_wavelength) && !second.iter().any(is_wavelength))
 }
 
-/// That samples are a spectrum of a quantity.
+/// Refuses samples that are no spectrum of a quantity.
 fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), CurveError> {
     if let Some(at) = samples.as_flattened().iter().position(|x| !x.is_finite()) {
         return Err(CurveError::new(not_finite(samples.as_flattened()[at])).at(at / 2));

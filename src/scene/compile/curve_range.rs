@@ -36,7 +36,6 @@ impl CurveError {
         Self { entry: Some(entry), ..self }
     }
 
-    /// Tells it of a place.
     pub(super) fn tell<T>(self, place: Value) -> Option<T> {
         place.tell(self.message, self.help)
     }

@@ -88,7 +88,7 @@ fn pairs(value: Value, help: &'static str) -> Option<Vec<[f64; 2]>> {
     value.list(|entry| entry.as_list("", help).array(real))
 }
 
-/// What one list of all wavelengths and one of all values are told.
+/// The message where wavelengths and values stand in a list each.
 pub(super) const ONE_OF_EACH: &str = "write a pair for each wavelength, as in [[400, 0.2], [700, 0.9]]";
 
 /// A number that a spectrum can be made of.
@@ -133,7 +133,7 @@ fn unfit(quantity: Quantity) -> impl Iterator<Item = &'static str> {
     kinds.chain(others).chain(more).filter(|(_, fits)| !fits).map(|(key, _)| key)
 }
 
-/// What a table without a kind is told.
+/// The message where a table has no kind.
 fn kinds_of(quantity: Quantity) -> String {
     let names: Vec<_> = fitting(quantity).iter().map(|key| format!("`{key}`")).collect();
     let (others, last) = names.split_at(names.len() - 1);

@@ -28,7 +28,7 @@ pub(super) fn written<'d>(diffuse: &Diffuse<Asked<'d>>) -> Option<[Value<'d>; 2]
     }
 }
 
-/// That a surface with a dye gives back no more light than it gets.
+/// Refuses a surface with a dye that gives back more light than it gets.
 pub(super) fn conserves(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value; 2]) -> Option<()> {
     let Diffuse { reflectance, fluorescence: Some(dye) } = diffuse else { return Some(()) };
     let dye = dye.dye();

@@ -136,7 +136,7 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
 /// Whole rates of frames that television has at 1000 / 1001 of their speed, and says with two or three digits.
 const OF_TELEVISION: [u32; 5] = [24, 30, 48, 60, 120];
 
-/// A rate of frames, as frames in so many seconds.
+/// A frame rate, as a number of frames and the seconds that they take.
 fn rate(value: Value) -> Option<[u32; 2]> {
     let help = Some("for instance: 24, or 23.976");
     let rate = value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 to 1000", help)?;

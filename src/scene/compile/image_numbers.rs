@@ -11,11 +11,11 @@ const HALF: f64 = 1.0 / 2048.0;
 /// What the numbers of an image stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Meaning {
-    /// Light or what a surface makes of it, encoded as told or else as the kind of file implies.
+    /// Light or what a surface makes of it, encoded as the scene says or else as the kind of file implies.
     Light(Option<Encoding>),
     /// Shares of a surface, encoded in the same way. They are no colors.
     Shares(Option<Encoding>),
-    /// Thicknesses, encoded as told.
+    /// Thicknesses, encoded as the scene says.
     Thicknesses(Encoding),
     /// Heights, just as they are.
     Heights,

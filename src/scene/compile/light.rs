@@ -120,7 +120,7 @@ fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
     }
 }
 
-/// The same of an infinite light.
+/// Refuses keys of an infinite light that belong beside it.
 fn of_an_infinite_light(light: &mut Fields, kind: &str) {
     of_the_entry(light, kind, &OF_AN_INFINITE_LIGHT);
     for key in OF_SIGHT {

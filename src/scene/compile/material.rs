@@ -25,7 +25,7 @@ pub(super) enum MaterialDraft<'d, S> {
     Mask { part: Value<'d>, opacity: S },
 }
 
-/// From 0, smooth, to 1; 0 if it is wrong, which is told.
+/// From 0, smooth, to 1; 0 if it is wrong, which is a mistake.
 fn roughness(fields: &mut Fields) -> f64 {
     let what = "a roughness lies between 0, smooth, and 1";
     let read = |value: Value| match value.number()? {

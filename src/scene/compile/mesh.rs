@@ -9,7 +9,7 @@ use super::measures::{COORDINATE, MAX_LENGTH, direction, far, is_near, near, poi
 use super::written::Written;
 use crate::math::DVec3;
 use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, at};
-use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, read_smooth_mesh, vertex_normals};
+use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, vertex_normals};
 
 /// How the names of mesh files end.
 const MESHES: [&str; 4] = ["ply", "obj", "gltf", "glb"];
@@ -190,8 +190,7 @@ impl Inline<'_> {
 fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bool) -> Option<Parts> {
     let Spanned { place, it: file } = *file;
     let path = place.path(file);
-    let mesh = if smooth { read_smooth_mesh(&path) } else { read_mesh(&path) };
-    let mesh = match mesh {
+    let mesh = match read_mesh(&path, smooth) {
         Ok(mesh) => mesh,
         Err(_) if file.is_empty() => return place.refuse("a mesh file needs a name"),
         Err(_) if path.is_dir() => return place.refuse(format!("{file} is a folder")),

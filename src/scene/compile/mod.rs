@@ -1,4 +1,4 @@
-//! From a scene's text to a world that can be rendered: what a scene may hold is told here and nowhere else, by the
+//! From a scene's text to a world that can be rendered: what a scene may hold is written here and nowhere else, by the
 //! functions that read it. They look up all names and check all numbers, and go on after a mistake.
 
 mod asked;
@@ -55,9 +55,9 @@ use crate::spectrum::Curve;
 /// The sections that a scene may have.
 pub(super) const SECTIONS: [&str; 6] = ["camera", "film", "render", "material", "object", "light"];
 
-/// The world that a document describes; none if anything is wrong with it, which is told.
+/// The world that a document describes; none if it has a mistake, which the document keeps.
 pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
-    let mut context = Context::new(document.texts.whole());
+    let mut context = Context::new(&document.texts.whole);
     document.texts.rows.iter().for_each(|rows| rows.digest(|bytes| context.hash.update(bytes)));
     let scene = Fields::of_document(document, |sections| scene(&mut context, sections));
     if document.told() > 0 {

@@ -120,7 +120,7 @@ impl Grid {
 /// Objects that have begun, by their places in the order, and as far as it is known have not ended.
 struct Open {
     by_cell: Vec<Vec<usize>>,
-    /// Those that cover many cells.
+    /// Boxes that cover many cells.
     large: Vec<usize>,
 }
 

@@ -16,7 +16,7 @@ struct Search<'s, 'd> {
     drafts: &'s BTreeMap<&'d str, Option<MaterialDraft<'d, Curve>>>,
     /// Those that are made of the one that is looked for, the outermost first.
     within: Vec<&'d str>,
-    /// Those of which it was told that they are made of themselves.
+    /// Materials made of themselves, of which the mistake is kept.
     circular: BTreeSet<&'d str>,
     /// Materials that the outermost one is made of so far, each as often as it is named.
     parts: usize,

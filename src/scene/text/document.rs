@@ -1,4 +1,4 @@
-//! The document that is read, and what is told of it.
+//! The document that is read, and the mistakes in it.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -22,7 +22,7 @@ impl<'d> Document<'d> {
         Self { texts, root, mistakes: RefCell::default() }
     }
 
-    /// Keeps a mistake. Reading goes on, so that all are told at once.
+    /// Keeps a mistake. Reading continues, so that all are reported together.
     pub(in crate::scene) fn tell(&self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
         // Names in a scene may hold anything, even the end of a line.
         let one_line = |text: String| text.replace(char::is_control, " ");
@@ -30,7 +30,7 @@ impl<'d> Document<'d> {
         self.mistakes.borrow_mut().push(mistake);
     }
 
-    /// How many mistakes were told.
+    /// How many mistakes there are so far.
     pub(in crate::scene) fn told(&self) -> usize {
         self.mistakes.borrow().len()
     }
@@ -40,7 +40,7 @@ impl<'d> Document<'d> {
         self.mistakes.borrow().last().map(|mistake| mistake.span.clone())
     }
 
-    /// All mistakes, as they were told.
+    /// All mistakes, in the order in which they were found.
     pub(in crate::scene) fn mistakes(&self) -> Vec<Mistake> {
         self.mistakes.borrow().clone()
     }

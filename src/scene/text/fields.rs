@@ -96,7 +96,7 @@ impl<'d> Fields<'d> {
         keys.filter(|(_, key)| !self.known.contains(key) && !self.told.contains(key)).collect()
     }
 
-    /// Whether there are keys that were not asked for so far.
+    /// Whether there are keys that nothing has read so far.
     pub(in crate::scene) fn has_unknown(&self) -> bool {
         !self.told.is_empty() || !self.unknown().is_empty()
     }

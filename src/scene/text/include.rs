@@ -113,7 +113,7 @@ fn real(path: &Path) -> PathBuf {
 pub(in crate::scene) fn merged<'d>(texts: &'d Texts, files: &[Range<usize>]) -> Result<DeTable<'d>, Vec<Mistake>> {
     let (mut whole, mut mistakes) = (DeTable::new(), Vec::new());
     for part in files {
-        match parsed(&texts.whole()[part.clone()], part.start) {
+        match parsed(&texts.whole[part.clone()], part.start) {
             Ok(mut table) => {
                 table.remove(INCLUDE);
                 merge(&mut whole, table, texts, &mut mistakes);

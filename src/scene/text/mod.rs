@@ -1,6 +1,6 @@
-//! The text of a scene as values that know where they stand, and what is told of those that are wrong.
+//! The text of a scene as values that know where they stand, and the messages about those that are wrong.
 //!
-//! What a scene may hold is told in `compile`, once: by the functions that read it.
+//! What a scene may hold is written once, in `compile`: by the functions that read it.
 
 mod document;
 mod elsewhere;

@@ -54,7 +54,7 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
     }
 }
 
-/// That there is no such file, whose name ends in one of some ways.
+/// The mistake of naming a file that is not there, with the nearest name that has one of the endings.
 pub(super) fn missing(folder: &Path, file: &str, endings: &[&str]) -> Fault {
     let near = nearest_file(&folder.join(file), endings);
     let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));

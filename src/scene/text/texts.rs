@@ -13,15 +13,16 @@ use crate::error::{Diagnostic, Lines};
 /// one behind the other, so that a place in any of them is a range of bytes of the whole.
 #[derive(Default)]
 pub(in crate::scene) struct Texts {
-    whole: String,
+    /// All of them, one behind the other.
+    pub(in crate::scene) whole: String,
     parts: Vec<TextPart>,
-    /// By what their places are told.
+    /// How places are named in messages.
     pub(in crate::scene) told_by: LocatedBy,
     /// What a program has given beside them.
     pub(in crate::scene) rows: Vec<Rows>,
 }
 
-/// By what a place is told.
+/// How a place is named in messages.
 #[derive(Clone, Copy, Default)]
 pub(in crate::scene) enum LocatedBy {
     #[default]
@@ -30,7 +31,6 @@ pub(in crate::scene) enum LocatedBy {
     Key,
 }
 
-/// One of the texts.
 struct TextPart {
     /// As it is called in messages.
     path: PathBuf,
@@ -42,7 +42,7 @@ struct TextPart {
 }
 
 impl Texts {
-    /// Adds a text, and answers where it stands.
+    /// Adds a text, and returns where it stands.
     pub(in crate::scene) fn add(&mut self, path: &Path, folder: &Path, text: &str) -> Range<usize> {
         if !self.parts.is_empty() {
             // TOML has no such character: the end of a text is not the start of the next one.
@@ -60,12 +60,7 @@ impl Texts {
         span
     }
 
-    /// All of them, one behind the other.
-    pub(in crate::scene) fn whole(&self) -> &str {
-        &self.whole
-    }
-
-    /// Adds lines, if there are any, as one text, and answers where each stands.
+    /// Adds lines, if there are any, as one text, and returns where each stands.
     pub(in crate::scene) fn add_lines(&mut self, path: &Path, folder: &Path, lines: &[String]) -> Vec<Range<usize>> {
         if lines.is_empty() {
             return Vec::new();

@@ -11,7 +11,6 @@ use super::syntax::explain;
 pub(super) type Key<'d> = Spanned<DeString<'d>>;
 pub(super) type Node<'d> = Spanned<DeValue<'d>>;
 
-/// The word of a key.
 pub(super) fn word<'k>(key: &'k Key) -> &'k str {
     key.get_ref()
 }

@@ -1,4 +1,4 @@
-//! A value of a scene's text, read as what is wanted of it; what it is instead is told.
+//! A value of a scene's text, read as what is wanted of it; if it is something else, that is a mistake.
 
 use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ impl<'d> Value<'d> {
         self.node.get_ref()
     }
 
-    /// Its entry of a position, if it is a list.
+    /// The entry of that number, if it is a list; else the value itself.
     pub(in crate::scene) fn entry(self, number: usize) -> Self {
         let entry = self.node().as_array().and_then(|entries| entries.get(number));
         entry.map_or(self, |node| Self { is_entry: true, node, list: None, ..self })
@@ -109,7 +109,7 @@ impl<'d> Value<'d> {
 
     /// Tells what is wanted in its place.
     pub(in crate::scene) fn wanted<T>(self, wanted: &str) -> Option<T> {
-        let written = self.document.texts.whole().get(self.span()).unwrap_or_default();
+        let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
         let found = match self.node() {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
@@ -262,7 +262,7 @@ impl<'d> Value<'d> {
                 let name = self.list.map(|list| list.0).filter(|name| !name.is_empty());
                 let name = name.map_or_else(|| self.name(), str::to_owned);
                 let help = self.list.map(|list| list.1.to_owned()).filter(|help| !help.is_empty());
-                let written = self.document.texts.whole().get(self.span()).unwrap_or_default();
+                let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
                 let help = with_points(written, N).filter(|_| count > N).or(help);
                 self.tell(format!("{name} is a list of {N} numbers, not one of {count}"), help)
             }
@@ -315,7 +315,7 @@ pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
 /// Mistakes in a scene that a person reads one by one.
 pub(super) const MANY: usize = 100;
 
-/// Most words that are all told of a value that is none.
+/// Up to this many known words are all listed in a mistake.
 const MOST_WORDS: usize = 10;
 
 /// Words as `a, b or c`.

@@ -17,15 +17,15 @@ pub(super) const FRAME: &str = "frame";
 /// The variables of a scene.
 #[derive(Default)]
 struct Variables<'d> {
-    /// Those that are right.
+    /// Values without mistakes, by name.
     values: BTreeMap<String, Node<'d>>,
-    /// The names of all.
+    /// All names, also of values with mistakes.
     known: BTreeSet<String>,
     used: BTreeSet<String>,
     mistakes: Vec<Mistake>,
 }
 
-/// Takes the variables out of a scene and puts their values where they are meant. Answers the names of those that are
+/// Takes the variables out of a scene and puts their values where they are meant. Returns the names of those that are
 /// not used. What is wrong with a value is told where it stands among the variables.
 pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Vec<String>, Vec<Mistake>> {
     let mut variables = Variables::default();

@@ -77,7 +77,7 @@ impl<'a> Builder<'a> {
         self.tree(self.group, |built, range, _| built.halve(range), |_, _, _, _| ())
     }
 
-    /// A tree that is split from above into leaves of at most so many items, which are then finished.
+    /// A tree that is split from above into leaves of at most `most` items, each of which `finish` completes.
     fn tree(
         &mut self,
         most: usize,

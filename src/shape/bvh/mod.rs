@@ -51,16 +51,10 @@ impl Bvh {
         &self.items
     }
 
-    /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, nearer ones first.
+    /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, nearer ones first if `ORDERED`.
     #[inline]
-    pub fn walk_in_order(&self, ray: &Ray, t_max: f64, visitor: &mut impl Visitor) {
-        self.instructions.run(Walk::<true, _> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
-    }
-
-    /// Shows a visitor the leaves whose boxes the ray may meet before `t_max`, in any order.
-    #[inline]
-    pub fn walk(&self, ray: &Ray, t_max: f64, visitor: &mut impl Visitor) {
-        self.instructions.run(Walk::<false, _> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
+    pub fn walk<const ORDERED: bool>(&self, ray: &Ray, t_max: f64, visitor: &mut impl Visitor) {
+        self.instructions.run(Walk::<ORDERED, _> { root: self.root, nodes: &self.nodes, ray, t_max, visitor })
     }
 
     /// The same tree, walked without the instructions that only some machines have.

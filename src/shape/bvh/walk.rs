@@ -8,7 +8,7 @@ use crate::math::Ray;
 
 /// What is done in a leaf.
 pub trait Visitor {
-    /// Looks at some groups of items, and answers the new `t_max`, or none to end the walk.
+    /// Looks at some groups of items, and returns the new `t_max`, or none to end the walk.
     ///
     /// Implementations that use vectors are `#[inline(always)]`.
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64>;

@@ -1,10 +1,10 @@
 //! Illuminants, reflectances, and the eye of the standard observer.
 
-use std::sync::OnceLock;
+use std::sync::{LazyLock, OnceLock};
 
 use super::rows::{Row, Rows, fields, numbers};
 
-const ROWS: Rows = Rows::new(include_str!("colors.txt"));
+static ROWS: LazyLock<Rows> = LazyLock::new(|| Rows::new(include_str!("colors.txt")));
 
 const ILLUMINANT: &str = "illuminant/";
 const COLORCHECKER: &str = "colorchecker/";

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::rows::{Row, Rows, fields, has_alias, key_of, names, number, numbers, samples};
 use crate::math::interpolate;
 
-const ROWS: Rows = Rows::new(include_str!("glasses.txt"));
+static ROWS: LazyLock<Rows> = LazyLock::new(|| Rows::new(include_str!("glasses.txt")));
 
 /// What is not sold as an optical glass: what the keys begin with, in the order in which a bare name is looked up.
 const COMMON: [&str; 6] = ["crystal", "gem", "liquid", "glass", "plastic", "gas"];

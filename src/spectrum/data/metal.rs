@@ -1,9 +1,11 @@
 //! Metals, alloys and semiconductors, which light does not cross.
 
+use std::sync::LazyLock;
+
 use super::rows::{Row, Rows, fields, has_alias, key_of, names, samples};
 use crate::math::interpolate;
 
-const ROWS: Rows = Rows::new(include_str!("metals.txt"));
+static ROWS: LazyLock<Rows> = LazyLock::new(|| Rows::new(include_str!("metals.txt")));
 
 /// A metal: its index n + ik at the measured wavelengths.
 #[derive(Clone, Debug, PartialEq)]

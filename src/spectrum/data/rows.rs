@@ -3,57 +3,43 @@
 use std::cmp::Ordering;
 
 /// The lines of a table.
-#[derive(Clone, Copy)]
-pub struct Rows(&'static str);
+pub struct Rows(Vec<Row>);
 
 /// A line of a table.
 pub type Row = &'static str;
 
 impl Rows {
     /// A table whose first line says where it comes from.
-    pub const fn new(text: &'static str) -> Self {
-        Self(text)
+    pub fn new(text: &'static str) -> Self {
+        Self(text.lines().skip(1).collect())
     }
 
     /// Every line, in order.
-    pub fn all(self) -> impl Iterator<Item = Row> {
-        self.0.lines().skip(1)
+    pub fn all(&self) -> impl Iterator<Item = Row> {
+        self.0.iter().copied()
     }
 
     /// The line of that key, whatever the case of its letters.
-    pub fn find(self, key: &str) -> Option<Row> {
-        let line = self.0[self.lower_bound(key)..].lines().next()?;
-        key_of(line).eq_ignore_ascii_case(key).then_some(line)
+    pub fn find(&self, key: &str) -> Option<Row> {
+        self.from(key).first().copied().filter(|line| key_of(line).eq_ignore_ascii_case(key))
     }
 
     /// The lines whose keys begin with these characters, whatever their case.
-    pub fn starting_with(self, start: &str) -> impl Iterator<Item = Row> {
+    pub fn starting_with(&self, start: &str) -> impl Iterator<Item = Row> {
         let begins = move |line: &Row| line.get(..start.len()).is_some_and(|found| found.eq_ignore_ascii_case(start));
-        self.0[self.lower_bound(start)..].lines().take_while(begins)
+        self.from(start).iter().copied().take_while(begins)
     }
 
-    /// Where the first line begins whose key is not before this one.
-    fn lower_bound(self, key: &str) -> usize {
-        let text = self.0.as_bytes();
-        let after_line =
-            |at: usize| text[at..].iter().position(|&byte| byte == b'\n').map_or(text.len(), |i| at + i + 1);
-        let (mut low, mut high) = (after_line(0), text.len());
-        while low < high {
-            let middle = low.midpoint(high);
-            let start = text[low..middle].iter().rposition(|&byte| byte == b'\n').map_or(low, |i| low + i + 1);
-            match compare(key_of(&self.0[start..]), key) {
-                Ordering::Less => low = after_line(start),
-                _ => high = start,
-            }
-        }
-        low
+    /// The lines whose keys are not before this one.
+    fn from(&self, key: &str) -> &[Row] {
+        &self.0[self.0.partition_point(|line| compare(key_of(line), key).is_lt())..]
     }
 }
 
 /// The order of the tables.
 pub fn compare(a: &str, b: &str) -> Ordering {
-    let lower = |text: &str| text.bytes().map(|byte| byte.to_ascii_lowercase()).collect::<Vec<_>>();
-    lower(a).cmp(&lower(b))
+    let [a, b] = [a, b].map(|text| text.bytes().map(|byte| byte.to_ascii_lowercase()));
+    a.cmp(b)
 }
 
 /// The first field of a line.
