@@ -24,7 +24,12 @@ impl Ellipsoid {
         let length = direction.length();
         let n = direction / length;
         let s2 = 1.0 - d.cross(n).length_squared();
-        (s2 >= 0.0).then(|| [-1.0, 1.0].map(|side| (d.dot(n) + side * s2.sqrt()) / length))
+        if s2 >= 0.0 {
+            let (middle, s) = (d.dot(n), s2.sqrt());
+            Some([(middle - s) / length, (middle + s) / length])
+        } else {
+            None
+        }
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {

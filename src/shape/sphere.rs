@@ -38,7 +38,12 @@ impl Sphere {
     fn roots(&self, ray: &Ray) -> Option<[f64; 2]> {
         let d = self.center - ray.origin;
         let s2 = self.radius * self.radius - d.cross(ray.direction).length_squared();
-        (s2 >= 0.0).then(|| [-1.0, 1.0].map(|side| d.dot(ray.direction) + side * s2.sqrt()))
+        if s2 >= 0.0 {
+            let (middle, s) = (d.dot(ray.direction), s2.sqrt());
+            Some([middle - s, middle + s])
+        } else {
+            None
+        }
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
