@@ -113,8 +113,8 @@ fn light_paths_through_openings_change_no_mean() {
         ("two diffuse bounces", room("diffuse_bounces = 2", &[sky.clone(), cubes.clone()]), vec![window()], 0.0),
         ("three bounces", room("max_bounces = 3", &[sky, cubes]), vec![window()], 0.0),
     ];
-    // Photons bring what comes over the ball from what is bright in the sky, or all of it that comes through half of the
-    // window. The rest of it leaves vertices.
+    // Photons bring what comes over the ball from what is bright in the sky, or from all that half of the window lets
+    // in. The rest of it leaves vertices.
     let text = room("", &[image, ball("glass", "dielectric = { index = 1.5 }")]);
     for of_pass in [Vec::new(), vec![half]] {
         let change = |method: &mut Method| {
