@@ -38,8 +38,8 @@ impl Opening {
         (self.area() * self.normal().dot(way).abs() / (squared * squared.sqrt())).min(TAU)
     }
 
-    /// The point for two random numbers.
-    fn point(&self, [a, b]: [f64; 2]) -> DVec3 {
+    /// Its point for a place of the unit square.
+    pub fn point(&self, [a, b]: [f64; 2]) -> DVec3 {
         let [u, v] = self.half;
         self.center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0)
     }

@@ -352,6 +352,11 @@ impl World {
         self.map_targets.is_some()
     }
 
+    /// Whether a light sends photons.
+    pub(super) fn sends_photons(&self, light: LightId) -> bool {
+        self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
+    }
+
     /// Whether light paths for light vertices start along a ray that meets a light.
     pub(super) fn is_found_by_light_paths(&self, light: LightId, ray: &Ray) -> bool {
         self.path_starts.get(light).is_some_and(|start| start.covers(&self.scene.lights[light], ray))

@@ -3,25 +3,34 @@
 use abbe::light::Opening;
 use abbe::math::{Bounds, DVec3};
 use abbe::plan::plan;
-use abbe::trace::{BrightPlace, BrightPlaces, LightPass, MapPasses, Method, SkyOpenings, Smoothness, World};
+use abbe::trace::{
+    BrightPlace, BrightPlaces, LightPass, MapPasses, Method, SkyOpenings, Smoothness, SunlitPlaces, World, prepare,
+    with_light_vertices,
+};
 
 use super::{LAMP, WHITE, assert_same, ball, lamp, walls};
-use crate::support::scenes::{body, environment, quad, scene, view};
+use crate::support::scenes::{SPLITTING, body, environment, method, quad, scene, view};
 
-/// The box with a window in its right wall, 1 high and 1.2 wide, seen from inside.
-fn room(render: &str, more: &[String]) -> String {
+/// The box with a window in its right wall, seen from inside.
+fn room_by([height, width]: [f64; 2], render: &str, more: &[String]) -> String {
     let walls = walls();
+    let [above, beside] = [0.25 * (3.0 - height), 0.25 * (5.0 - width)];
     let frame = [
-        quad([2.0, 0.5, 0.0], [0.0, 0.0, 2.5], [0.0, 0.5, 0.0]),
-        quad([2.0, 2.5, 0.0], [0.0, 0.0, 2.5], [0.0, 0.5, 0.0]),
-        quad([2.0, 1.5, -1.55], [0.0, 0.0, 0.95], [0.0, 0.5, 0.0]),
-        quad([2.0, 1.5, 1.55], [0.0, 0.0, 0.95], [0.0, 0.5, 0.0]),
+        quad([2.0, above, 0.0], [0.0, 0.0, 2.5], [0.0, above, 0.0]),
+        quad([2.0, 3.0 - above, 0.0], [0.0, 0.0, 2.5], [0.0, above, 0.0]),
+        quad([2.0, 1.5, beside - 2.5], [0.0, 0.0, beside], [0.0, 0.5 * height, 0.0]),
+        quad([2.0, 1.5, 2.5 - beside], [0.0, 0.0, beside], [0.0, 0.5 * height, 0.0]),
     ];
     let shapes: Vec<&str> = [0, 1, 3, 4, 5].map(|i| &walls[i]).into_iter().chain(&frame).map(String::as_str).collect();
     view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
         + &format!("[render]\nsamples = 8\n{render}\n")
         + &body("wall", WHITE, &shapes)
         + &more.concat()
+}
+
+/// A window 1 high and 1.2 wide.
+fn room(render: &str, more: &[String]) -> String {
+    room_by([1.0, 1.2], render, more)
 }
 
 /// A rectangle across x, so that light enters toward -x.
@@ -138,6 +147,23 @@ fn light_paths_through_openings_change_no_mean() {
         let worst = assert_same(what, text, &aim, &with, cases.len());
         println!("{what}: at most {worst:.1} sigma");
     }
+}
+
+/// Of the patch that a sun lights through a small hole, bounces find too little to tell where it is.
+#[test]
+fn light_paths_of_suns_start_through_openings_that_bounces_find_no_light_of() {
+    let sun = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = 10 }\n".to_owned();
+    let places = |size: [f64; 2]| {
+        let scene = scene(&room_by(size, "", &[sun.clone(), environment(1.0)]));
+        let world = prepare(&scene, method(&scene, SPLITTING));
+        let openings = SkyOpenings { openings: vec![opening([2.0, 1.5, 0.0], size[0], size[1])], missed: 0.0 };
+        with_light_vertices(&world, &openings).expect("light can be followed").method().sunlit.clone()
+    };
+    let [of_hole, of_window] = [[0.04, 0.06], [1.0, 1.2]].map(places);
+    let is_at = |place: &SunlitPlaces| (place.center - DVec3::new(2.0, 1.5, 0.0)).length() < 1e-9;
+    assert!(of_hole.len() == 1 && is_at(&of_hole[0]), "{of_hole:?}");
+    assert!((of_hole[0].radius - libm::hypot(0.02, 0.03)).abs() < 1e-9, "{of_hole:?}");
+    assert!(of_window.len() == 1 && !is_at(&of_window[0]) && of_window[0].radius > 0.3, "{of_window:?}");
 }
 
 /// A room by a window takes light vertices where its image is large enough, with the opening that was found.

@@ -113,7 +113,13 @@ impl<'a> LightPaths<'a> {
         let by_flux = Distribution::new(starts().enumerate().map(flux));
         let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
         let find_all = starts().all(|(start, _)| matches!(start, PathStart::Anywhere));
-        let find_most = starts().all(|(start, light)| start.finds_most(light));
+        // Suns that mirrors show to what a path meets, rare and bright, must not be found in a few paths that count more.
+        let may_dazzle = |(id, light): (LightId, &Light<_>)| {
+            light.is_infinite() && light.sends_photons() && !(world.has_map() && world.sends_photons(id))
+        };
+        let has_mirrors = world.lobes.iter().any(|lobes| lobes.has_delta());
+        let dazzles = has_mirrors && world.scene.lights.iter().enumerate().any(may_dazzle);
+        let find_most = !dazzles && starts().all(|(start, light)| start.finds_most(light));
         let SkyOpenings { openings, missed } = &world.method.openings;
         let rest = match ends_nowhere {
             true if find_all => None,

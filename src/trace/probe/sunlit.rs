@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::brightness::bounces;
 use super::clusters::bounds_of_most;
-use crate::light::LightId;
+use crate::light::{LightId, Opening};
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
 use crate::scene::RayEnds;
 use crate::shape::Ball;
@@ -22,6 +22,8 @@ const SIDE: u32 = 48;
 const SUNS: usize = 4;
 /// Fewest places that tell where paths should start.
 const FEWEST: usize = 16;
+/// Points along each side of an opening.
+const POINTS: u32 = 16;
 /// Of the way to a place, how far off it the ray to the sun starts: it only guides.
 const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
@@ -30,13 +32,15 @@ const SEED: u64 = 0x7375_6e73;
 /// The world with light vertices, those of skies by paths through some openings; none where there is no light that can
 /// be followed forward, or they would spoil the layer of a faint lamp.
 pub fn with_light_vertices(world: &World, openings: &SkyOpenings) -> Option<World> {
-    let world = can_be_followed(world).then(|| world.with_light_vertices(sunlit_places(world), openings.clone()))?;
+    let world = can_be_followed(world)
+        .then(|| world.with_light_vertices(sunlit_places(world, &openings.openings), openings.clone()))?;
     LightPaths::new(&world, world.method.seed).is_some_and(|paths| !paths.starve_a_layer()).then_some(world)
 }
 
-/// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some. The format
-/// counts, also where a part of it or more is made, so that all parts are made alike.
-fn sunlit_places(world: &World) -> Vec<SunlitPlaces> {
+/// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some, or else the
+/// openings through which it comes. The format counts, also where a part of it or more is made, so that all parts are
+/// made alike.
+fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     let lights = &world.scene.lights;
     let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();
     let suns: Vec<LightId> = (0..lights.len()).filter(is_sun).take(SUNS).collect();
@@ -48,7 +52,16 @@ fn sunlit_places(world: &World) -> Vec<SunlitPlaces> {
     let has_found = |bounce: &&Bounce| bounce.distance.is_finite() && bounce.light.is_finite() && bounce.light > 0.0;
     let end = |bounce: &Bounce| (bounce.from + bounce.direction * (bounce.distance * (1.0 - OFF)), bounce.light);
     let ends: Vec<(DVec3, f64)> = bounces.iter().filter(has_found).map(end).collect();
-    suns.into_iter().filter_map(|sun| of_sun(world, sun, &ends)).collect()
+    let within: Vec<(DVec3, f64)> = openings.iter().flat_map(points_of).collect();
+    let of = |sun: LightId| of_sun(world, sun, &ends).or_else(|| of_sun(world, sun, &within));
+    suns.into_iter().filter_map(of).collect()
+}
+
+/// Points all over an opening, to its edges, with a part of its area for each.
+fn points_of(opening: &Opening) -> impl Iterator<Item = (DVec3, f64)> {
+    let at = |i: u32| f64::from(i) / f64::from(POINTS - 1);
+    let weight = opening.area() / f64::from(POINTS * POINTS);
+    (0..POINTS * POINTS).map(move |i| (opening.point([at(i % POINTS), at(i / POINTS)]), weight))
 }
 
 /// Those in the light of one sun.
