@@ -113,7 +113,7 @@ impl<'a> LightPaths<'a> {
         let by_flux = Distribution::new(starts().enumerate().map(flux));
         let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
         let find_all = starts().all(|(start, _)| matches!(start, PathStart::Anywhere));
-        // Suns that mirrors show to what a path meets, rare and bright, must not be found in a few paths that count more.
+        // Suns that mirrors show, rare and bright, must not be found by a few paths that count more.
         let may_dazzle = |(id, light): (LightId, &Light<_>)| {
             light.is_infinite() && light.sends_photons() && !(world.has_map() && world.sends_photons(id))
         };
