@@ -1,7 +1,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use super::beam::TowardBall;
+use super::toward_ball::TowardBall;
 use super::{Beam, EmissionMap, EmissionPoint, KnownParts, LeSample, LightBounds, LightParts, LightSample};
 use crate::math::{Bounds, Cone, DVec3, DiscreteSample, Distribution2d, Ray};
 use crate::shape::{

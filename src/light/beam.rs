@@ -1,7 +1,8 @@
 use std::f64::consts::{PI, TAU};
 
 use super::Opening;
-use crate::math::{Cone, DVec3, Frame, Ray, cosine_about, disk_in_square, square_around_disk};
+use super::toward_ball::TowardBall;
+use crate::math::{Cone, DVec3, Frame, Ray, disk_in_square, square_around_disk};
 use crate::shape::Ball;
 
 /// How one light sends photons to a ball.
@@ -59,38 +60,5 @@ impl Beam {
         }
         let radius = self.ball.radius;
         self.place_in_disc(ray.origin, -ray.direction).map_or(0.0, |place| guide(place) / (4.0 * radius * radius))
-    }
-}
-
-/// How a photon leaves a point of a surface toward a ball: in the cone that the ball fills or, from inside of it, by
-/// the cosine to the unit normal.
-pub(super) struct TowardBall<'a> {
-    pub(super) ball: &'a Ball,
-    pub(super) from: DVec3,
-    pub(super) normal: DVec3,
-    /// From inside, how often it leaves on the side of the normal.
-    pub(super) front: f64,
-}
-
-impl TowardBall<'_> {
-    /// The direction for a place of the unit square.
-    pub(super) fn sample(&self, [a, b]: [f64; 2]) -> Option<DVec3> {
-        let (front, cone) = (self.front, self.ball.cone_from(self.from));
-        if !cone.is_all() {
-            return cone.sample([a, b]);
-        }
-        let (side, a) = if a < front { (self.normal, a / front) } else { (-self.normal, (a - front) / (1.0 - front)) };
-        Some(cosine_about(side, [a, b]))
-    }
-
-    /// Density per steradian with which `sample` draws a direction from places of a density of their own.
-    pub(super) fn pdf(&self, direction: DVec3, guide: impl Fn([f64; 2]) -> f64) -> f64 {
-        let cone = self.ball.cone_from(self.from);
-        if !cone.is_all() {
-            return cone.pdf(direction, guide);
-        }
-        let cos = self.normal.dot(direction);
-        let side = if cos > 0.0 { self.front } else { 1.0 - self.front };
-        side * cos.abs() / PI
     }
 }

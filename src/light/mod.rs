@@ -18,6 +18,7 @@ mod sample;
 mod sampler;
 mod spot;
 mod sun;
+mod toward_ball;
 mod tree;
 
 pub use area::{Area, ShownImage};

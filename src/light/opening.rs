@@ -2,7 +2,7 @@ use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use super::beam::TowardBall;
+use super::toward_ball::TowardBall;
 use crate::math::{DVec3, Ray, cosine_about, unit};
 use crate::shape::Ball;
 

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::LightPass;
-use crate::light::{Light, LightId};
+use crate::light::{Light, LightId, Opening};
 use crate::material::Lobes;
 use crate::math::{Bounds, DVec2, DVec3, Ray};
 use crate::scene::{Primitive, Scene};
@@ -99,8 +98,13 @@ fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
 
 /// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
 /// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
-pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], pass: &LightPass) -> Vec<FocusPlace> {
-    let is_target = |&object: &usize| Smoothness::sent_to(scene, object, &pass.to).is_some();
+pub(super) fn places(
+    scene: &Scene<Table>,
+    lights: &[LightId],
+    openings: &[Opening],
+    to: &[Smoothness],
+) -> Vec<FocusPlace> {
+    let is_target = |&object: &usize| Smoothness::sent_to(scene, object, to).is_some();
     let targets = (0..scene.objects.len()).filter(is_target);
     let mut balls = targets.map(|object| scene.objects[object].shape.ball());
     let mut found = Vec::new();
@@ -109,11 +113,11 @@ pub(super) fn places(scene: &Scene<Table>, lights: &[LightId], pass: &LightPass)
     }
     for [x, y] in scene.film.whole().middles_of_cells(SIDE) {
         let ray = scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-        let Some((receiver, primitive)) = walk(scene, &pass.to, ray, f64::INFINITY, None, &mut found) else { continue };
+        let Some((receiver, primitive)) = walk(scene, to, ray, f64::INFINITY, None, &mut found) else { continue };
         let to_lights = lights.iter().take(LIGHTS).map(|&light| way_to(&scene.lights[light], receiver));
-        for way in to_lights.chain(pass.openings.iter().map(|opening| opening.center - receiver)) {
+        for way in to_lights.chain(openings.iter().map(|opening| opening.center - receiver)) {
             if let Some(direction) = way.try_normalize() {
-                walk(scene, &pass.to, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
+                walk(scene, to, Ray { origin: receiver, direction }, way.length(), Some(primitive), &mut found);
             }
         }
     }

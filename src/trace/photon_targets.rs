@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::LightPass;
 use super::guide::Guide;
 use super::photon_focus::{FocusBall, FocusPlace, Smoothness, parts, reach};
 use crate::light::{Beam, LeSample, LightId, Opening};
@@ -61,13 +60,16 @@ const EVENLY: f64 = 0.1;
 const MIRRORED: f64 = 0.05;
 
 impl PhotonTargets {
-    /// Of a pass, from some lights, given with their luminances, to all objects of some kinds of smoothness, of large
-    /// ones mostly to places that matter; none if there is none, or none of the lights shines there.
+    /// From some lights, given with their luminances, skies among them also through openings, to all objects of some
+    /// kinds of smoothness, of large ones mostly to places that matter; none if there is none, or none of the lights
+    /// shines there.
     pub(super) fn new(
         scene: &Scene<Table>,
         lights: &[(LightId, f64)],
+        openings: &[Opening],
         places: &[FocusPlace],
-        LightPass { openings, to, photons, .. }: &LightPass,
+        to: &[Smoothness],
+        photons: u64,
     ) -> Option<Self> {
         let reach = reach(places);
         let of_object = |object: usize| {
@@ -89,11 +91,11 @@ impl PhotonTargets {
             balls.into_iter().map(|(smooth, ball)| (smooth, ball, parts(places, smooth, &ball, most))).collect();
         let guides = [Guide::even(), Guide::disc()].map(Arc::new);
         let targets: Vec<_> =
-            lights.iter().flat_map(|light| of_light(scene, light, openings, &wholes, &guides)).collect();
+            lights.iter().flat_map(|light| of_light(scene, light.0, light.1, openings, &wholes, &guides)).collect();
         let mut lights = vec![false; scene.lights.len()];
         targets.iter().for_each(|target| lights[target.light] = true);
         let world = ball_around_all(scene).into_iter().chain(reach).reduce(Ball::around)?;
-        let mut targets = Self { targets, lights, objects, reach, world, photons: *photons };
+        let mut targets = Self { targets, lights, objects, reach, world, photons };
         targets.share_out();
         (!targets.targets.is_empty()).then_some(targets)
     }
@@ -219,7 +221,8 @@ impl PhotonTargets {
 /// Photons start by one of two guides, the even one or, toward what is apart from the light, the disc.
 fn of_light(
     scene: &Scene<Table>,
-    &(light, luminance): &(LightId, f64),
+    light: LightId,
+    luminance: f64,
     openings: &[Opening],
     wholes: &[(Smoothness, Ball, Vec<FocusBall>)],
     [even, disc]: &[Arc<Guide>; 2],

@@ -210,10 +210,10 @@ impl World {
         let through = |light: &Light<Table>| !pass.openings.is_empty() && light.sends_photons_through_openings();
         let sends = |light: &Light<Table>| light.sends_photons() || through(light);
         let senders: Vec<LightId> = pass.lights.iter().copied().filter(|&id| sends(&self.scene.lights[id])).collect();
-        let places = places(&self.scene, &senders, pass);
+        let places = places(&self.scene, &senders, &pass.openings, &pass.to);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
         let targets_of =
-            |photons: u64| PhotonTargets::new(&self.scene, &senders, &places, &LightPass { photons, ..pass.clone() });
+            |photons: u64| PhotonTargets::new(&self.scene, &senders, &pass.openings, &places, &pass.to, photons);
         let map = pass.map.and_then(|map| targets_of(map.photons));
         (self.photon_targets, self.map_targets) = (targets_of(pass.photons), map);
     }
