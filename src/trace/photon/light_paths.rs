@@ -234,12 +234,12 @@ impl<'a> LightPaths<'a> {
         let world = self.world;
         let mut walker = Walker::<N, P>::new(world, PHOTONS);
         let draw = world.method.basis.draw(0.0);
-        let over = Surfaces::All;
         let mut vertices = Vec::new();
         for number in paths {
             let sampler = self.sampler(set, number as u32);
             let Some((light, emitted)) = self.start(&sampler) else { continue };
-            let photon = Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over, early: true };
+            let photon =
+                Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over: Surfaces::All, early: true };
             follow_photon(&mut walker, &photon, &mut |_, photon_hit| vertices.extend(kept(world, photon_hit, false)));
         }
         (vertices, walker.stats)
