@@ -27,10 +27,10 @@ pub(super) struct IndirectMethod<'a> {
 }
 
 /// The world in which light between surfaces is found by light vertices, by bounces that are aimed at bright places, or
-/// by both, whichever pays most, if any does.
-pub(super) fn between(world: World, photons: &[PhotonWorth]) -> IndirectMethod<'_> {
+/// by both, whichever pays most, if any does. What lights its room is looked for, unless it is given.
+pub(super) fn between(world: World, light: Option<RoomLight>, photons: &[PhotonWorth]) -> IndirectMethod<'_> {
     let plain = IndirectMethod { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
-    let light = room_light(&plain.world);
+    let light = light.unwrap_or_else(|| room_light(&plain.world));
     let openings = light.openings.as_ref().map(BrightPlaces::openings).unwrap_or_default();
     if let RoomLight { openings: Some(places), is_rare: true, .. } = light {
         let aimed = plain.aimed_at_rare(places);

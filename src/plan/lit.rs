@@ -1,7 +1,5 @@
 //! How the light of a scene is found.
 
-use std::borrow::Cow;
-
 use super::between::{IndirectMethod, between};
 use super::caustics::{self, CausticChoice};
 use super::photon_map;
@@ -20,15 +18,23 @@ pub(super) struct LitWorld {
 
 impl LitWorld {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        let seen = with_openings(scene, unlit);
-        let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, &seen);
+        // Through openings of a room, skies may send photons.
+        let may_send = scene.lights.iter().any(Light::sends_photons_through_openings)
+            && !caustics::targets(scene, &Smoothness::ALL).is_empty();
+        let light = may_send.then(|| room_light(unlit));
+        let openings = light.as_ref().and_then(|light| light.openings.clone());
+        let aimed = openings.map(|openings| unlit.with_bright(Some(openings)));
+        let seen = aimed.as_ref().unwrap_or(unlit);
+        let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, seen);
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
-        let (light_pass, why_gathered) = photon_map::with_map(scene, &seen, shown.as_ref(), settled);
+        let (light_pass, why_gathered) = photon_map::with_map(scene, seen, shown.as_ref(), settled);
         // Why nothing is shown matters only where nothing is gathered either.
         let why = if shown.is_some() || light_pass.is_none() { why } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
         let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
-        let way = between(unlit.with_light_pass(light_pass), photons);
+        // Without photons, the room is lit as it was found.
+        let known = light.filter(|_| light_pass.is_none());
+        let way = between(unlit.with_light_pass(light_pass), known, photons);
         // As many as are best beside the noise that all else leaves.
         let pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, way.photons_of_a_sample()));
         let IndirectMethod { mut world, reasons, .. } = way;
@@ -40,12 +46,4 @@ impl LitWorld {
         let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
         Self { world, because, guided }
     }
-}
-
-/// The world with bounces that are aimed at openings of a room, where a sky might send photons through some.
-fn with_openings<'a>(scene: &Scene<Curve>, unlit: &'a World) -> Cow<'a, World> {
-    let may_send = scene.lights.iter().any(Light::sends_photons_through_openings)
-        && !caustics::targets(scene, &Smoothness::ALL).is_empty();
-    let openings = if may_send { room_light(unlit).openings } else { None };
-    openings.map_or(Cow::Borrowed(unlit), |openings| Cow::Owned(unlit.with_bright(Some(openings))))
 }
