@@ -4,9 +4,6 @@ use std::sync::LazyLock;
 
 use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_rev};
 
-/// Samples after which the Sobol sequence is continued under another scramble.
-const SEQUENCE: u32 = 1 << 16;
-
 /// The place of a ray vertex in its camera sample's tree of branches.
 ///
 /// Two vertices of one tree never share a key, and the vertices reached by the same choices in other samples of the
@@ -41,10 +38,7 @@ impl Sampler {
     /// The numbers of one sample of anything that two numbers tell from all others, under a seed.
     pub fn new(seed: u64, key: [u32; 2], sample: u32) -> Self {
         let place = (u64::from(key[1]) << 32) | u64::from(key[0]);
-        // Far apart, as uses lie side by side.
-        let sequence = u64::from(sample / SEQUENCE).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let pixel = mix(mix(seed) ^ place).wrapping_add(sequence);
-        Self { pixel, index: sample % SEQUENCE }
+        Self { pixel: mix(mix(seed) ^ place), index: sample }
     }
 
     /// Four numbers in [0, 1) for one use (`purpose`) at one vertex.
@@ -64,9 +58,11 @@ impl Sampler {
     }
 
     /// Two pairs of numbers in [0, 1) for one use at one vertex. Among samples whose first two numbers for the camera's
-    /// use `first` fall into one part of the square, each pair is spread evenly.
+    /// use `first` fall into one part of the square, each pair is spread evenly; so within every 65,536 samples, which
+    /// know nothing of the next.
     pub fn pairs_beside(&self, first: u32, branch: BranchKey, purpose: u32) -> [f64; 4] {
-        sobol(self.index, PAIRS, [self.seed(BranchKey::CAMERA, first), self.seed(branch, purpose)])
+        let scramble = self.seed(branch, purpose).wrapping_add((self.index >> 16).wrapping_mul(0x9e37_79b9));
+        sobol(self.index, PAIRS, [self.seed(BranchKey::CAMERA, first), scramble])
     }
 
     fn seed(&self, branch: BranchKey, purpose: u32) -> u32 {
@@ -88,13 +84,21 @@ pub fn seed_of(seed: u64, number: u64) -> u64 {
     mix(mix(seed) ^ number.wrapping_add(1))
 }
 
-/// Four dimensions of a point, shuffled by a seed and scrambled by another: the numbers of `sobol_burley::sample_4d`
-/// where both are the same.
+/// Four dimensions of a point, shuffled by a seed and scrambled by another: up to an index of 65,535 the numbers of
+/// `sobol_burley::sample_4d` where both are the same, and the same sequence beyond.
 fn sobol(index: u32, set: usize, [shuffle, scramble]: [u32; 2]) -> [f64; 4] {
-    let shuffled = owen_scramble_rev(index.reverse_bits(), hash(shuffle ^ 0x79c6_8e4a));
-    let digit = |i: usize| SOBOL[set][i][(shuffled >> (28 - 4 * i)) as usize & 15];
-    let [a, b, c, d] = [digit(0), digit(1), digit(2), digit(3)];
-    let point: [u32; 4] = std::array::from_fn(|i| (a[i] ^ b[i]) ^ (c[i] ^ d[i]));
+    let shuffle = hash(shuffle ^ 0x79c6_8e4a);
+    let shuffled = owen_scramble_rev(index.reverse_bits(), shuffle);
+    let point_of = |table: &[[[u32; 4]; 16]; 4], bits: u32| -> [u32; 4] {
+        let digit = |i: usize| table[i][(bits >> (28 - 4 * i)) as usize & 15];
+        let [a, b, c, d] = [digit(0), digit(1), digit(2), digit(3)];
+        std::array::from_fn(|i| (a[i] ^ b[i]) ^ (c[i] ^ d[i]))
+    };
+    let mut point = point_of(&SOBOL[set], shuffled);
+    if index >> 16 != 0 && set != PAIRS {
+        let beyond = point_of(&BEYOND[set], (shuffled ^ owen_scramble_rev(0, shuffle)) << 16);
+        point = std::array::from_fn(|i| point[i] ^ beyond[i]);
+    }
     let seed = scramble.wrapping_mul(0x9c8f_2d3b) ^ set as u32;
     let scramble = [0x912f_69ba, 0x174f_18ab, 0x691e_72ca, 0xb40c_c1b8].map(|x: u32| x ^ seed);
     owen_scramble_int4_rev(point.into(), hash_int4(scramble.into())).reverse_bits().to_f32_norm().map(f64::from)
@@ -123,6 +127,44 @@ static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
     std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
 });
 
+/// The same for the digits of 65,536 and more, of the first two sets.
+static BEYOND: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
+    let directions: Vec<[u32; 32]> = (0..8).map(directions).collect();
+    let point = |set: usize, i: usize, digit: usize| {
+        std::array::from_fn(|dimension| {
+            let of_bit = |bit: usize| directions[4 * set + dimension][16 + 4 * i + bit].reverse_bits();
+            (0..4).filter(|bit| digit >> (3 - bit) & 1 == 1).fold(0, |point, bit| point ^ of_bit(bit))
+        })
+    };
+    std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
+});
+
+/// The primitive polynomials of the first dimensions after the first, by degree and inner coefficients.
+///
+/// Joe & Kuo 2008, *Constructing Sobol Sequences with Better Two-Dimensional Projections*.
+const POLYNOMIALS: [(usize, u32); 7] = [(1, 0), (2, 1), (3, 1), (3, 2), (4, 1), (4, 4), (5, 2)];
+
+/// The direction numbers of one of the first eight dimensions, 32 bits each. `sobol_burley` has the first 16; the
+/// recurrence of its polynomial makes the rest.
+fn directions(dimension: usize) -> [u32; 32] {
+    let mut directions = [0; 32];
+    for i in 0..32 {
+        directions[i] = match dimension.checked_sub(1).map(|dimension| POLYNOMIALS[dimension]) {
+            None => 1 << (31 - i),
+            Some(_) if i < 16 => sobol_rev(1 << (31 - i), dimension as u32).reverse_bits(),
+            Some((degree, inner)) => next(&directions[..i], degree, inner),
+        };
+    }
+    directions
+}
+
+/// The direction number after some others of one dimension.
+fn next(directions: &[u32], degree: usize, inner: u32) -> u32 {
+    let before = |j: usize| directions[directions.len() - j];
+    let is_in = |j: &usize| inner >> (degree - 1 - j) & 1 == 1;
+    (1..degree).filter(is_in).fold(before(degree) ^ (before(degree) >> degree), |sum, j| sum ^ before(j))
+}
+
 /// A bijection of 64 bits that spreads every input bit over all output bits.
 ///
 /// Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (mix64, variant 13 of Stafford).
@@ -148,17 +190,38 @@ mod tests {
         }
     }
 
-    /// No sequence has the scramble of another use in the one before it.
     #[test]
-    fn sequences_share_no_scrambles() {
-        for pixel in 0..64 {
-            let seeds = |sequence: u32| {
-                let sampler = Sampler::of_pixel(7, [pixel, 5], sequence * SEQUENCE);
-                (0..32).map(|purpose| sampler.seed(BranchKey::CAMERA, purpose)).collect::<Vec<_>>()
-            };
-            let known = seeds(0);
-            assert!((1..8).all(|sequence| seeds(sequence).iter().all(|seed| !known.contains(seed))), "{pixel}");
+    fn polynomials_are_those_of_the_dimensions() {
+        for dimension in 1..8 {
+            let ((degree, inner), known) = (POLYNOMIALS[dimension - 1], directions(dimension));
+            for i in degree..16 {
+                assert_eq!(next(&known[..i], degree, inner), known[i], "{dimension} {i}");
+            }
         }
+    }
+
+    #[test]
+    fn long_sequences_stay_even() {
+        let m = 18;
+        // The second of such blocks: it reaches from 262,144 to 524,287.
+        let points: Vec<[[f64; 4]; 2]> = (1 << m..2 << m)
+            .map(|i| Sampler::new(3, [5, 7], i))
+            .map(|sampler| [sampler.four(BranchKey::CAMERA, 2), sampler.four_more(BranchKey::CAMERA, 2)])
+            .collect();
+        let pairs: Vec<[f64; 2]> = points.iter().map(|[first, _]| [first[0], first[1]]).collect();
+        assert_eq!(share_of_even_shapes(&pairs, m), 1.0);
+        for dimension in 0..8 {
+            let numbers: Vec<[f64; 1]> = points.iter().map(|sets| [sets[dimension / 4][dimension % 4]]).collect();
+            assert_eq!(share_of_even_shapes(&numbers, m), 1.0, "{dimension}");
+        }
+        // Boxes of 64 points in three dimensions: independent points would leave a standard deviation of 8.
+        let mut counts = vec![0_u32; 1 << 12];
+        for [first, _] in &points {
+            let [x, y, z] = [first[0], first[1], first[2]].map(|u| (16.0 * u) as usize);
+            counts[(16 * x + y) * 16 + z] += 1;
+        }
+        let variance = counts.iter().map(|&count| (f64::from(count) - 64.0).powi(2)).sum::<f64>() / counts.len() as f64;
+        assert!(variance < 1.0, "{variance}");
     }
 
     /// All shapes of 2^m boxes of the same volume: how many times each axis is halved.
@@ -187,9 +250,9 @@ mod tests {
     #[test]
     fn pairs_beside_another_are_even_and_even_in_parts_of_its_square() {
         let key = BranchKey::CAMERA;
-        for m in 2..=8_u32 {
+        for (m, start) in (2..=8_u32).flat_map(|m| [(m, 0), (m, 5 << 16)]) {
             let samples = |points: &dyn Fn(Sampler) -> [f64; 4]| {
-                (0..1 << m).map(|i| points(Sampler::of_pixel(3, [5, 7], i))).collect::<Vec<_>>()
+                (start..start + (1 << m)).map(|i| points(Sampler::of_pixel(3, [5, 7], i))).collect::<Vec<_>>()
             };
             let beside = |pair: usize| {
                 samples(&|sampler| {
