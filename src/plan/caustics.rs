@@ -6,7 +6,7 @@ use super::efficiency::{PhotonGain, rounded, weigh};
 use super::words::{as_long, in_number};
 use crate::light::{Light, LightId, Opening};
 use crate::material::Material;
-use crate::math::{DVec2, DVec3};
+use crate::math::{DVec2, DVec3, median};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Effort, LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
@@ -291,11 +291,6 @@ fn openings(world: &World, places: &[DVec3], small: f64) -> Vec<Opening> {
 fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     let from = |place: &DVec3| openings.iter().map(|opening| opening.solid_angle_from(*place)).sum();
     median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
-}
-
-fn median(mut angles: Vec<f64>) -> Option<f64> {
-    angles.sort_by(f64::total_cmp);
-    angles.get(angles.len() / 2).copied()
 }
 
 /// Some of the places, so that all of them can be held against all lights.

@@ -15,7 +15,7 @@ use super::usefulness::{DiffusePlace, is_seen, places, usefulness};
 use crate::film::Layer;
 use crate::light::{LeSample, Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, DVec3, Distribution, Sampler, seed_of};
+use crate::math::{BranchKey, DVec3, Distribution, Sampler, median, seed_of};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 use crate::trace::parallel::in_parallel;
@@ -208,10 +208,9 @@ impl<'a> LightPaths<'a> {
         let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
         // Medians: some vertices may lie far outside of all that is seen.
         let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
-        let center = DVec3::new(middle(0), middle(1), middle(2));
+        let center = DVec3::from([0, 1, 2].map(|axis| middle(axis).unwrap_or_default()));
         let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
-        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
-        (center, near)
+        (center, median(distances).map_or(1.0, |distance| (NEAR * distance).max(f64::MIN_POSITIVE)))
     }
 
     /// The vertices of some light paths of a set.
@@ -256,12 +255,6 @@ impl<'a> LightPaths<'a> {
         let shares = usefulness(world, &self.places, &positions, &powers);
         powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
     }
-}
-
-/// The median of some numbers; 0 of none.
-fn median(mut numbers: Vec<f64>) -> f64 {
-    let half = numbers.len() / 2;
-    if numbers.is_empty() { 0.0 } else { *numbers.select_nth_unstable_by(half, f64::total_cmp).1 }
 }
 
 /// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over

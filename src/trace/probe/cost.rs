@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use crate::math::Sampler;
+use crate::math::{Sampler, median};
 use crate::trace::camera::PathTracer;
 use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{alone, in_parallel};
@@ -123,9 +123,7 @@ struct Timed {
 /// else kept the processor, they are faster.
 fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Duration {
     let per_ray = |batch: &Timed| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
-    let mut all: Vec<f64> = batches.iter().map(per_ray).collect();
-    all.sort_by(f64::total_cmp);
-    let slow = SLOW * all[all.len() / 2];
+    let slow = median(batches.iter().map(per_ray).collect()).map_or(f64::INFINITY, |median| SLOW * median);
     let time = |(number, batch): (usize, &Timed)| match per_ray(batch) > slow {
         true => batch.time.min(again(number).time),
         false => batch.time,

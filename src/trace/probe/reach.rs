@@ -1,7 +1,7 @@
 //! What the plan asks of a map of photons before it is made.
 
 use super::findings::found_all_over;
-use crate::math::DVec3;
+use crate::math::{DVec3, median};
 use crate::trace::World;
 use crate::trace::camera::SensorEvent;
 use crate::trace::photon::PhotonMap;
@@ -43,9 +43,8 @@ fn apart(places: &[DVec3]) -> f64 {
         let others = places.iter().enumerate().filter(|(other, _)| *other != number);
         others.map(|(_, other)| other.distance_squared(place)).fold(f64::INFINITY, f64::min)
     };
-    let mut squares: Vec<f64> = places.iter().enumerate().step_by(places.len() / FEW + 1).map(next).collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).filter(|square| square.is_finite()).map_or(0.0, |square| square.sqrt())
+    let squares = places.iter().enumerate().step_by(places.len() / FEW + 1).map(next);
+    median(squares.collect()).filter(|square| square.is_finite()).map_or(0.0, f64::sqrt)
 }
 
 /// How many photons are looked through around such a place, on average.
