@@ -275,7 +275,7 @@ const FILMS: usize = 4;
 /// The longest straight way through the largest body of a material.
 fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
     let bodies = scene.objects.iter().filter(|object| object.material == material);
-    let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| (bounds.max - bounds.min).min_element());
+    let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| bounds.size().min_element());
     sizes.fold(0.0, f64::max)
 }
 

@@ -203,8 +203,8 @@ pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball,
 
 /// A ball around some places, so many times as large as it must be.
 fn around(places: &[FocusPlace], wider: f64) -> Ball {
-    let bounds = Bounds::around(places.iter().map(|place| place.at));
-    Ball { center: bounds.center(), radius: 0.5 * wider * (bounds.max - bounds.min).length() }
+    let ball = Ball::of_box(&Bounds::around(places.iter().map(|place| place.at)));
+    Ball { radius: wider * ball.radius, ..ball }
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub struct SearchTarget {
 impl SearchTarget {
     /// A ball around it.
     pub fn ball(&self) -> Ball {
-        Ball { center: self.bounds.center(), radius: 0.5 * (self.bounds.max - self.bounds.min).length() }
+        Ball::of_box(&self.bounds)
     }
 }
 
@@ -118,7 +118,7 @@ fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
 impl Beam {
     /// Whether a box lies within the beam in part, or may.
     fn touches(&self, bounds: &Bounds) -> bool {
-        let (half, middle) = (0.5 * (bounds.max - bounds.min).length(), bounds.center() - self.ray.origin);
+        let (half, middle) = (0.5 * bounds.size().length(), bounds.center() - self.ray.origin);
         let farthest = (middle.dot(self.ray.direction) + half).clamp(0.0, self.length);
         let radius = DVec3::splat(self.radius + self.slope * farthest);
         let (low, high) = (bounds.min - radius - self.ray.origin, bounds.max + radius - self.ray.origin);

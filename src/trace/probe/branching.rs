@@ -60,7 +60,7 @@ pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[
     let mut pixels = Vec::new();
     for &object in several.iter().step_by(stride) {
         let Some(bounds) = scene.objects[object as usize].shape.bounds() else { continue };
-        let (middle, half) = (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min));
+        let (middle, half) = (bounds.center(), 0.5 * bounds.size());
         let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
         let corners =
             (0..8).map(|corner| middle + 0.6 * half * DVec3::new(sign(corner, 0), sign(corner, 1), sign(corner, 2)));

@@ -92,7 +92,7 @@ impl OpeningSearch<'_> {
     /// Where rays leave the room that fall beside ways out, weighted by how few fall there: the less densely by the
     /// square of the distance.
     fn beside(&self, ways_out: &[DVec3], piece: usize) -> Vec<(DVec3, f64)> {
-        let size = (self.walls.max - self.walls.min).length();
+        let size = self.walls.size().length();
         let toward = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
             let way_out = ways_out[number as usize % ways_out.len()];
             let radius = size * libm::exp2(BESIDE[0] + (BESIDE[1] - BESIDE[0]) * exponent);

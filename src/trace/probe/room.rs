@@ -90,9 +90,9 @@ impl WallHit {
 
 /// A box around most of some weighted points, and a little more.
 pub fn box_around(points: &[(DVec3, f64)], weight: f64) -> Bounds {
-    let Bounds { min, max } = bounds_of_most(points, weight);
-    let margin = MARGIN * (max - min).length();
-    Bounds { min: min - margin, max: max + margin }
+    let most = bounds_of_most(points, weight);
+    let margin = MARGIN * most.size().length();
+    Bounds { min: most.min - margin, max: most.max + margin }
 }
 
 /// How far it is from a point in a box to its end.

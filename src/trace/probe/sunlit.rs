@@ -80,14 +80,13 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<SunlitPla
         return None;
     }
     let all: f64 = lit.iter().map(|place| place.1).sum();
-    let bounds = bounds_of_most(&lit, all);
-    let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length());
-    let beam = light.beam(&Ball { center, radius })?;
+    let ball = Ball::of_box(&bounds_of_most(&lit, all));
+    let beam = light.beam(&ball)?;
     let mut cells = BTreeMap::new();
     for ((origin, found), direction) in lit.into_iter().zip(directions) {
         if let Some(place) = beam.place_in_disc(origin, direction) {
             *cells.entry(cell_of(place) as u32).or_insert(0.0) += (found / all) as f32;
         }
     }
-    Some(SunlitPlaces { light: id, center, radius, cells: cells.into_iter().collect() })
+    Some(SunlitPlaces { light: id, center: ball.center, radius: ball.radius, cells: cells.into_iter().collect() })
 }
