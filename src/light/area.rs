@@ -106,7 +106,7 @@ impl<S> Area<S> {
 
     /// The mean brightness of what it shows, if that varies.
     pub(super) fn mean_brightness(&self) -> Option<f64> {
-        self.emission_map().map(EmissionMap::mean)
+        self.emission_map().map(|map| map.mean)
     }
 
     /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
@@ -238,12 +238,12 @@ impl<S> Area<S> {
 
     /// The factor on its radiance by the image that it shows, each place by what it sends; 1 if it shows none.
     pub fn brightness(&self) -> f64 {
-        self.emission_map().map_or(1.0, EmissionMap::brightness)
+        self.emission_map().map_or(1.0, |map| map.brightness)
     }
 
     /// The share of its area that sends as much light at that brightness; 1 if it shows no image.
     pub fn bright_share(&self) -> f64 {
-        self.emission_map().map_or(1.0, |map| map.mean() / map.brightness().max(f64::MIN_POSITIVE))
+        self.emission_map().map_or(1.0, |map| map.mean / map.brightness.max(f64::MIN_POSITIVE))
     }
 
     /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that

@@ -11,8 +11,10 @@ use crate::spectrum::CurveKind;
 /// Cells are about as large as texels; those of large images hold several. A part that is nearly even has none.
 #[derive(Clone, Debug)]
 pub struct EmissionMap {
-    mean: f64,
-    brightness: f64,
+    /// The mean brightness of the lamp, a third of red, green and blue.
+    pub(super) mean: f64,
+    /// Its brightness, each place by what it sends: the mean square over the mean.
+    pub(super) brightness: f64,
     parts: Vec<Part>,
 }
 
@@ -70,16 +72,6 @@ impl EmissionMap {
         let brightness = if light > 0.0 { squares / light } else { 0.0 };
         let parts = looked.into_iter().map(|(part, _)| part).collect();
         Some(Self { mean: light / whole, brightness, parts })
-    }
-
-    /// The mean brightness of the lamp, a third of red, green and blue.
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// Its brightness, each place by what it sends: the mean square over the mean.
-    pub fn brightness(&self) -> f64 {
-        self.brightness
     }
 
     /// By how much an area of a part counts.

@@ -376,7 +376,7 @@ fn solid_angle<S>(light: &Light<S>, openings: &[Opening], places: &[DVec3]) -> O
         Light::Point(_) | Light::Spot(_) => Some(0.0),
         Light::Sun(sun) => Some(sun.solid_angle()),
         Light::Environment(environment) => {
-            let bright = environment.bright().map(|bright| bright.solid_angle());
+            let bright = environment.bright().map(|bright| bright.solid_angle);
             bright.or_else(|| of_openings(openings, places).filter(|_| light.sends_photons_through_openings()))
         }
         Light::Area(area) => {

@@ -84,7 +84,7 @@ impl<'a> TargetObjects<'a> {
         let factor = match light {
             Light::Area(area) => area.brightness() * blurred,
             Light::Environment(environment) => {
-                environment.bright().map_or(environment.mean(), |bright| bright.radiance()) * blurred
+                environment.bright().map_or(environment.mean(), |bright| bright.radiance) * blurred
             }
             Light::Sun(sun) if sun.angular_diameter > 0.0 => sun.radiance_factor() * blurred,
             _ if self.spread == 0.0 => return None,

@@ -447,7 +447,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if !ends {
             return false;
         }
-        let rest = vertices.rest();
+        let rest = vertices.rest;
         let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest.unwrap_or(ACCOUNTED) };
         // A pilot that looks on wants to know of light alone.
         let is_asked = rest.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());

@@ -70,8 +70,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         };
         let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
         let (arriving, on_its_way) = segment.arriving(world, at.context.draw, toward, || vertex.leaving)?;
-        let near_squared = self.vertices.near_squared();
-        let factor = factor * cos / (squared + near_squared);
+        let factor = factor * cos / (squared + self.vertices.near_squared());
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let received = ReceivedLight { source: vertex.light, draw: at.context.draw, lanes, parted: self.path.parted };
         let met = FoundLight::new(world, &received, None);

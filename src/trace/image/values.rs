@@ -27,7 +27,7 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, counts: Spla
     }
     let (sums, splatted) = (tile.layers.rows(layers, place), tile.splatted_in_layers(layers, place));
     let splatted = &*times(splatted, counts.image);
-    let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
+    let (covered, rgb) = (&tile.layers.covered, [sum.rgb(), subtracted.rgb()]);
     let variance = counts.samples.and_then(|each| tile.replicates.variance(place, filter, each));
     let taken = PixelSums { sums, splatted, counts, variance, rgb, weights, covered, place };
     taken.write(layers, &mut values.layers);

@@ -45,7 +45,7 @@ pub struct LightVertices<const N: usize> {
     /// D.
     near: f64,
     /// How likely paths from the camera go on for light that light paths do not find; none where they find all.
-    rest: Option<f64>,
+    pub rest: Option<f64>,
     /// The instructions by which candidates are weighed.
     instructions: Instructions,
     pub stats: Stats,
@@ -105,11 +105,6 @@ impl<const N: usize> LightVertices<N> {
     /// Whether the light that comes along a ray from a light is looked for behind the first surface that it meets.
     pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
         self.rest.is_none() || world.is_found_by_light_paths(light, ray)
-    }
-
-    /// How likely a path goes on for light that is not looked for; none where all is.
-    pub fn rest(&self) -> Option<f64> {
-        self.rest
     }
 
     /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.
