@@ -118,6 +118,12 @@ impl<S> Light<S> {
         matches!(self, Self::Environment(environment) if environment.polarization.is_none())
     }
 
+    /// Whether photons can be sent from it where a room has some openings: of a sky, then all but what is bright in it
+    /// is sent through these.
+    pub fn sends_photons_with(&self, openings: &[Opening]) -> bool {
+        self.sends_photons() || (!openings.is_empty() && self.sends_photons_through_openings())
+    }
+
     /// The mean radiance of a sky, per emission; 0 of other lights.
     pub fn mean_radiance(&self) -> f64 {
         if let Self::Environment(environment) = self { environment.mean() } else { 0.0 }

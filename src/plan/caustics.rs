@@ -95,7 +95,7 @@ impl Caustics {
 pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice {
     let Sources { small, mut large, openings } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(why) => return CausticChoice::not(why.into_iter().collect(), sees_receivers(scene)),
+        Err(why) => return CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()),
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
@@ -218,7 +218,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     let mut sources = Sources { small: Vec::new(), large: Vec::new(), openings };
     for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
         match solid_angle(light, &sources.openings, &places) {
-            Some(size) if size < SMALL && sends(light, &sources.openings) => sources.small.push((id, size)),
+            Some(size) if size < SMALL && light.sends_photons_with(&sources.openings) => sources.small.push((id, size)),
             Some(size) => sources.large.push((id, size)),
             None => {}
         }
@@ -254,11 +254,6 @@ pub(super) fn targets(scene: &Scene<Curve>, smooth: &[Smoothness]) -> Vec<usize>
     (0..scene.objects.len()).filter(|&object| Smoothness::sent_to(scene, object, smooth).is_some()).collect()
 }
 
-/// Whether the camera sees any surface straight on which a caustic may lie.
-fn sees_receivers(scene: &Scene<Curve>) -> bool {
-    !lit_places(scene).is_empty()
-}
-
 /// Whether caustics can be seen on a material.
 fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
     material.lobes().is_wide() && !(material.lobes().is_diffuse() && scene.render.diffuse_bounces == Some(0))
@@ -272,13 +267,9 @@ pub(super) fn small_lights(world: &World, places: &[DVec3], small: f64) -> (Vec<
     let openings = openings(world, &places, small);
     let is_small = |light: &Light<_>| solid_angle(light, &openings, &places).is_some_and(|size| size < small);
     let lights = scene.lights.iter().enumerate();
-    let wanted = lights.filter(|(_, light)| light.is_sampled() && sends(light, &openings) && is_small(light));
+    let wanted =
+        lights.filter(|(_, light)| light.is_sampled() && light.sends_photons_with(&openings) && is_small(light));
     (wanted.map(|(id, _)| id).collect(), openings)
-}
-
-/// Whether a light can send photons, a sky also through openings.
-fn sends<S>(light: &Light<S>, openings: &[Opening]) -> bool {
-    light.sends_photons() || (!openings.is_empty() && light.sends_photons_through_openings())
 }
 
 /// The openings at which bounces are aimed, where all are seen under less than a solid angle.

@@ -160,10 +160,9 @@ impl World {
     }
 
     /// This world with more samples at some places and fewer at others.
-    pub fn with_density(&self, density: Option<SampleDensity>) -> Self {
-        let mut world = self.clone();
-        world.method.density = density;
-        world
+    pub fn with_density(mut self, density: Option<SampleDensity>) -> Self {
+        self.method.density = density;
+        self
     }
 
     /// How many samples a pixel of the format takes.
@@ -173,10 +172,9 @@ impl World {
     }
 
     /// This world with polarization traced or not.
-    pub fn with_polarization(&self, polarization: Polarizing) -> Self {
-        let mut world = self.clone();
-        world.method.polarization = polarization;
-        world
+    pub fn with_polarization(mut self, polarization: Polarizing) -> Self {
+        self.method.polarization = polarization;
+        self
     }
 
     /// This world with the whole format in view, whatever part of it or more is made: what is learned there is the same
@@ -207,9 +205,8 @@ impl World {
     fn choose_photon_targets(&mut self) {
         (self.photon_targets, self.map_targets) = (None, None);
         let Some(pass) = &self.method.light_pass else { return };
-        let through = |light: &Light<Table>| !pass.openings.is_empty() && light.sends_photons_through_openings();
-        let sends = |light: &Light<Table>| light.sends_photons() || through(light);
-        let senders: Vec<LightId> = pass.lights.iter().copied().filter(|&id| sends(&self.scene.lights[id])).collect();
+        let sends = |id: &LightId| self.scene.lights[*id].sends_photons_with(&pass.openings);
+        let senders: Vec<LightId> = pass.lights.iter().copied().filter(sends).collect();
         let places = places(&self.scene, &senders, &pass.openings, &pass.to);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
         let targets_of =
