@@ -3,7 +3,7 @@
 use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
 use super::openings::Openings;
-use super::room::Room;
+use super::room::{Room, weight};
 use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
@@ -111,7 +111,7 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
             missed += if any { 0.0 } else { bounce.light };
         }
     }
-    let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / room.weight();
+    let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / weight(&room.bounces);
     let elsewhere = elsewhere.root() + mean;
     let stands_out = |place: &BrightPlace| place.radiance > elsewhere;
     let places: Vec<BrightPlace> = places.into_iter().filter_map(LearnedPlace::bright).filter(stands_out).collect();

@@ -43,11 +43,6 @@ impl<'a> Room<'a> {
         Some(Self { world, bounds, bounces })
     }
 
-    /// How much its bounces count.
-    pub fn weight(&self) -> f64 {
-        weight(&self.bounces)
-    }
-
     /// Where a bounce ends, or where it leaves the box.
     pub fn end_of(&self, bounce: &Bounce) -> DVec3 {
         let leaves = distance_out(&self.bounds, bounce.from, bounce.direction);
@@ -109,7 +104,8 @@ fn leaving(bounce: &Bounce, direction: DVec3) -> Ray {
     Ray { origin: off(bounce.from, bounce.normal), direction }
 }
 
-fn weight(bounces: &[Bounce]) -> f64 {
+/// How much some bounces count.
+pub fn weight(bounces: &[Bounce]) -> f64 {
     bounces.iter().map(|bounce| bounce.weight).sum()
 }
 
