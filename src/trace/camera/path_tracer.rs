@@ -13,7 +13,7 @@ use super::surface::{FirstMet, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
 use crate::light::LightId;
 use crate::material::{Material, Straight};
-use crate::math::{DVec2, Sampler};
+use crate::math::{BranchKey, DVec2, Sampler};
 use crate::scene::Visibility;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
@@ -81,17 +81,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
-        let drawn = |numbers: fn(&Sampler) -> [f64; 4]| match world.method.transport {
+        let drawn = |purpose: u32| match world.method.transport {
             Transport::Deterministic { .. } => [0.5; 4],
-            Transport::Random { .. } => numbers(sampler),
+            Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
         };
-        let [u, v, wavelength, _] = drawn(numbers::film);
+        let [u, v, wavelength, _] = drawn(numbers::PLACE);
         let place = world.scene.film.filter.place([u, v]);
         let film = DVec2::new(f64::from(x), f64::from(y)) + place;
         let is_subtracted = world.scene.film.filter.subtracts(place);
         let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
-            let [u, v, ..] = drawn(numbers::lens);
+            let [u, v, ..] = drawn(numbers::LENS);
             camera.lens_ray(film, [u, v])
         } else {
             camera.ray(film)
@@ -205,7 +205,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         path.vertices += 1;
         if is_held_out {
-            self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, through.as_ref(), draw));
+            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, through.as_ref(), draw));
             return self.walker.go_on_in_part(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
@@ -274,7 +274,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if !matches!(self.walker.world.scene.material_of(surface_hit.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.share(draw);
         } else if let Some(audit) = &mut self.walker.audit {
-            audit.end_beside(path, through, draw);
+            audit.end(path, through, draw);
         }
         self.walker.go_on_in_part(path, &surface_hit.point, through);
     }
@@ -282,7 +282,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
     fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let world = self.walker.world;
-        self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
+        self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
         for &light in &world.scene.infinite_lights {
             let is_hidden = path.kind.is_from_camera() && world.scene.hidden_lights.contains(&light);
             if !is_hidden {
@@ -406,8 +406,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.walker.polarize(path, at);
         self.walker.account(path, at, through.map(|through| &through.straight));
-        let departure = OutgoingPath::new(world, path, at).of_camera_path();
-        let mut departure = departure.with(scatter.as_ref(), through).awaiting(is_awaited);
+        let (scatter, is_seen) = (scatter.as_ref(), path.is_seen);
+        let departure = OutgoingPath::new(world, path, at);
+        let mut departure = OutgoingPath { scatter, through, is_awaited, is_seen, ..departure };
         if !goes_on {
             self.walker.keep_single(&departure);
         }
@@ -455,7 +456,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             (path.resampled, path.unlit) = (true, rest.is_none());
             path.throughput = path.throughput.scaled(1.0 / goes_on);
         } else {
-            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
+            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
         }
         true
     }

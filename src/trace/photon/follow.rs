@@ -235,7 +235,9 @@ fn scatter<const N: usize, P: Polarization<N>>(
         });
         walker.polarize_forward(path, at);
     }
-    walker.follow(&mut OutgoingPath::new(walker.world, path, at).of_light_path(), sampler);
+    // From the camera, a path has to leave the next surface to get to the first one, by whatever lobe.
+    let all_count = path.surfaces() == 1 && path.hidden == 0;
+    walker.follow(&mut OutgoingPath { all_count, ..OutgoingPath::new(walker.world, path, at) }, sampler);
 }
 
 /// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.

@@ -40,14 +40,8 @@ impl<'a, const N: usize> Audit<'a, N> {
         self.open = [path.throughput.of(Lanes::ONE).0.map(f64::from), [0.0; N]];
     }
 
-    /// A path has come to its end.
-    pub fn end<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
-        let ended = self.weight(path, path.throughput, draw);
-        self.close(path.parted, &ended);
-    }
-
-    /// A path has come to its end, but for what goes straight on.
-    pub fn end_beside<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
+    /// A path has come to its end, but for what passes through the surface, if any does.
+    pub fn end<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
         let share = through.map_or(Lanes::ZERO, |through| through.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));

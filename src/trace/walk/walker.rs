@@ -259,47 +259,27 @@ pub struct Hidden(Boundary);
 
 /// A path that leaves a surface.
 pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
-    world: &'a World,
-    path: &'a Path<N, P>,
-    at: &'a Interaction<'a, N>,
+    pub world: &'a World,
+    pub path: &'a Path<N, P>,
+    pub at: &'a Interaction<'a, N>,
     /// From where lights were sampled, if they were.
-    scatter: Option<&'a ScatterSample>,
-    /// What goes straight on: the last branch.
-    through: Option<&'a PassThrough<N, P>>,
-    /// Whether that is followed for certain.
-    is_awaited: bool,
+    pub scatter: Option<&'a ScatterSample>,
+    /// What passes through the surface: the last branch.
+    pub through: Option<&'a PassThrough<N, P>>,
+    /// Whether that is followed for certain, for it is where the camera ray meets something.
+    pub is_awaited: bool,
     /// Whether the camera sees the surface.
-    is_seen: bool,
+    pub is_seen: bool,
     /// Whether all branches count as leaving a diffuse surface, and not the wide ones alone.
-    all_count: bool,
-    branches: usize,
+    pub all_count: bool,
+    /// How many branches there are, once they are followed.
+    pub branches: usize,
 }
 
 impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
         let (scatter, through) = (None, None);
         Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
-    }
-
-    /// With lights sampled here, and what goes straight on.
-    pub fn with(self, scatter: Option<&'a ScatterSample>, through: Option<&'a PassThrough<N, P>>) -> Self {
-        Self { scatter, through, ..self }
-    }
-
-    /// Of a path from the camera.
-    pub fn of_camera_path(self) -> Self {
-        Self { is_seen: self.path.is_seen, ..self }
-    }
-
-    /// With what goes straight on followed for certain, for it is where the camera ray meets something.
-    pub fn awaiting(self, is_awaited: bool) -> Self {
-        Self { is_awaited, ..self }
-    }
-
-    /// Where a path from a light leaves the first surface, by whatever lobe: from the camera, it has to leave the next
-    /// one to get there.
-    pub fn of_light_path(self) -> Self {
-        Self { all_count: self.path.surfaces() == 1 && self.path.hidden == 0, ..self }
     }
 
     /// Whether a branch is what goes straight on.
