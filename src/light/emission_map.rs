@@ -79,7 +79,6 @@ impl EmissionMap {
         OWN * self.parts[part as usize].mean + (1.0 - OWN) * self.mean
     }
 
-    /// Whether parts are sampled by their cells.
     pub(super) fn has_cells(&self) -> bool {
         self.parts.iter().any(|part| part.cells.is_some())
     }

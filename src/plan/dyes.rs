@@ -57,7 +57,6 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
 /// A surface with a dye under a light.
 struct LitDye<'a> {
     dye: &'a Excitable<'a>,
-    /// What it shines.
     glow: &'a FilmColors,
     reflectance: &'a Curve,
     /// The light as it is written, and as it shines.

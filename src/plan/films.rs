@@ -18,7 +18,6 @@ pub(super) struct Film<'a> {
     thickest: bool,
 }
 
-/// What a film lies on.
 #[derive(Clone, Copy)]
 enum Beyond<'a> {
     Nothing,

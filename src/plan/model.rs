@@ -258,7 +258,6 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     told.into_iter().take(TOLD).flatten().chain(more).collect()
 }
 
-/// What is said of a material.
 fn about_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
     let dyes: Vec<Dye> = material.dyes().into_iter().map(|dye| dye.dye()).collect();
     let numbers = match material {

@@ -10,7 +10,6 @@ use crate::trace::{Polarizing, World, polarization_error, seen_light};
 pub(super) struct Decided {
     pub(super) polarization: Polarizing,
     pub(super) why: Option<String>,
-    /// What is left out of the image.
     pub(super) left_out: Option<String>,
     /// How far the image is off where it is not traced, if that was measured.
     pub(super) error: Option<f64>,

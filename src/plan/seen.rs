@@ -94,7 +94,6 @@ type Key = (u32, usize, u8, i64);
 /// A color to be known again: light, diffuse surfaces, products with rounded weights.
 type ColorKey = (usize, u32, Vec<(usize, i64)>);
 
-/// Collects what rays met.
 struct Keeping<'a> {
     scene: &'a Scene<Curve>,
     /// The survey's light of each light.
@@ -112,7 +111,6 @@ impl<'a> Keeping<'a> {
         Self { scene, lights, seen: Seen::default(), tints, products, colors }
     }
 
-    /// Adds the colors of one pixel.
     fn keep(&mut self, found: &[Route]) {
         let mut of_pixel: BTreeMap<(usize, u32), Weighted> = BTreeMap::new();
         for route in found {
@@ -138,7 +136,6 @@ impl<'a> Keeping<'a> {
         *self.products.entry(numbers).or_insert(next)
     }
 
-    /// The tints of a step.
     fn met(&mut self, step: &Step) -> Vec<u32> {
         let (way, rounded) = match step.way {
             RouteEvent::Reflected(cos) => (0, (cos * COSINES).round().max(1.0) as i64),

@@ -189,7 +189,6 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// The emissions of all different lights.
     pub(super) fn emissions(&self) -> Vec<Emission> {
         self.lights.iter().map(|(_, light)| light.clone()).collect()
     }
@@ -291,7 +290,6 @@ impl Tint<'_> {
         }
     }
 
-    /// Whether light interferes in it.
     pub(super) fn has_fringes(&self) -> bool {
         matches!(self, Self::Film(_) | Self::Plate(_))
     }

@@ -13,7 +13,6 @@ use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Emission, Lanes, Quanti
 const LEAST: f64 = 0.05;
 const MOST: f64 = 0.75;
 
-/// The dyes of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Dyes {
     /// The number of the first dye of each material, and of one more.

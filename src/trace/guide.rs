@@ -91,7 +91,6 @@ impl Guide {
         1.0 / ((SIDE * SIDE) as f64 * (0..SIDE * SIDE).map(|cell| probability(cell) * probability(cell)).sum::<f64>())
     }
 
-    /// The density of places drawn.
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
         self.cells.density(place)
     }
@@ -107,7 +106,6 @@ fn touches_disc(cell: usize) -> bool {
     x * x + y * y < 1.0
 }
 
-/// The number of a place's cell.
 pub(super) fn cell_of(place: [f64; 2]) -> usize {
     let [column, row] = place.map(|x| ((x * SIDE as f64) as usize).min(SIDE - 1));
     row * SIDE + column

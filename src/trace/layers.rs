@@ -96,7 +96,6 @@ pub(super) const STOKES: usize = 4;
 pub(super) const OF_A_HALF: usize = 4;
 
 impl Layers {
-    /// The layers that a scene asks for.
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
         let color_space = scene.film.color_space;
         let (luminance, film_white) = (color_space.to_xyz()[1], apply(&color_space.of_xyz(), color_space.white()));
@@ -145,7 +144,6 @@ impl Layers {
         self.ids.iter().map(|(matte, _)| Manifest::new(matte.name(), names(scene, *matte))).collect()
     }
 
-    /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
         self.wanted.is_empty() && self.caught.is_none() && self.spectrum.is_none()
     }
@@ -167,7 +165,6 @@ impl Layers {
         [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
     }
 
-    /// Whether there are shadow catchers.
     pub(super) fn catches(&self) -> bool {
         self.caught.is_some()
     }
@@ -256,7 +253,6 @@ impl Layers {
         }
     }
 
-    /// How bright a color is.
     pub(super) fn luminance_of(&self, rgb: &[f64; 3]) -> f64 {
         (0..3).map(|channel| self.luminance[channel] * rgb[channel]).sum()
     }

@@ -15,7 +15,6 @@ use crate::spectrum::Table;
 pub(super) struct PhotonTarget {
     pub(super) light: LightId,
     smoothness: Smoothness,
-    /// How many photons are sent.
     pub(super) photons: u64,
     /// The share of those of the whole ball; of a part, it is worth as much however small it is.
     share: f64,
@@ -100,7 +99,6 @@ impl PhotonTargets {
         (!targets.targets.is_empty()).then_some(targets)
     }
 
-    /// How many photons are sent in all.
     pub(super) fn photons(&self) -> u64 {
         self.targets.iter().map(|target| target.photons).sum()
     }

@@ -15,7 +15,6 @@ pub(super) struct Stats {
     pub(super) stopped: f64,
     /// Surfaces of bodies that were left without having been entered.
     pub(super) unmatched: u64,
-    /// Surfaces at which lanes parted.
     pub(super) partings: u64,
     /// All light that was seen, as X + Y + Z.
     pub(super) light: f64,

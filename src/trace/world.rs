@@ -268,7 +268,6 @@ impl World {
         if amount > 0.0 { self.amount(changed) / amount - 1.0 } else { 0.0 }
     }
 
-    /// What the camera sees of an object.
     pub(super) fn visibility(&self, object: u32) -> Visibility {
         self.scene.objects[object as usize].visibility
     }
@@ -349,7 +348,6 @@ impl World {
         self.map_targets.is_some()
     }
 
-    /// Whether a light sends photons.
     pub(super) fn sends_photons(&self, light: LightId) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
@@ -365,7 +363,6 @@ impl World {
     }
 }
 
-/// How paths of each light start.
 fn path_starts(scene: &Scene<Table>, method: &Method) -> Arc<[PathStart]> {
     (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings.openings)).collect()
 }

@@ -7,7 +7,6 @@ use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
 use crate::trace::walk::{Path, Polarization, SurfaceHit};
 
-/// An emitter that a path hit.
 pub struct EmitterHit<const N: usize, P> {
     pub light: LightId,
     pub lanes: Lanes<N>,

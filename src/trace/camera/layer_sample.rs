@@ -72,7 +72,6 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         self.object = None;
     }
 
-    /// What the sample has left.
     pub fn left(&self) -> SampleRow<'_> {
         SampleRow { row: &self.row, object: self.object }
     }

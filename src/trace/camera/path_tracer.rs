@@ -53,7 +53,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         Self { walker, sensor, photons: None, light_vertices: None, draw, excitations: Vec::new() }
     }
 
-    /// With photons that are gathered.
     pub fn with_photons(self, photons: Option<&'a PhotonMap<N, P>>) -> Self {
         Self { photons, ..self }
     }

@@ -20,13 +20,11 @@ pub struct Bounce {
     pub distance: f64,
     /// What the sensor got of the light found at its end, as X + Y + Z.
     pub light: f64,
-    /// The path's weight.
     pub weight: f64,
 }
 
 /// What the camera's paths find, as somebody is told who wants to know it beside the image.
 pub enum SensorEvent<'a> {
-    /// Light reached the sensor.
     Light(&'a Contribution),
     /// A path has come, by way of other surfaces, to a place that scatters widely.
     Place(DVec3),
@@ -125,7 +123,6 @@ impl<const N: usize> Sensor<'_, N> {
         }
     }
 
-    /// Forgets what the sample received.
     pub fn forget(&mut self) {
         (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
     }

@@ -20,7 +20,6 @@ const SURFACE: u32 = 7;
 /// Which way is followed where light may go two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FollowedBranch {
-    /// The brighter one.
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
     FainterFirst,

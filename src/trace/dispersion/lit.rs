@@ -191,7 +191,6 @@ impl Pair<'_> {
         Some(self.ball.center + Frame::about(axis).to_world(DVec3::new(x, y, 0.0)))
     }
 
-    /// The ray from the light.
     fn start(&self, back: &Ray, distance: f64) -> Option<Ray> {
         let scene = &self.colors.world.scene;
         match &scene.lights[self.light] {

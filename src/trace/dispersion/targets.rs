@@ -19,13 +19,11 @@ pub struct SearchTarget {
 }
 
 impl SearchTarget {
-    /// A ball around it.
     pub fn ball(&self) -> Ball {
         Ball::of_box(&self.bounds)
     }
 }
 
-/// All of them.
 pub struct Targets {
     /// Dispersive ones first.
     pub all: Vec<SearchTarget>,

@@ -15,12 +15,10 @@ struct ObjectSamples {
 }
 
 impl Coverage {
-    /// Of so many pixels.
     pub fn new(pixels: usize) -> Self {
         Self(vec![Vec::new(); pixels])
     }
 
-    /// How many pixels there are.
     pub fn pixels(&self) -> usize {
         self.0.len()
     }

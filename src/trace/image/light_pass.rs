@@ -37,13 +37,11 @@ pub struct Observer<'a> {
 pub struct LightPassProgress {
     /// Batches that are done.
     batches: usize,
-    /// Photons sent.
     pub photons: u64,
     pub(in crate::trace) stats: Stats,
 }
 
 impl LightPassProgress {
-    /// Another one follows.
     pub fn begin_anew(&mut self) {
         self.batches = 0;
     }

@@ -35,7 +35,6 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The next pass.
     pub(in crate::trace) fn pass(&self, world: &World) -> Pass {
         if world.method.stop.is_some() {
             return self.stage.pass(world, self.passes, most_at_once(world));
@@ -49,7 +48,6 @@ impl Progress {
         self.samples + self.pass(world).numbers.len() as u32
     }
 
-    /// Counts a pass that is finished.
     pub(in crate::trace) fn finish(&mut self, pass: &Pass) {
         let samples = pass.numbers.len() as u32;
         (self.samples, self.passes) = (self.samples + samples, self.passes + 1);

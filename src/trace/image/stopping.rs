@@ -84,7 +84,6 @@ fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
     stop.noise.zip(measured).is_some_and(|(wanted, error)| is_small(wanted, error))
 }
 
-/// Most samples of each replicate.
 fn most(stop: &Stop) -> u32 {
     stop.most / REPLICATES as u32
 }

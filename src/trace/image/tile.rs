@@ -17,14 +17,12 @@ use crate::trace::replicates::Replicates;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
 
-/// A small part of the image.
 #[derive(Serialize, Deserialize)]
 pub struct Tile {
     /// Sums of its pixels, row by row.
     pub sums: Vec<PixelSum>,
     /// The same of samples that are subtracted; empty where the filter is nowhere negative.
     pub subtracted: Vec<PixelSum>,
-    /// Sums of their layers.
     pub layers: LayerSums,
     /// What photons show in its pixels.
     pub splatted: PhotonTile,
@@ -87,7 +85,6 @@ impl Tile {
             && (self.ahead as usize) < pixels
     }
 
-    /// Camera samples taken.
     pub fn samples(&self) -> u64 {
         let kept = self.sums.iter().chain(&self.subtracted).map(|sum| u64::from(sum.kept())).sum::<u64>();
         kept + self.stats.non_finite

@@ -39,7 +39,6 @@ const MOST: u32 = 1 << 12;
 const POINTS: usize = 128;
 const CHOICE: usize = 129;
 
-/// Where photons are gathered.
 struct GatherSurface<'a> {
     world: &'a World,
     position: DVec3,

@@ -92,7 +92,6 @@ pub fn few_vertices<const N: usize>(world: &World) -> Option<LightVertices<N>> {
 /// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
 pub struct LightPaths<'a> {
     world: &'a World,
-    /// Of their random numbers.
     seed: u64,
     by_flux: Distribution,
     /// How likely paths from the camera go on for light that is not theirs; none where all is.

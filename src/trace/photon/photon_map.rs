@@ -38,7 +38,6 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub carries: T,
 }
 
-/// Lanes that have not parted.
 #[derive(Clone, Debug)]
 pub struct JointLanes<const N: usize> {
     /// Flux, lane by lane, over the cosine under which it arrived.
@@ -57,7 +56,6 @@ pub struct SingleLane {
     pub color: [f64; 3],
 }
 
-/// The photons of one pass.
 pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
     pub together: KdTree<StoredPhoton<JointLanes<N>, P::Stored>>,
     pub alone: KdTree<StoredPhoton<SingleLane, P::Stored>>,
@@ -79,7 +77,6 @@ pub enum PhotonRecord<const N: usize, L = Polarized> {
     SingleLane(StoredPhoton<SingleLane, L>),
 }
 
-/// Sends the photons of one pass.
 pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
     let (targets, kernel) = (world.map_targets.as_ref()?, Kernel::of_pass(world, pass)?);
     let targets = &*pass.targets(world, targets, world.method.map()?.count);
@@ -107,7 +104,6 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     Some(PhotonMap { together, alone, crosses, kernel, half, sent, stats })
 }
 
-/// Sends one batch.
 pub fn send_stored<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
@@ -116,7 +112,6 @@ pub fn send_stored<const N: usize, P: Polarization<N>>(
     send(world, targets, batch, false, &|_, photon_hit: &PhotonHit<N, P>, kept| keep(world, photon_hit, kept))
 }
 
-/// Keeps a photon where it lands.
 fn keep<const N: usize, P: Polarization<N>>(
     world: &World,
     photon_hit: &PhotonHit<N, P>,

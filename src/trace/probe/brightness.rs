@@ -124,7 +124,6 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
     })
 }
 
-/// A place that is being learned.
 struct LearnedPlace {
     shape: Shape,
     rectangle: Rectangle,

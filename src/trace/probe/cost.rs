@@ -156,7 +156,6 @@ pub fn photons_within(world: &World, rays: f64) -> u64 {
     (rays * FEW as f64 / splatted.max(stored).max(1) as f64) as u64
 }
 
-/// Follows a batch of photons.
 type Follow<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
 
 /// What is found by the photons of the light pass, and by those of a map, where there are any.

@@ -214,7 +214,6 @@ fn powers(found: &[CellNoise]) -> Option<Vec<i8>> {
     Some(best)
 }
 
-/// The rays of all cells.
 fn rays(found: &[CellNoise], powers: &[i8]) -> f64 {
     found.iter().zip(powers).map(|(cell, &power)| cell.rays * SampleDensity::times(power)).sum()
 }

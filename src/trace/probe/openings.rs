@@ -44,7 +44,6 @@ type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 pub struct Openings {
     /// A box around the walls of the room.
     pub walls: Bounds,
-    /// The rectangles that hold the openings.
     pub rectangles: Vec<Rectangle>,
 }
 
@@ -71,7 +70,6 @@ impl Openings {
     }
 }
 
-/// A search for openings.
 struct OpeningSearch<'a> {
     room: &'a Room<'a>,
     walls: Bounds,

@@ -118,7 +118,6 @@ fn weigh<const N: usize>(
     brings.iter().any(|&x| x != 0.0).then_some(worth)
 }
 
-/// How many pixels each cell has.
 fn sizes_of_cells(film: FilmSettings) -> Vec<f64> {
     let of_side = |size: u32| {
         // The first pixel of a cell, counted also where a cell has none.

@@ -104,7 +104,6 @@ fn leaving(bounce: &Bounce, direction: DVec3) -> Ray {
     Ray { origin: off(bounce.from, bounce.normal), direction }
 }
 
-/// How much some bounces count.
 pub fn weight(bounces: &[Bounce]) -> f64 {
     bounces.iter().map(|bounce| bounce.weight).sum()
 }

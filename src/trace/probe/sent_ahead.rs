@@ -31,7 +31,6 @@ const FIRST: u64 = 256;
 struct Learned {
     /// Of each target, the places and whether the camera saw them.
     found: Vec<Vec<([f64; 2], bool)>>,
-    /// Rays followed.
     rays: u64,
 }
 

@@ -25,7 +25,6 @@ impl SurfaceHit {
 /// A ray that arrives at a surface.
 pub struct IncidentRay<'a, const N: usize> {
     pub ray: &'a Ray,
-    /// The lanes on it.
     pub present: Lanes<N>,
     /// Whether lanes have parted on the way.
     pub parted: bool,
@@ -43,7 +42,6 @@ pub struct Interaction<'a, const N: usize> {
     /// The media on both sides.
     pub boundary: Boundary,
     pub context: ScatterContext<'a, N>,
-    /// Whether lanes that cross the surface part.
     pub parts: bool,
 }
 

@@ -67,7 +67,6 @@ pub struct Path<const N: usize, P = Polarized> {
 /// Which objects there are for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
-    /// All.
     All,
     /// Those that are in the plate or light it.
     Plate,
@@ -156,7 +155,6 @@ impl<const N: usize, P> Path<N, P> {
 }
 
 impl<const N: usize, P: Polarization<N>> Path<N, P> {
-    /// The path of a camera ray.
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
         let throughput = Throughput::starting(draw.start()).scaled(world.scene.camera.transmittance());
         let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));

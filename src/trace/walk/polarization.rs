@@ -15,13 +15,11 @@ use crate::trace::received_light::ReceivedLight;
 /// What of a path's light goes straight on where it meets a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct PassThrough<const N: usize, P> {
-    /// The share of each lane.
     pub straight: Straight<N>,
     /// How the path's light is polarized beyond.
     pub polarization: P,
 }
 
-/// Light that a path has found.
 pub struct FoundLight<'a, const N: usize, P> {
     pub world: &'a World,
     pub received: &'a ReceivedLight<'a, N>,

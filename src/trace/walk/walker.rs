@@ -201,7 +201,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Follows one branch, chosen by weight.
     fn choose(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
         let weight = |number: usize| departure.weight(&self.branches[number]);
         let u = sampler.four_plain(departure.path.key, CHOICE);
@@ -248,7 +247,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Surfaces met by this camera sample.
     pub fn surfaces(&self) -> u64 {
         self.stats.rays - self.started
     }
