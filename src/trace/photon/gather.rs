@@ -270,7 +270,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         let short = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
         // Where a path was to find light at light vertices, those bring what surfaces send on.
         let is_found = path.resampled && photon.is_resampled;
-        if !short || is_found || photon.crosses != self.crosses || !self.continues(position, photon.flat, photon.front) {
+        if !short || is_found || photon.crosses != self.crosses || !self.continues(position, photon.flat, photon.front)
+        {
             return None;
         }
         let (way, squared_radius) = (position - at.point.position, self.radius * self.radius);

@@ -45,7 +45,11 @@ impl SeenLight {
 /// Looks at the part of the image that is made, with fewer photons than the world's method asks for.
 pub fn seen_light(world: &World) -> SeenLight {
     let world = with_fewer_photons(world);
-    in_lanes!(&world.method.basis, N => look::<N>(&world))
+    let window = world.scene.film.window();
+    let mut seen = SeenLight { parts: [Amount::default(); (PARTS * PARTS) as usize] };
+    let mut take = |pixel, _, found| seen.parts[window.cell_of(PARTS, pixel)] += found;
+    in_lanes!(&world.method.basis, N => for_each_light::<N, Polarized>(&world, 1, &mut take));
+    seen
 }
 
 /// The world with fewer photons than its method asks for.
@@ -54,13 +58,6 @@ pub fn with_fewer_photons(world: &World) -> World {
     let of_map = |map: MapPasses| MapPasses { photons: map.photons.min(most), ..map };
     let fewer = |pass: &LightPass| LightPass { photons: pass.photons.min(most), ..pass.with_map(of_map) };
     world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
-}
-
-fn look<const N: usize>(world: &World) -> SeenLight {
-    let window = world.scene.film.window();
-    let mut seen = SeenLight { parts: [Amount::default(); (PARTS * PARTS) as usize] };
-    for_each_light::<N, Polarized>(world, 1, &mut |pixel, _, found| seen.parts[window.cell_of(PARTS, pixel)] += found);
-    seen
 }
 
 /// Light that is seen, X + Y + Z, and by how much polarization changes it.
@@ -89,7 +86,7 @@ impl AddAssign for Amount {
 pub fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
     copies: usize,
-    take: &mut impl FnMut([u32; 2], usize, Amount),
+    take: &mut dyn FnMut([u32; 2], usize, Amount),
 ) {
     let window = world.scene.film.window();
     let photons = photons::<N, P>(world, &Pass::of_photons_alone(world, 0));

@@ -13,7 +13,6 @@ use crate::shape::Ball;
 use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
 use crate::trace::photon::{LightPaths, can_be_followed};
-use crate::trace::width::in_lanes;
 use crate::trace::{SkyOpenings, SunlitPlaces, World};
 
 /// Camera samples along each side of the image.
@@ -47,7 +46,7 @@ fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     if suns.is_empty() {
         return Vec::new();
     }
-    let bounces = in_lanes!(&world.method.basis, N => bounces::<N>(world, SIDE));
+    let bounces = bounces(world, SIDE);
     // Where they ended, a little before the surface, and what light they found there.
     let has_found = |bounce: &&Bounce| bounce.distance.is_finite() && bounce.light.is_finite() && bounce.light > 0.0;
     let end = |bounce: &Bounce| (bounce.from + bounce.direction * (bounce.distance * (1.0 - OFF)), bounce.light);
