@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use super::noise::Measured;
 use super::passes::Progress;
 use crate::trace::Stop;
@@ -17,9 +19,11 @@ const PLANNED: f64 = 0.95;
 const SHORT: f64 = 0.02;
 
 /// What ended a render that had a stop rule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Stopped {
     /// The error is as small as was asked for.
+    #[serde(rename = "error")]
     Noise,
     /// The time is over.
     Time,
