@@ -188,14 +188,39 @@ fn not_worth(gain: Option<Effort>) -> String {
 }
 
 /// A light and the largest solid angle under which it is seen.
-type SizedLight = (LightId, f64);
+pub(super) type SizedLight = (LightId, f64);
 
 /// Lights whose caustics chance would hardly find, and others.
-struct Sources {
-    small: Vec<SizedLight>,
+pub(super) struct Sources {
+    pub(super) small: Vec<SizedLight>,
     large: Vec<SizedLight>,
     /// The openings through which those that are skies shine.
-    openings: Vec<Opening>,
+    pub(super) openings: Vec<Opening>,
+}
+
+impl Sources {
+    /// The lights of a world that are sampled. Those are small that can send photons and are seen from the places given
+    /// under less than a solid angle.
+    pub(super) fn new(world: &World, places: &[DVec3], below: f64) -> Self {
+        let lights = &world.scene().lights;
+        // Some of the places, so that all of them can be held against all lights.
+        let step = places.len() * lights.len() / PAIRS + 1;
+        let places: Vec<DVec3> = places.iter().copied().step_by(step).collect();
+        let openings = world.openings();
+        let are_small = of_openings(&openings, &places).is_some_and(|size| size < below);
+        let openings = if are_small { openings } else { Vec::new() };
+        let mut sources = Self { small: Vec::new(), large: Vec::new(), openings };
+        for (id, light) in lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
+            match solid_angle(light, &sources.openings, &places) {
+                Some(size) if size < below && light.sends_photons_with(&sources.openings) => {
+                    sources.small.push((id, size));
+                }
+                Some(size) => sources.large.push((id, size)),
+                None => {}
+            }
+        }
+        sources
+    }
 }
 
 /// The lights that photons may be sent from, or why none are sent, if that is worth telling.
@@ -209,20 +234,12 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     if scene.render.caustics == AutoText::Off {
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
-    let places = thinned(lit_places(scene), scene.lights.len());
+    let places = lit_places(scene);
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
         return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
     }
-    let openings = openings(world, &places, SMALL);
-    let mut sources = Sources { small: Vec::new(), large: Vec::new(), openings };
-    for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
-        match solid_angle(light, &sources.openings, &places) {
-            Some(size) if size < SMALL && light.sends_photons_with(&sources.openings) => sources.small.push((id, size)),
-            Some(size) => sources.large.push((id, size)),
-            None => {}
-        }
-    }
+    let sources = Sources::new(world, &places, SMALL);
     if sources.small.is_empty() {
         let why = match sources.large.as_slice() {
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
@@ -259,35 +276,10 @@ fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
     material.lobes().is_wide() && !(material.lobes().is_diffuse() && scene.render.diffuse_bounces == Some(0))
 }
 
-/// Lights that photons can be sent from and that are seen from the places given under less than a solid angle, and the
-/// openings through which skies among them are.
-pub(super) fn small_lights(world: &World, places: &[DVec3], small: f64) -> (Vec<LightId>, Vec<Opening>) {
-    let scene = world.scene();
-    let places = thinned(places.to_vec(), scene.lights.len());
-    let openings = openings(world, &places, small);
-    let is_small = |light: &Light<_>| solid_angle(light, &openings, &places).is_some_and(|size| size < small);
-    let lights = scene.lights.iter().enumerate();
-    let wanted =
-        lights.filter(|(_, light)| light.is_sampled() && light.sends_photons_with(&openings) && is_small(light));
-    (wanted.map(|(id, _)| id).collect(), openings)
-}
-
-/// The openings at which bounces are aimed, where all are seen under less than a solid angle.
-fn openings(world: &World, places: &[DVec3], small: f64) -> Vec<Opening> {
-    let openings = world.openings();
-    if of_openings(&openings, places).is_some_and(|size| size < small) { openings } else { Vec::new() }
-}
-
 /// Under which solid angle all openings are seen from half of some places or more.
 fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     let from = |place: &DVec3| openings.iter().map(|opening| opening.solid_angle_from(*place)).sum();
     median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
-}
-
-/// Some of the places, so that all of them can be held against all lights.
-fn thinned(places: Vec<DVec3>, lights: usize) -> Vec<DVec3> {
-    let step = places.len() * lights / PAIRS + 1;
-    places.into_iter().step_by(step).collect()
 }
 
 /// What cannot be met by chance at all.

@@ -1,6 +1,6 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
-use super::caustics::{small_lights, targets};
+use super::caustics::{Sources, targets};
 use super::efficiency::rounded;
 use super::words::{in_number, percent};
 use crate::scene::{AutoText, Scene};
@@ -59,8 +59,8 @@ pub(super) fn with_map(
     };
     let map = passes(PHOTONS, OF_A_PASS);
     let pass = shown.cloned().unwrap_or_else(|| {
-        let (lights, openings) = small_lights(unguided, &places, SMALL);
-        let photons = (PHOTONS * samples).ceil() as u64;
+        let Sources { small, openings, .. } = Sources::new(unguided, &places, SMALL);
+        let (lights, photons) = (small.iter().map(|light| light.0).collect(), (PHOTONS * samples).ceil() as u64);
         LightPass { photons, lights, openings, to: vec![Smoothness::Whole], map: None }
     });
     if pass.lights.is_empty() {
