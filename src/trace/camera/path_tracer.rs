@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::aimed::{albedo, may_aim, scatter_aimed};
 use super::direct::DirectLighting;
 use super::emitter_hit::EmitterHit;
-use super::layer_sample::{LayerHit, LayerSample};
+use super::layer_sample::LayerSample;
 use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Sensor, SensorEvent};
@@ -334,9 +334,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[inline]
     fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
-            let &Surface { surface_hit, chance, first, through, .. } = surface;
-            let (straight, is_met_first) = (through.map(|through| &through.straight), first == Some(FirstMet::Here));
-            layers.meet(&LayerHit { path, surface_hit, at, straight, is_met_first, chance }, sampler);
+            layers.meet(path, at, surface, sampler);
         }
     }
 
