@@ -159,14 +159,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let context = &at.context;
         let ends = RayEnds { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
-        let segment = VisibilityTest {
-            ray,
-            distance,
-            ends,
-            inside,
-            occluders: Occluders::Objects(self.path.among),
-            last_occluder,
-        };
+        let occluders = Occluders::Objects(self.path.among);
+        let segment = VisibilityTest { ray, distance, ends, inside, occluders, last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;

@@ -7,6 +7,7 @@ use crate::math::{BranchKey, DVec3, Ray};
 use crate::scene::MaterialId;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Lanes;
+use crate::trace::World;
 use crate::trace::media::Media;
 
 /// Something that light meets on its way.
@@ -68,6 +69,12 @@ pub struct RouteWalk {
 }
 
 impl RouteWalk {
+    pub fn from_camera(world: &World, ray: Ray) -> Self {
+        let (media, key, steps) = (world.media_at_camera(&ray), BranchKey::CAMERA, Vec::new());
+        let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
+        Self { ray, is_from_camera, media, key, steps, weight, left, scattered: 0, surfaces: 0 }
+    }
+
     pub fn brightest(&self) -> f32 {
         self.left.0.into_iter().fold(0.0, f32::max)
     }

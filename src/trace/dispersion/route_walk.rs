@@ -3,7 +3,7 @@
 use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, RouteWalk, Step};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
-use crate::math::{BranchKey, DVec3, Ray, Sampler, cosine_about};
+use crate::math::{DVec3, Ray, Sampler, cosine_about};
 use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
@@ -34,20 +34,7 @@ impl<'a> RouteWalker<'a> {
 
     /// Answers how many surfaces it met.
     pub fn walk(&mut self, ray: Ray) -> usize {
-        let media = self.world.media_at_camera(&ray);
-        let (steps, key) = (Vec::new(), BranchKey::CAMERA);
-        let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
-        self.pending.push(RouteWalk {
-            ray,
-            is_from_camera,
-            media,
-            key,
-            steps,
-            weight,
-            left,
-            scattered: 0,
-            surfaces: 0,
-        });
+        self.pending.push(RouteWalk::from_camera(self.world, ray));
         let mut best = 0.0_f32;
         for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());

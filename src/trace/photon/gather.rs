@@ -19,10 +19,10 @@ use crate::light::LightId;
 use crate::math::{DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Wavelength};
-use crate::trace::contribution::{Contribution, add};
+use crate::trace::World;
+use crate::trace::contribution::{Contribution, FoundBy, add};
 use crate::trace::received_light::{ReceivedLight, SourceId};
 use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
-use crate::trace::{World, contribution};
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
@@ -158,36 +158,17 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
     /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least,
     /// as they do wherever the path has left one.
     fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
-        let (first, bounces) = (self.path.first, self.path.bounces + 2);
-        Contribution {
-            light: None,
-            found: contribution::FoundBy::Gathered,
-            rgb,
-            moved,
-            first,
-            bounces,
-            dispersed: false,
-        }
+        let (found, first, bounces) = (FoundBy::Gathered, self.path.first, self.path.bounces + 2);
+        Contribution { light: None, found, rgb, moved, first, bounces, dispersed: false }
     }
 
     /// What one photon brings, but for a factor.
-    fn brought<T>(
-        &self,
-        photon: &StoredPhoton<T, P::Stored>,
-        light: LightId,
-        rgb: [f64; 3],
-        parted: bool,
-    ) -> Contribution {
+    fn brought<T, L>(&self, photon: &StoredPhoton<T, L>, light: LightId, rgb: [f64; 3], parted: bool) -> Contribution {
         let Self { world, path, at, excitation } = self;
-        Contribution {
-            light: Some(light),
-            found: contribution::FoundBy::Gathered,
-            rgb,
-            moved: 0.0,
-            first: path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0),
-            bounces: path.bounces + photon.surfaces,
-            dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
-        }
+        let (light, found, bounces) = (Some(light), FoundBy::Gathered, path.bounces + photon.surfaces);
+        let first = path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0);
+        let dispersed = parted || excitation.is_some_and(|excitation| excitation.parted);
+        Contribution { light, found, rgb, moved: 0.0, first, bounces, dispersed }
     }
 
     /// Whether lanes part on the way of the path and a photon that came from a direction.

@@ -185,15 +185,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
             false => there,
         };
         let ends = RayEnds { left: path.left, ..RayEnds::default() };
-        let last_occluder = &self.walker.last_occluder;
-        let segment = VisibilityTest {
-            ray: &ray,
-            distance,
-            ends,
-            inside,
-            occluders: Occluders::Seen(self.seen_through),
-            last_occluder,
-        };
+        let (occluders, last_occluder) = (Occluders::Seen(self.seen_through), &self.walker.last_occluder);
+        let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let (arriving, polarization) = segment.arriving(world, draw, start, light)?;
         if inside == there {
             return Some((arriving, polarization));
