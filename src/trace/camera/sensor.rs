@@ -54,19 +54,14 @@ impl<const N: usize> Sensor<'_, N> {
 
     /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
     #[inline]
-    pub fn receive<P: Polarization<N>>(
-        &mut self,
-        contribution: Contribution,
-        light: &FoundLight<N, P>,
-        polarization: &P,
-    ) {
+    pub fn receive<P: Polarization<N>>(&mut self, contribution: Contribution, light: &FoundLight<N, P>, polarized: &P) {
         if self.is_deaf {
             return;
         }
         if let Some(layers) = &mut self.layers {
             let FoundLight { world, received, excitation, .. } = *light;
             match excitation {
-                None => layers.receive(&contribution, received, polarization.stokes()),
+                None => layers.receive(&contribution, received, polarized.stokes()),
                 Some(dye) => {
                     let stokes = dye.polarization.stokes();
                     dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes));

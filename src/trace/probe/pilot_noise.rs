@@ -162,19 +162,13 @@ impl PilotNoise {
     ///
     /// Of errors of pixels, the hundredth of the pixels in which samples vary most beside photons is left out: no
     /// photon mends it.
-    fn effort(
-        &self,
-        photons: &[PhotonWorth],
-        sent: usize,
-        by_chance: impl Fn(&PixelNoise) -> f64,
-        mean: f64,
-    ) -> Effort {
+    fn effort(&self, photons: &[PhotonWorth], sent: usize, chance: impl Fn(&PixelNoise) -> f64, mean: f64) -> Effort {
         let of_pixel = |pixel: &PixelNoise| pixel.seen(photons).powi(2) + DARK * mean * mean;
         let of_whole = |_: &PixelNoise| mean * mean;
         let photons = &photons[..sent];
         Effort {
-            of_pixels: self.work(photons, &by_chance, of_pixel, self.worst()).least(),
-            of_whole: self.is_whole.then(|| self.work(photons, &by_chance, of_whole, 0).least()),
+            of_pixels: self.work(photons, &chance, of_pixel, self.worst()).least(),
+            of_whole: self.is_whole.then(|| self.work(photons, &chance, of_whole, 0).least()),
         }
     }
 

@@ -156,32 +156,25 @@ impl<const N: usize, P> Path<N, P> {
 
 impl<const N: usize, P: Polarization<N>> Path<N, P> {
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
-        let throughput = Throughput::starting(draw.start()).scaled(world.scene.camera.transmittance());
         let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));
-        let length = world.scene.camera.way_to_start(ray.direction);
-        Self { length, ..Self::starting(world, PathKind::Camera, throughput, ray, media, polarization) }
+        let path = Self::starting(world, draw, PathKind::Camera, ray, media, polarization);
+        let camera = &world.scene.camera;
+        let (throughput, length) = (path.throughput.scaled(camera.transmittance()), camera.way_to_start(ray.direction));
+        Self { throughput, length, ..path }
     }
 
     /// The path of a ray that leaves a light.
     pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, light: LightId) -> Self {
-        let throughput = Throughput::starting(draw.start());
         let (media, polarization) = (world.media_at_light(light, &ray), P::of_light(world, &ray));
-        Self::starting(world, PathKind::Other, throughput, ray, media, polarization)
+        Self::starting(world, draw, PathKind::Other, ray, media, polarization)
     }
 
     #[inline(always)]
-    fn starting(
-        world: &World,
-        kind: PathKind,
-        throughput: Throughput<N>,
-        ray: Ray,
-        media: Media,
-        polarization: P,
-    ) -> Self {
+    fn starting(world: &World, draw: &Draw<N>, kind: PathKind, ray: Ray, media: Media, polarization: P) -> Self {
         Self {
             ray,
             left: None,
-            throughput,
+            throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
             aimed: 1.0,
             media,

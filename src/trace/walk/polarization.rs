@@ -70,12 +70,7 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     fn of_light(world: &World, ray: &Ray) -> Self;
 
     /// After a surface that lets some light go straight on; makes that the share that does.
-    fn after_straight(
-        self,
-        material: &Material<Table>,
-        context: &ScatterContext<N>,
-        straight: &mut Straight<N>,
-    ) -> Self;
+    fn through(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
 
     /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
     /// of them into `ways`. Nothing is put there where that can wait until one is chosen.

@@ -350,12 +350,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Self::starting(x, world.method.polarization == Polarizing::Compared)
     }
 
-    fn after_straight(
-        mut self,
-        material: &Material<Table>,
-        context: &ScatterContext<N>,
-        straight: &mut Straight<N>,
-    ) -> Self {
+    fn through(mut self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
         let (mut mueller, mut share) = (Mueller::NONE, straight.share());
         material.mueller_of_straight(context, &mut mueller);
         let exitant = Exitant { value: share, lanes: context.present.not_zero(), z: [context.wo; 2] };

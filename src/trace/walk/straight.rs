@@ -231,6 +231,6 @@ fn straight_at<const N: usize, P: Polarization<N>>(
     let context = context(world, draw, wo, normal, uv, present, [inside; 2]);
     let material = world.scene.material_of(hit.object);
     let mut straight = material.straight(&context)?;
-    let polarization = polarization.after_straight(material, &context, &mut straight);
+    let polarization = polarization.through(material, &context, &mut straight);
     Some(PassThrough { straight, polarization })
 }
