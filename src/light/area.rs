@@ -89,12 +89,9 @@ impl<S> Area<S> {
         self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.image.is_none()
     }
 
-    fn emission_map(&self) -> Option<&EmissionMap> {
+    /// How bright its image makes it, if that varies.
+    pub(super) fn emission_map(&self) -> Option<&EmissionMap> {
         self.image.as_ref()?.map.as_deref()
-    }
-
-    fn has_cells(&self) -> bool {
-        self.emission_map().is_some_and(EmissionMap::has_cells)
     }
 
     /// The shape with its image, and the cells of a part by which that is sampled, if it has some.
@@ -102,11 +99,6 @@ impl<S> Area<S> {
         let image = self.image.as_ref()?;
         let surface = TexturedShape { shape: &self.shape, coordinates: &image.coordinates };
         Some((surface, image.map.as_ref()?.cells(part)?))
-    }
-
-    /// The mean brightness of what it shows, if that varies.
-    pub(super) fn mean_brightness(&self) -> Option<f64> {
-        self.emission_map().map(|map| map.mean)
     }
 
     /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
@@ -136,7 +128,7 @@ impl<S> Area<S> {
 
     /// Whether one of several parts or cells is drawn first, which uses up digits of a random number.
     pub(super) fn has_parts(&self) -> bool {
-        self.parts.is_some() || self.has_cells()
+        self.parts.is_some() || self.emission_map().is_some_and(EmissionMap::has_cells)
     }
 
     fn sample(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<ShapeSample> {

@@ -248,7 +248,7 @@ impl Light<Table> {
 
     /// The mean brightness of the image that lies on a lamp, which may be a small part of its file.
     pub fn shown(&self) -> Option<f64> {
-        if let Self::Area(area) = self { area.mean_brightness() } else { None }
+        if let Self::Area(area) = self { area.emission_map().map(|map| map.mean) } else { None }
     }
 
     /// The largest irradiance that a sky gives; 0 of other lights.

@@ -163,14 +163,11 @@ impl Replicates {
             && self.covered.len() == other.covered.len()
     }
 
-    /// Adds the samples of a pixel in one pass of a replicate: those that are added, and those that are subtracted.
-    pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
+    /// Adds the samples of a pixel in one pass of a replicate, and by how much gathered photons blur them: of both those
+    /// that are added, and those that are subtracted.
+    pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], blurs: [&PassSum; 2]) {
         self.light.add(pixel, replicate, samples);
-    }
-
-    /// Adds by how much gathered photons blur them.
-    pub(super) fn add_blur(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
-        self.blur.add(pixel, replicate, samples);
+        self.blur.add(pixel, replicate, blurs);
     }
 
     /// Adds what photons of a replicate show in a pixel.

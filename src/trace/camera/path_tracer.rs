@@ -179,7 +179,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             Err(hidden) => {
                 self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
                 self.sensor.tell(world, path, draw, surface_hit.hit.intersection.t, before);
-                return self.walker.go_on_past(path, &surface_hit, &hidden);
+                return self.walker.pass_hidden(path, &surface_hit, &hidden);
             }
         };
         let mut through = self.walker.straight(path, draw, &surface_hit);
@@ -205,7 +205,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path.vertices += 1;
         if is_held_out {
             self.walker.audit.iter_mut().for_each(|audit| audit.end(path, through.as_ref(), draw));
-            return self.walker.go_on_in_part(path, point, through.as_ref());
+            return self.walker.pass_in_part(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
         let met = is_first.then(|| self.first_met(path, draw, sampler, &surface_hit, through.as_ref(), first));
@@ -275,7 +275,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         } else if let Some(audit) = &mut self.walker.audit {
             audit.end(path, through, draw);
         }
-        self.walker.go_on_in_part(path, &surface_hit.point, through);
+        self.walker.pass_in_part(path, &surface_hit.point, through);
     }
 
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.

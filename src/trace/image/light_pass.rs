@@ -14,7 +14,7 @@ use crate::trace::World;
 use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, Splat, batches_of_pass, send_splatted};
+use crate::trace::photon::{Batch, Splat, batches_of_pass, send, splat_photon};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
@@ -141,7 +141,9 @@ fn send_on<const N: usize, P: Polarization<N>>(
 ) -> bool {
     let batches = batches_of_pass(targets, 0, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
-        let send = |number: usize| (!(watch.is_due)()).then(|| send_splatted::<N, P>(world, targets, group[number]));
+        let send = |number: usize| {
+            (!(watch.is_due)()).then(|| send(world, targets, group[number], false, &splat_photon::<N, P>))
+        };
         let done = in_parallel(group.len(), &send);
         for (batch, sent) in group.iter().zip(done) {
             // Splats are added in the order of the batches: what was found beyond a gap is found again.

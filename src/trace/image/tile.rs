@@ -164,8 +164,7 @@ impl Tile {
             layers.hand_over(self.layers.rows_mut(&world.layers, place));
         }
         if let Some(replicate) = pass.replicate {
-            self.replicates.add(place, replicate, sums.each_ref());
-            self.replicates.add_blur(place, replicate, blurs.each_ref());
+            self.replicates.add(place, replicate, sums.each_ref(), blurs.each_ref());
             let caught = self.layers.caught(&world.layers, place);
             if let (Some(after), Some(before)) = (caught, caught_before) {
                 self.replicates.add_alpha(place, replicate, sums.each_ref(), after.since(before));

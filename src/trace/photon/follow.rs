@@ -132,7 +132,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
     let boundary = match walker.boundary(path, &surface_hit) {
         Ok(boundary) => boundary,
-        Err(hidden) => return walker.go_on_past(path, &surface_hit, &hidden),
+        Err(hidden) => return walker.pass_hidden(path, &surface_hit, &hidden),
     };
     path.vertices += 1;
     if world.ends_light_paths(surface_hit.hit.object) {

@@ -9,7 +9,7 @@ use crate::trace::camera::PathTracer;
 use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{alone, in_parallel};
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_splatted, send_stored};
+use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send, splat_photon, store_photon};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -163,12 +163,12 @@ fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T
     in_lanes!(&world.method.basis, N => {
         let film = world.scene.film;
         let spread = |batch: Batch, to: &PhotonTargets| {
-            let sent = send_splatted::<N, Polarized>(world, to, batch);
+            let sent = send(world, to, batch, false, &splat_photon::<N, Polarized>);
             sent.kept.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
             sent.stats
         };
         let splatted = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));
-        let stored = |to: &PhotonTargets| find(to, &|batch| send_stored::<N, Polarized>(world, to, batch).stats);
+        let stored = |to: &PhotonTargets| find(to, &|batch| send(world, to, batch, false, &store_photon::<N, Polarized>).stats);
         [world.photon_targets.as_ref().map(splatted), world.map_targets.as_ref().map(stored)].map(Option::unwrap_or_default)
     })
 }

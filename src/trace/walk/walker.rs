@@ -112,7 +112,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Makes the path pending that goes on through a hidden surface as if nothing were there.
     #[cold]
-    pub fn go_on_past(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
+    pub fn pass_hidden(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
         let kind = path.kind.past_hidden();
         let left_to_photons =
             kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
@@ -125,7 +125,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 
     /// Makes the path pending that goes straight on through a surface that it has met, if any light does.
-    pub fn go_on_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
+    pub fn pass_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
         if let Some(through) = through {
             *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, through) };
         }
