@@ -73,8 +73,8 @@ pub use photon::light_paths_reach;
 pub use photon_focus::Smoothness;
 pub use probe::{
     Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, RoomLight, SampleWorth,
-    SeenLight, adaptive, branching, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise, piloted,
-    polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_light, seen_photons,
+    adaptive, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth, pilot_noise,
+    piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_photons,
     with_light_vertices,
 };
 pub use replicates::REPLICATES;

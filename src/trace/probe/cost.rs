@@ -19,8 +19,6 @@ use crate::trace::{MapPasses, RAYS_OF_A_LOOK, World};
 /// What a probe found, per camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
-    /// Camera samples traced.
-    pub samples: u32,
     /// Rays followed, without those to lights.
     pub rays: f64,
     /// Share of the samples whose lanes parted.
@@ -109,7 +107,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let rays = batches.iter().map(|batch| batch.rays).sum::<u64>() as f64 / f64::from(samples);
     let time = undisturbed(batches, |number| take(number as u32 * BATCH..(number as u32 + 1) * BATCH));
     let per_sample = 1.0 / f64::from(samples);
-    Probe { samples, rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
+    Probe { rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
 }
 
 /// What some work took.
