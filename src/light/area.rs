@@ -20,7 +20,7 @@ pub struct Area<S> {
     pub radiance: S,
     /// The sides that show it.
     pub sides: Sides,
-    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only met by
+    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only hit by
     /// chance.
     pub is_sampled: bool,
     /// The image that it shows, if it shows one.
@@ -101,7 +101,7 @@ impl<S> Area<S> {
         Some((surface, image.map.as_ref()?.cells(part)?))
     }
 
-    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
+    /// Tells the light the unit normals at which paths hit it by chance: if they lie close together, it is sampled
     /// there.
     ///
     /// The cap is larger than that by a margin, the more so the fewer are known: what is seen beyond the rim makes rare
@@ -121,7 +121,7 @@ impl<S> Area<S> {
         }
     }
 
-    /// Whether the backs of parts may be met first: never from outside of a closed body.
+    /// Whether the backs of parts may be hit first: never from outside of a closed body.
     fn shows_backs(&self, from: DVec3) -> bool {
         self.sides == Sides::Both && self.closed.is_none_or(|bounds| bounds.contains(from))
     }
@@ -159,7 +159,7 @@ impl<S> Area<S> {
         Some(ShapeSample { density: None, ..sample })
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first hits the part at a
     /// crossing.
     fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let evenly = match &self.parts {
@@ -182,7 +182,7 @@ impl<S> Area<S> {
         (!sample.part.is_some_and(is_hidden)).then_some(LightSample { part: None, ..sample })
     }
 
-    /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
+    /// Looks for the light exactly as a ray that happens to hit it would: no distance needs a tolerance.
     pub(super) fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let sample = self.sample(from.position, normal, u)?;
         // A point in space has no horizon.
@@ -215,7 +215,7 @@ impl<S> Area<S> {
     }
 
     /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
-    /// meets it first at a crossing; none where it is seen exactly edge-on.
+    /// hits it first at a crossing; none where it is seen exactly edge-on.
     pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, intersection: &Intersection) -> Option<f64> {
         usable(match (self.seen_cap(), &self.parts) {
             (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, intersection.t),

@@ -19,7 +19,7 @@ pub enum Light<S> {
     Point(Point<S>),
     /// A point that shines into a cone.
     Spot(Spot<S>),
-    /// What rays meet that miss everything.
+    /// What rays hit that miss everything.
     Environment(Environment<S>),
     /// A disc in the sky.
     Sun(Sun<S>),
@@ -56,7 +56,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether next-event estimation samples it; otherwise it shines by being met.
+    /// Whether next-event estimation samples it; otherwise it shines by being hit.
     pub fn is_sampled(&self) -> bool {
         if let Self::Area(area) = self { area.is_sampled } else { true }
     }
@@ -90,7 +90,7 @@ impl<S> Light<S> {
     }
 
     /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
-    /// unit normal; none if it cannot. `intersection` is where the ray first meets a surface that shines, if that is
+    /// unit normal; none if it cannot. `intersection` is where the ray first hits a surface that shines, if that is
     /// known.
     pub fn pdf_li(&self, ray: &Ray, normal: DVec3, intersection: Option<&Intersection>) -> Option<f64> {
         match self {
@@ -217,7 +217,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether it is met by rays that meet nothing else.
+    /// Whether it is hit by rays that hit nothing else.
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Environment(_) | Self::Sun(_))
     }
@@ -238,7 +238,7 @@ impl<S> Light<S> {
 }
 
 impl Light<Table> {
-    /// What the light sends along a direction toward it, which meets it at `uv`: its emission, lane by lane.
+    /// What the light sends along a direction toward it, which hits it at `uv`: its emission, lane by lane.
     pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3, uv: [f64; 2]) -> Lanes<N> {
         match self {
             Self::Environment(environment) => environment.toward(draw, direction),

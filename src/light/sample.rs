@@ -18,7 +18,7 @@ pub struct LightSample {
     pub pdf: Option<f64>,
     /// Factor on the light's emission that makes radiance of it or, without a pdf, irradiance at right angles.
     pub factor: f64,
-    /// Where the light is met on the image that it shows, if it shows one.
+    /// Where the light is hit on the image that it shows, if it shows one.
     pub uv: [f64; 2],
 }
 

@@ -5,7 +5,7 @@ use crate::math::{Cone, DVec3, Ray, unit};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
-/// A point that shines into a cone, dimmer toward its edge; rays never meet it.
+/// A point that shines into a cone, dimmer toward its edge; rays never hit it.
 ///
 /// ```toml
 /// [[light]]

@@ -27,7 +27,7 @@ impl Candidate {
 const MOST: [usize; 2] = [20, 6];
 
 /// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
-/// over what light of a probe meets, however many smooth surfaces those are.
+/// over what light of a probe hits, however many smooth surfaces those are.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
     let scattered = error_of_paths(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
     scattered.max(seen.error(survey, basis)).max(dyes::error(survey, basis))

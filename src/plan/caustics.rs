@@ -11,7 +11,7 @@ use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Effort, LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
 
-/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
+/// Solid angle in steradians from which on rays hit a lamp often enough: there photons and chance cost the same
 /// (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
@@ -282,7 +282,7 @@ fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
 }
 
-/// What cannot be met by chance at all.
+/// What cannot be hit by chance at all.
 fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
 }

@@ -22,7 +22,7 @@ pub(super) struct PhotonGain {
 
 /// Weighs photons of some lights, which the world sends, against chance.
 ///
-/// A light that is left to chance adds to the noise of camera samples: one that meets the lamp sees f of its radiance,
+/// A light that is left to chance adds to the noise of camera samples: one that hits the lamp sees f of its radiance,
 /// and does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there
 /// are is found when all else is decided.
 pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> PhotonGain {

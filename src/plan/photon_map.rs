@@ -20,7 +20,7 @@ const FEWEST: f64 = 1.0 / 64.0;
 const GATHERING: f64 = 0.5;
 /// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
 const RAREST: f64 = 1.0 / 16.0;
-/// Solid angle in steradians of lights that rays meet too rarely from where nothing is shown.
+/// Solid angle in steradians of lights that rays hit too rarely from where nothing is shown.
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;

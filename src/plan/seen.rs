@@ -1,4 +1,4 @@
-//! The colors that the camera sees of a scene, as a probe finds them: products of as many tints as light really meets.
+//! The colors that the camera sees of a scene, as a probe finds them: products of as many tints as light really hits.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ type Weighted = Vec<(usize, f64)>;
 #[derive(Default)]
 pub(super) struct Seen<'a> {
     tints: Vec<Tint<'a>>,
-    /// Tints that light meets one after another, each as often as it is met.
+    /// Tints that light hits one after another, each as often as it is hit.
     products: Vec<Vec<u32>>,
     colors: Vec<Color>,
 }
@@ -40,7 +40,7 @@ const COSINES: f64 = 32.0;
 const WEIGHTS: f64 = 100.0;
 
 impl<'a> Seen<'a> {
-    /// Sends a few hundred rays and keeps what they met; nothing where smooth surfaces tint no light.
+    /// Sends a few hundred rays and keeps what they hit; nothing where smooth surfaces tint no light.
     pub(super) fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
         if survey.is_plain() || survey.smooth(1).is_empty() {
             return Self::default();
@@ -89,7 +89,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// A tint that was met, so that it is known again: material, part, what light does there, and a number.
+/// A tint that was hit, so that it is known again: material, part, what light does there, and a number.
 type Key = (u32, usize, u8, i64);
 /// A color to be known again: light, diffuse surfaces, products with rounded weights.
 type ColorKey = (usize, u32, Vec<(usize, i64)>);

@@ -95,7 +95,7 @@ impl Media {
         strongest(scene, self.materials[..self.len as usize].iter().copied())
     }
 
-    /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
+    /// What a ray hits that crosses the surface of a body; none if it leaves a body it never entered, or enters more
     /// different ones than there is room for.
     fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let (here, at) = (self.inside(scene), self.place(material));
@@ -121,7 +121,7 @@ impl Media {
         if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
-    /// What a ray of a direction meets that crosses a surface of any material, which may bound no medium; and whether
+    /// What a ray of a direction hits that crosses a surface of any material, which may bound no medium; and whether
     /// the bodies around the ray fit to it.
     pub(super) fn at_surface(
         &self,
@@ -233,7 +233,7 @@ fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> O
 }
 
 /// A unit vector near another. One that a scene gives, toward what a camera looks at or straight up, may lead exactly
-/// to a corner of an outline, which is met once where a body is entered and left, or neither.
+/// to a corner of an outline, which is hit once where a body is entered and left, or neither.
 fn aside(direction: DVec3) -> DVec3 {
     unit(Frame::about(direction).to_world(DVec3::new(7.31e-4, 4.19e-4, 1.0)))
 }

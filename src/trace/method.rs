@@ -167,7 +167,7 @@ pub enum Transport {
     Deterministic {
         /// Smallest weight that is followed.
         cutoff: f64,
-        /// Surfaces that one camera sample may meet; beyond them it goes on by chance, to the same mean.
+        /// Surfaces that one camera sample may hit; beyond them it goes on by chance, to the same mean.
         most: u64,
     },
     /// All while the weight is above `split`, then one; below `roulette` a path goes on with probability weight /

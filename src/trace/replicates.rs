@@ -28,7 +28,7 @@ pub(super) struct Replicates {
 /// How much of a pixel is covered: sums over samples.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct CoverageSums {
-    /// Samples that met something, of those that are added and subtracted.
+    /// Samples that hit something, of those that are added and subtracted.
     met: [u32; 2],
     /// The luminance of shadow catchers with all objects and with those of the plate alone, and samples of them.
     caught: [f32; 3],

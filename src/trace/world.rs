@@ -50,7 +50,7 @@ pub struct World {
     pub(super) has_mattes: bool,
     /// The lobes of each material.
     pub(super) lobes: Vec<Lobes>,
-    /// Whether each object lets light straight on; empty where none does.
+    /// Whether each object lets light pass through; empty where none does.
     see_through: Vec<bool>,
     /// What bounces are aimed at.
     pub(super) bright: Option<Bright>,
@@ -237,12 +237,12 @@ impl World {
         self.dyes.is_some()
     }
 
-    /// Whether any object lets light straight on.
+    /// Whether any object lets light pass through.
     pub(super) fn has_see_through(&self) -> bool {
         !self.see_through.is_empty()
     }
 
-    /// Whether an object lets light straight on.
+    /// Whether an object lets light pass through.
     pub(super) fn is_see_through(&self, object: u32) -> bool {
         self.see_through.get(object as usize).is_some_and(|&on| on)
     }
@@ -298,7 +298,7 @@ impl World {
         self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
     }
 
-    /// The media around a surface that the camera's ray has met, of bodies that the camera does not see.
+    /// The media around a surface that the camera's ray has hit, of bodies that the camera does not see.
     #[cold]
     pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
@@ -352,12 +352,12 @@ impl World {
         self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
 
-    /// Whether light paths for light vertices start along a ray that meets a light.
+    /// Whether light paths for light vertices start along a ray that hits a light.
     pub(super) fn is_found_by_light_paths(&self, light: LightId, ray: &Ray) -> bool {
         self.path_starts.get(light).is_some_and(|start| start.covers(&self.scene.lights[light], ray))
     }
 
-    /// Whether photons bring the light of a ray that meets a light.
+    /// Whether photons bring the light of a ray that hits a light.
     pub(super) fn is_found_by_photons(&self, light: LightId, ray: &Ray) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.start_along(&self.scene, light, ray))
     }

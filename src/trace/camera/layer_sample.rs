@@ -22,9 +22,9 @@ pub struct LayerSample<'a, const N: usize> {
     spectrum: Option<SpectrumSample<'a, N>>,
     /// The largest share of the sample that a surface had so far: places are those of that surface.
     share: f64,
-    /// How likely the camera ray met what it has met, of surfaces with holes and what is behind them.
+    /// How likely the camera ray hit what it has hit, of surfaces with holes and what is behind them.
     chance: f64,
-    /// The object that the camera ray met.
+    /// The object that the camera ray hit.
     object: Option<u32>,
     branches: Vec<Branch<N>>,
 }
@@ -32,7 +32,7 @@ pub struct LayerSample<'a, const N: usize> {
 /// What a camera sample has left.
 pub struct SampleRow<'a> {
     pub row: &'a [f64],
-    /// The object that the camera ray met, if any.
+    /// The object that the camera ray hit, if any.
     pub object: Option<u32>,
 }
 
@@ -64,7 +64,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Remembers the object that the camera ray met, or none if it went through a hole of one, and how likely that was.
+    /// Remembers the object that the camera ray hit, or none if it went through a hole of one, and how likely that was.
     pub fn choose(&mut self, met: Option<u32>, chance: f64) {
         self.object = met;
         self.chance *= chance;
@@ -152,7 +152,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
         // What passes through a pane is of it as what glass refracts is, unless what is behind counts by itself.
         let panes = surface.through.filter(|_| layers.first == FirstSurface::Met).map(|through| through.straight.panes);
-        // Of surfaces with holes and what is behind them, one has been met by chance: that is in its weight already.
+        // Of surfaces with holes and what is behind them, one has been hit by chance: that is in its weight already.
         let chance = if layers.first == FirstSurface::Met { self.chance } else { 1.0 };
         let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x / chance);
         layers.add_to(Layer::Albedo, &mut self.row, albedo);

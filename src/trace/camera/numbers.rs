@@ -12,7 +12,7 @@ use crate::trace::walk::Path;
 pub const PLACE: u32 = 0;
 pub const LENS: u32 = 3;
 /// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, what the camera
-/// meets.
+/// hits.
 const SCATTER: u32 = 1;
 /// Which vertices of light paths are looked at.
 pub const VERTEX: u32 = 5;

@@ -9,7 +9,7 @@ use super::layer_sample::LayerSample;
 use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Sensor, SensorEvent};
-use super::surface::{FirstMet, PathContinuation, Surface, Through};
+use super::surface::{FirstHit, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
 use crate::light::LightId;
 use crate::material::{Material, Straight};
@@ -119,13 +119,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         std::mem::take(&mut self.sensor.blur)
     }
 
-    /// Whether the camera ray has met a shadow catcher.
+    /// Whether the camera ray has hit a shadow catcher.
     fn sees_shadow_catcher(&self) -> bool {
         let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
         object.is_some_and(|object| self.walker.world.visibility(object) == Visibility::ShadowCatcher)
     }
 
-    /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
+    /// Holds the light of a path that hit a shadow catcher against that of the same path among the objects of the plate
     /// alone. Neither is seen in the image, which gets nothing, unless one is not finite.
     #[cold]
     fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> [f64; 3] {
@@ -169,7 +169,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.sensor.is_deaf = path.unlit;
         let before = self.sensor.rgb;
-        let Some(surface_hit) = self.walker.meet(path, draw) else {
+        let Some(surface_hit) = self.walker.next_hit(path, draw) else {
             self.background(path, draw);
             self.sensor.tell(world, path, draw, f64::INFINITY, before);
             return;
@@ -208,7 +208,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             return self.walker.pass_in_part(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
-        let met = is_first.then(|| self.first_met(path, draw, sampler, &surface_hit, through.as_ref(), first));
+        let met = is_first.then(|| self.first_hit(path, draw, sampler, &surface_hit, through.as_ref(), first));
         self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
         let surface = Surface { surface_hit: &surface_hit, boundary, through: through.as_ref(), first: met, chance };
         if path.surfaces() > world.method.max_bounces {
@@ -220,8 +220,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// What the camera ray meets: a surface, which becomes the first, or what is behind its holes.
-    fn first_met(
+    /// What the camera ray hits: a surface, which becomes the first, or what is behind its holes.
+    fn first_hit(
         &mut self,
         path: &Path<N, P>,
         draw: &Draw<N>,
@@ -229,13 +229,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         surface_hit: &SurfaceHit,
         through: Option<&PassThrough<N, P>>,
         first: &mut Option<SurfacePoint>,
-    ) -> FirstMet {
-        let straight::Cutout { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, through);
+    ) -> FirstHit {
+        let straight::Cutout { is_hit, weight, .. } = straight::hit(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(is_met.then_some(surface_hit.hit.object), weight);
+            layers.choose(is_hit.then_some(surface_hit.hit.object), weight);
         }
-        *first = is_met.then_some(surface_hit.point);
-        if is_met { FirstMet::Here } else { FirstMet::Beyond }
+        *first = is_hit.then_some(surface_hit.point);
+        if is_hit { FirstHit::Here } else { FirstHit::Beyond }
     }
 
     /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
@@ -248,11 +248,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         // Beyond both in part light is polarized by their mean.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
         let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
-        let straight::Cutout { is_met, chance, .. } =
-            straight::met(self.walker.world, draw, sampler, path, Some(&whole));
+        let straight::Cutout { is_hit, chance, .. } =
+            straight::hit(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
-        let (holes, panes) = if is_met { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
-        if !is_met {
+        let (holes, panes) = if is_hit { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
+        if !is_hit {
             path.throughput = before.through(whole.straight.holes);
             path.key = path.key.child(0);
         }
@@ -260,10 +260,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         *through = (!straight.share().is_zero()).then_some(PassThrough { straight, ..whole });
         path.throughput = path.throughput.scaled(1.0 / chance);
         self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
-        if is_met { chance } else { 1.0 }
+        if is_hit { chance } else { 1.0 }
     }
 
-    /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
+    /// Ends a path that has hit as many surfaces as it may, but for what passes through.
     fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
         let &Surface { surface_hit, boundary, through, .. } = surface;
         if self.sensor.layers.is_some() {
@@ -290,7 +290,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// Hands light that a path has met to the sensor, unless it is found otherwise.
+    /// Hands light that a path has hit to the sensor, unless it is found otherwise.
     fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<EmitterHit<N, P>>) {
         let Some(EmitterHit { light, lanes, normal, polarization }) = met else { return };
         if self.is_found_otherwise(path, light) {
@@ -319,7 +319,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let at = Interaction::new(world, draw, &path.arriving(), surface_hit, boundary);
         self.show(path, &at, surface, sampler);
-        let leaving = PathContinuation { through, is_awaited: first == Some(FirstMet::Beyond), gathers: !ends };
+        let leaving = PathContinuation { through, is_awaited: first == Some(FirstHit::Beyond), gathers: !ends };
         match self.excite(path, &at, sampler, leaving.is_awaited) {
             0.0 => {}
             1.0 => self.scatter_at(path, &at, sampler, leaving),
@@ -412,7 +412,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.walker.follow(&mut departure, sampler);
     }
 
-    /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
+    /// Hands the light of a light vertex to the sensor, where the path hits a diffuse surface.
     fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
         let is_asked = path.among == Among::All && !path.resampled;
         let Some(vertices) = self.light_vertices.filter(|_| is_asked) else { return false };

@@ -52,7 +52,7 @@ impl<const N: usize> Sensor<'_, N> {
         Self { is_deaf: false, rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
     }
 
-    /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
+    /// Receives light, the lanes by which it arrives, and how the path is polarized where it hits the light.
     #[inline]
     pub fn receive<P: Polarization<N>>(&mut self, contribution: Contribution, light: &FoundLight<N, P>, polarized: &P) {
         if self.is_deaf {

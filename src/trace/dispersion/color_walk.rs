@@ -47,7 +47,7 @@ pub struct ColorWalk {
     pub weight: f64,
     /// The share of the fainter way at the first surface that has one.
     pub fork: f64,
-    /// The share of the fainter way at the first surface that has one and is met inside a dispersive body.
+    /// The share of the fainter way at the first surface that has one and is hit inside a dispersive body.
     pub fork_inside: f64,
     media: Media,
 }
@@ -69,7 +69,7 @@ impl ColorWalk {
     }
 
     /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
-    /// surface is met inside a dispersive body.
+    /// surface is hit inside a dispersive body.
     fn takes(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
         let forks = |fork: &mut f64| {
@@ -90,7 +90,7 @@ impl ColorWalk {
     }
 }
 
-/// Where a walk meets a surface, with four random numbers.
+/// Where a walk hits a surface, with four random numbers.
 #[derive(Clone, Copy)]
 struct WalkSurface<'a> {
     ray: &'a Ray,
@@ -123,7 +123,7 @@ impl Colors<'_> {
     }
 
     /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
-    /// not there for its ray as long as that goes straight on.
+    /// not there for its ray as long as that is straight.
     pub fn walk(
         &self,
         lane: usize,

@@ -1,4 +1,4 @@
-//! A way of light to the camera: what it meets, how far it has been followed back, and the surface that it meets there.
+//! A way of light to the camera: what it hits, how far it has been followed back, and the surface that it hits there.
 
 use super::color_walk::visible_facet;
 use crate::light::LightId;
@@ -10,7 +10,7 @@ use crate::spectrum::Lanes;
 use crate::trace::World;
 use crate::trace::media::Media;
 
-/// Something that light meets on its way.
+/// Something that light hits on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The material.
@@ -25,7 +25,7 @@ pub struct Step {
 /// What light does at a surface, or in a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RouteEvent {
-    /// It is mirrored, by a surface or a facet of it met under an angle of this cosine.
+    /// It is mirrored, by a surface or a facet of it hit under an angle of this cosine.
     Reflected(f64),
     /// It goes through the surface.
     Crossed,
@@ -38,7 +38,7 @@ pub enum RouteEvent {
 /// A way of light from a light to the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// What it meets, the nearest to the camera first.
+    /// What it hits, the nearest to the camera first.
     pub steps: Vec<Step>,
     /// Where it comes from.
     pub light: LightId,
@@ -55,7 +55,7 @@ pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 #[derive(Clone)]
 pub struct RouteWalk {
     pub ray: Ray,
-    /// Whether the camera sees straight what it meets next, if it sees that at all.
+    /// Whether the camera sees straight what it hits next, if it sees that at all.
     pub is_from_camera: bool,
     pub media: Media,
     pub key: BranchKey,
@@ -64,7 +64,7 @@ pub struct RouteWalk {
     /// What is left of the light, with the steps.
     pub left: Lanes<4>,
     pub scattered: u32,
-    /// Surfaces met but for those that it goes straight through: `max_bounces` limits them.
+    /// Surfaces hit but for those that it passes through: `max_bounces` limits them.
     pub surfaces: u32,
 }
 
@@ -87,7 +87,7 @@ impl RouteWalk {
     }
 }
 
-/// Where a way meets a surface.
+/// Where a way hits a surface.
 pub struct RouteVertex<'a> {
     pub walk: &'a RouteWalk,
     pub material: MaterialId,

@@ -8,7 +8,7 @@ use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
-/// Surfaces that are met for one pixel.
+/// Surfaces that are hit for one pixel.
 const SURFACES: usize = 256;
 /// Ways that leave less than this share of the brightest one of a pixel are left.
 const FAINT: f32 = 1e-3;
@@ -32,7 +32,7 @@ impl<'a> RouteWalker<'a> {
         Self { world, draw, sampler, pending: Vec::new(), found: Vec::new() }
     }
 
-    /// Answers how many surfaces it met.
+    /// Answers how many surfaces it hit.
     pub fn walk(&mut self, ray: Ray) -> usize {
         self.pending.push(RouteWalk::from_camera(self.world, ray));
         let mut best = 0.0_f32;
@@ -164,7 +164,7 @@ impl<'a> RouteWalker<'a> {
         u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
-    /// The material that is met, by chance where there are several.
+    /// The material that is hit, by chance where there are several.
     fn part(&self, material: &Material<Table>, uv: [f64; 2], u: f64) -> usize {
         match material {
             Material::Mix(mix) => {

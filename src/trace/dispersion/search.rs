@@ -1,6 +1,6 @@
 //! Where in the view dispersion is seen: what is small in the picture is still the picture.
 //!
-//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not met is divided,
+//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not hit is divided,
 //! down to a part of a pixel; so small objects are found also behind panes, in mirrors and in water, by a number of
 //! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.

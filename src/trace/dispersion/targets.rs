@@ -54,7 +54,7 @@ impl Targets {
         Self { all, of_object }
     }
 
-    /// The first target that a beam may touch which not all of its rays have met; none if there is none.
+    /// The first target that a beam may touch which not all of its rays have hit; none if there is none.
     ///
     /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes
     /// its own way it is only known how wide a beam it would be that nothing has bent: `width` is its angle.

@@ -52,7 +52,7 @@ pub struct Report {
     /// Whether there are more clear materials than may overlap in one place.
     #[serde(skip)]
     pub has_many_media: bool,
-    /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
+    /// Camera samples of deterministic transport that hit so many surfaces that they went on by chance.
     pub by_chance: u64,
     /// Most of the light seen, as a share, that polarization, which is not traced, may change.
     pub polarization: f64,

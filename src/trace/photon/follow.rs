@@ -16,7 +16,7 @@ use crate::trace::walk::{
 const BEYOND: usize = 64;
 /// The branch of what narrow lobes send on by themselves.
 const BY_NARROW: usize = 65;
-/// How often a material draws where a photon goes that meets it at a shading normal of its own, unless it is diffuse.
+/// How often a material draws where a photon goes that hits it at a shading normal of its own, unless it is diffuse.
 const BY_MATERIAL: f64 = 0.5;
 /// Use of the random numbers where a photon leaves a surface, and where it passes one or not.
 const SCATTER: u32 = 4;
@@ -114,7 +114,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     if path.vertices >= walker.transport.last_vertex() {
         return;
     }
-    let Some(surface_hit) = walker.meet(path, draw) else { return };
+    let Some(surface_hit) = walker.next_hit(path, draw) else { return };
     if let Some(through) = walker.straight(path, draw, &surface_hit)
         && passes(walker, path, photon, &surface_hit.point, &through)
     {
@@ -168,7 +168,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
 }
 
-/// Lets a photon go straight on, and answers whether it does not meet the surface as well. One that carries little does
+/// Lets a photon pass through, and answers whether it does not hit the surface as well. One that carries little does
 /// one or the other: each of a stack of panes would double the photons that it mirrors.
 #[cold]
 fn passes<const N: usize, P: Polarization<N>>(

@@ -314,8 +314,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         (sum, moved)
     }
 
-    /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is
-    /// met.
+    /// Whether what is hit on the way to a point, or so many times as far, continues the surface; none if nothing is
+    /// hit.
     fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
         let scene = &self.around.world.scene;
         let way = to - from;

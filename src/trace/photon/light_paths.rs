@@ -67,7 +67,7 @@ const FAINT: f64 = 0.25;
 
 /// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
 ///
-/// Not where wavelengths are drawn anew for each camera sample, nor where light goes straight through surfaces at which
+/// Not where wavelengths are drawn anew for each camera sample, nor where light passes through surfaces at which
 /// light paths end.
 pub fn can_be_followed(world: &World) -> bool {
     let objects = 0..world.scene.objects.len() as u32;

@@ -26,7 +26,7 @@ pub struct LightVertex<const N: usize> {
     /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
     pub leaving: Lanes<N>,
     pub light: LightId,
-    /// Surfaces that the light has met, and the diffuse ones of them, this one included.
+    /// Surfaces that the light has hit, and the diffuse ones of them, this one included.
     pub surfaces: u32,
     pub diffuse: u32,
     /// Whether a photon has left it.
@@ -102,7 +102,7 @@ impl<const N: usize> LightVertices<N> {
         self.near * self.near
     }
 
-    /// Whether the light that comes along a ray from a light is looked for behind the first surface that it meets.
+    /// Whether the light that comes along a ray from a light is looked for behind the first surface that it hits.
     pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
         self.rest.is_none() || world.is_found_by_light_paths(light, ray)
     }

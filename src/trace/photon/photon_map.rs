@@ -28,7 +28,7 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub front: bool,
     /// Whether light crosses the surface.
     pub crosses: bool,
-    /// Surfaces it met, the last one included.
+    /// Surfaces it hit, the last one included.
     pub surfaces: u32,
     /// Whether light vertices show what surfaces send on of its light.
     pub is_resampled: bool,

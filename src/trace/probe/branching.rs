@@ -9,7 +9,7 @@ use crate::trace::width::in_lanes;
 /// What following all branches takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branching {
-    /// Surfaces that a mean camera sample meets.
+    /// Surfaces that a mean camera sample hits.
     Affordable(f64),
     /// More than was asked for, seen from a pixel.
     Beyond([i32; 2]),
@@ -21,7 +21,7 @@ const SIDE: u32 = 16;
 const OBJECTS: usize = 64;
 
 /// Follows all branches in pixels all over the image, and where the camera would see objects of several ways if nothing
-/// were before them, until it is known whether a mean sample meets more than `most` surfaces. A sample that had to go
+/// were before them, until it is known whether a mean sample hits more than `most` surfaces. A sample that had to go
 /// on by chance is beyond that whatever the mean is.
 pub fn branching(world: &World, most: f64) -> Branching {
     in_lanes!(&world.method.basis, N => ask::<N>(world, most))

@@ -11,7 +11,7 @@ use crate::trace::width::in_lanes_of;
 ///
 /// The same paths are followed with and without: each lane is told what polarization makes of it, and only the
 /// difference is noisy. Two copies of each cell know nothing of each other, so the mean of their product has no part of
-/// that noise, as a square would have; one standard error is added for what they have not met.
+/// that noise, as a square would have; one standard error is added for what they have not hit.
 pub fn polarization_error(world: &World) -> f64 {
     let world = with_fewer_photons(world).with_polarization(Polarizing::Compared);
     let mut grids = SIDES.map(|side| Cells::new(world.scene.film.window(), side));

@@ -25,7 +25,7 @@ const WALLS: usize = EVENLY + 1;
 const BESIDE: [f64; 2] = [-14.0, -3.0];
 /// Nearer places, in squares of the size of the room, weigh no less.
 const LEAST: f64 = 1.0 / (1 << 28) as f64;
-/// An opening is taken to be so many times as large as what was found of it: the rest would be met by chance alone, and
+/// An opening is taken to be so many times as large as what was found of it: the rest would be hit by chance alone, and
 /// be much too bright.
 const MARGIN: f64 = 1.03;
 /// Two parts are one opening if a rectangle about both is no more than so many times as large as theirs.

@@ -65,7 +65,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Where a ray meets a surface that ends it.
+/// Where a ray hits a surface that ends it.
 struct WallHit {
     t: f64,
     position: DVec3,

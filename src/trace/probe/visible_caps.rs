@@ -11,7 +11,7 @@ use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 64;
-/// Lights met that tell enough.
+/// Lights hit that tell enough.
 const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;

@@ -14,7 +14,7 @@ use crate::trace::{World, media};
 #[derive(Clone, Copy, Debug)]
 pub struct Path<const N: usize, P = Polarized> {
     pub ray: Ray,
-    /// The surface that it met last, which its ray leaves.
+    /// The surface that it hit last, which its ray leaves.
     pub left: Option<Primitive>,
     pub throughput: Throughput<N>,
     /// The factor of radiance between the medium at the path's end and the camera's, times what densities of
@@ -28,7 +28,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub parted: bool,
     /// Which random numbers belong to the path's next vertex.
     pub key: BranchKey,
-    /// Surfaces met so far.
+    /// Surfaces hit so far.
     pub vertices: u32,
     /// How many of them were those of bodies that are hidden inside others.
     pub hidden: u32,
@@ -49,7 +49,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub polarization: P,
     /// How often surfaces have scattered, mirrored or refracted it.
     pub bounces: u32,
-    /// Whether only smooth surfaces have: what it meets next is seen.
+    /// Whether only smooth surfaces have: what it hits next is seen.
     pub is_seen: bool,
     /// Which objects there are for it.
     pub among: Among,
@@ -89,7 +89,7 @@ pub enum PathKind {
 }
 
 impl PathKind {
-    /// Whether the camera sees what it meets next.
+    /// Whether the camera sees what it hits next.
     pub fn is_from_camera(self) -> bool {
         matches!(self, Self::Camera | Self::PastHidden)
     }
@@ -134,7 +134,7 @@ pub struct ScatterSample {
     pub chance: f64,
     /// Whether every light was sampled there, or one.
     pub all_lights: bool,
-    /// Whether the path has gone straight on through surfaces since.
+    /// Whether the path has passed through surfaces since.
     pub passed: bool,
     /// Whether a vertex of a light path was looked at from there.
     pub resampled: bool,
@@ -148,7 +148,7 @@ impl ScatterSample {
 }
 
 impl<const N: usize, P> Path<N, P> {
-    /// Surfaces met so far that are there for light: `max_bounces` limits them.
+    /// Surfaces hit so far that are there for light: `max_bounces` limits them.
     pub fn surfaces(&self) -> u32 {
         self.vertices - self.hidden
     }
@@ -199,16 +199,16 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         }
     }
 
-    /// The path beyond a surface that it goes straight through as if nothing were there.
+    /// The path beyond a surface that it passes through as if nothing were there.
     ///
-    /// Lights beyond were sampled through the surface, from where its direction was: light that goes straight on makes
+    /// Lights beyond were sampled through the surface, from where its direction was: light that passes through makes
     /// no other kind of path.
     pub fn passed(&self, point: &SurfacePoint) -> Self {
         let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
         Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
-    /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its
+    /// The path beyond a surface that it has hit and passes through in part, which is not counted among its
     /// surfaces.
     #[cold]
     #[inline(never)]

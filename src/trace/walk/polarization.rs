@@ -12,7 +12,7 @@ use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
 use crate::trace::received_light::ReceivedLight;
 
-/// What of a path's light goes straight on where it meets a surface.
+/// What of a path's light passes through where it hits a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct PassThrough<const N: usize, P> {
     pub straight: Straight<N>,
@@ -69,7 +69,7 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// Of a path that starts at a light, which shines unpolarized.
     fn of_light(world: &World, ray: &Ray) -> Self;
 
-    /// After a surface that lets some light go straight on; makes that the share that does.
+    /// After a surface that lets some light pass through; makes that the share that does.
     fn through(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
 
     /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
@@ -80,7 +80,7 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// lights, and none has of those that `forward` follows.
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::RowTransfer>);
 
-    /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
+    /// On the way from a surface along the unit vector `wi` to a light, where it hits panes next; makes `bsdf_cos`
     /// that of the path's light.
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
@@ -88,13 +88,13 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// + Z.
     fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
-    /// The same of light that the path has met.
+    /// The same of light that the path has hit.
     fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64;
 
     /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
     fn exciting(&self) -> Self;
 
-    /// Where the path meets polarized light that comes from the unit vector `wi`; makes `shone`, what the light would
+    /// Where the path hits polarized light that comes from the unit vector `wi`; makes `shone`, what the light would
     /// be that is not, what the path takes of it. None where the light is not polarized.
     fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
 
@@ -134,6 +134,6 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// What is kept with a photon, its lanes read as others.
     fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored;
 
-    /// S1, S2 and S3 of unpolarized light that the path has met, each as a factor on S0, if they are asked for.
+    /// S1, S2 and S3 of unpolarized light that the path has hit, each as a factor on S0, if they are asked for.
     fn stokes(&self) -> Option<[Lanes<N>; 3]>;
 }

@@ -59,7 +59,7 @@ fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
 }
 
 impl<const N: usize, const K: usize> Rows<N, K> {
-    /// Where light meets no surface before it reaches the sensor, which has image right at `x`.
+    /// Where light hits no surface before it reaches the sensor, which has image right at `x`.
     fn starting(x: DVec3, compares: bool) -> Self {
         let identity = from_fn(|part| from_fn(|row| if row == part { 1.0 } else { 0.0 }));
         Self { x, weights: [identity; N], compares }

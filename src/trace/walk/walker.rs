@@ -43,7 +43,7 @@ const CHOICE: u32 = 2;
 /// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to an equal error.
 const SOONER: f64 = 5.0;
 
-/// How a sample goes on that has met too many surfaces: what is left is mostly faint, and all branches are still
+/// How a sample goes on that has hit too many surfaces: what is left is mostly faint, and all branches are still
 /// followed that are not.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
@@ -64,7 +64,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
     #[inline(always)]
-    pub fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
+    pub fn next_hit(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
         self.stats.rays += 1;
         let is_past_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.among == Among::All;
         let hit = match path.among {
@@ -89,14 +89,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         Some(SurfaceHit::new(self.world, &path.ray, hit))
     }
 
-    /// What goes straight on through the surface that a path has met; none if nothing does.
+    /// What passes through the surface that a path has hit; none if nothing does.
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, surface_hit: &SurfaceHit) -> Option<PassThrough<N, P>> {
         let lets_through = self.world.is_see_through(surface_hit.hit.object);
         if lets_through { straight::straight_on(self.world, draw, path, surface_hit) } else { None }
     }
 
-    /// The media at the surface that a path has met.
+    /// The media at the surface that a path has hit.
     ///
     /// # Errors
     /// [`Hidden`] where the surface is that of a body that is hidden inside another of higher priority.
@@ -117,14 +117,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         let left_to_photons =
             kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
         let next = self.pending.add(|| *path);
-        // No light was sampled through this surface, so what the path meets beyond counts in full.
+        // No light was sampled through this surface, so what the path hits beyond counts in full.
         let (key, media) = (path.key.child(0), path.media.beyond(boundary));
         *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
         next.ray = surface_hit.point.leave(path.ray.direction);
         (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
     }
 
-    /// Makes the path pending that goes straight on through a surface that it has met, if any light does.
+    /// Makes the path pending that passes through a surface that it has hit, if any light does.
     pub fn pass_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
         if let Some(through) = through {
             *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, through) };
@@ -154,14 +154,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
-    /// Accounts for the branches and what goes straight on, if somebody asks.
+    /// Accounts for the branches and what passes through, if somebody asks.
     pub fn account(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
         if let Some(audit) = &mut self.audit {
             audit.split(path, at, &self.branches, straight);
         }
     }
 
-    /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
+    /// Decides which of the branches are followed, and of what passes through: their paths become pending.
     pub fn follow(&mut self, departure: &mut OutgoingPath<N, P>, sampler: &Sampler) {
         let path = departure.path;
         if let Some(through) = &departure.through {
@@ -264,7 +264,7 @@ pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
     pub scatter: Option<&'a ScatterSample>,
     /// What passes through the surface: the last branch.
     pub through: Option<&'a PassThrough<N, P>>,
-    /// Whether that is followed for certain, for it is where the camera ray meets something.
+    /// Whether that is followed for certain, for it is where the camera ray hits something.
     pub is_awaited: bool,
     /// Whether the camera sees the surface.
     pub is_seen: bool,
@@ -280,7 +280,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
     }
 
-    /// Whether a branch is what goes straight on.
+    /// Whether a branch is what passes through.
     fn is_onward(&self, number: usize) -> bool {
         self.through.is_some() && number + 1 == self.branches
     }
