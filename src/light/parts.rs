@@ -53,14 +53,12 @@ impl Shared {
 impl LightParts {
     /// Those of a shape of several that shines everywhere alike; none of a shape of one part.
     pub fn even(shape: &Shape, known: &mut KnownParts) -> Option<Self> {
-        let (mesh, placed) = match shape {
-            Shape::Mesh(mesh) => (mesh, None),
-            Shape::Instance(instance) => match instance.similarity() {
-                Some(placed) => (instance.mesh(), Some(placed)),
-                None => return Self::of(shape, |_| 1.0),
-            },
-            _ => return Self::of(shape, |_| 1.0),
+        let of_mesh = match shape {
+            Shape::Mesh(mesh) => Some((mesh, None)),
+            Shape::Instance(instance) => instance.similarity().map(|placed| (instance.mesh(), Some(placed))),
+            _ => None,
         };
+        let Some((mesh, placed)) = of_mesh else { return Self::of(shape, |_| 1.0) };
         Some(Self { shared: known.of(mesh)?, placed })
     }
 

@@ -96,7 +96,8 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Ve
 
 /// Of the first tints, in which light interferes, whether light crosses them.
 fn films_of(smooth: &[&Tint]) -> Vec<bool> {
-    smooth.iter().take_while(|tint| tint.has_fringes()).map(|tint| tint.is_crossed_film()).collect()
+    let is_crossed = |tint: &&Tint| matches!(tint, Tint::Film(film) if film.crosses);
+    smooth.iter().take_while(|tint| tint.has_fringes()).map(is_crossed).collect()
 }
 
 /// Mean reflectance beyond which a closed room is not followed.

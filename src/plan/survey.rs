@@ -294,11 +294,6 @@ impl Tint<'_> {
         matches!(self, Self::Film(_) | Self::Plate(_))
     }
 
-    /// Whether it is a film that lets light through.
-    pub(super) fn is_crossed_film(&self) -> bool {
-        matches!(self, Self::Film(film) if film.crosses)
-    }
-
     fn is_scattering(&self) -> bool {
         matches!(self, Self::Diffuse(_) | Self::Coated(..))
     }

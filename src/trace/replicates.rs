@@ -163,8 +163,8 @@ impl Replicates {
             && self.covered.len() == other.covered.len()
     }
 
-    /// Adds the samples of a pixel in one pass of a replicate, and by how much gathered photons blur them: of both those
-    /// that are added, and those that are subtracted.
+    /// Adds the samples of a pixel in one pass of a replicate, and by how much gathered photons blur them: of both,
+    /// those that are added, and those that are subtracted.
     pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], blurs: [&PassSum; 2]) {
         self.light.add(pixel, replicate, samples);
         self.blur.add(pixel, replicate, blurs);

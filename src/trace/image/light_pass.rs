@@ -36,16 +36,12 @@ pub struct Observer<'a> {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LightPassProgress {
     /// Batches that are done.
-    batches: usize,
+    pub batches: usize,
     pub photons: u64,
     pub(in crate::trace) stats: Stats,
 }
 
 impl LightPassProgress {
-    pub fn begin_anew(&mut self) {
-        self.batches = 0;
-    }
-
     /// The part of a pass's photons that are sent.
     pub(in crate::trace) fn part(&self, world: &World, pass: &Pass) -> f64 {
         let Some(targets) = world.photon_targets.as_ref().filter(|_| self.batches > 0) else { return 0.0 };
@@ -76,7 +72,8 @@ pub fn show<const N: usize, P: Polarization<N>>(
         tile.splatted = PhotonTile { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
     }
     let add = &mut |pixel: u32, splat: Splat| {
-        let splat = splat.times(weight).of_half(pass.is_of_first_half());
+        let early = pass.is_of_first_half().unwrap_or(splat.early);
+        let splat = Splat { early, ..splat.times(weight) };
         let Splat { change, rgb, .. } = splat;
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
         let Tile { splatted, replicates, .. } = &mut tiles[tile];

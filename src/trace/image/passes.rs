@@ -53,7 +53,7 @@ impl Progress {
         (self.samples, self.passes) = (self.samples + samples, self.passes + 1);
         if pass.replicate.is_some() {
             self.stage = self.stage.after(samples);
-            self.sending.begin_anew();
+            self.sending.batches = 0;
         }
     }
 

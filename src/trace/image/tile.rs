@@ -90,16 +90,6 @@ impl Tile {
         kept + self.stats.non_finite
     }
 
-    /// What photons show in one of its pixels.
-    pub fn splatted_at(&self, place: usize) -> [f64; 3] {
-        self.splatted.pixels.get(place).copied().unwrap_or_default()
-    }
-
-    /// What they show in the layers of one of its pixels.
-    pub fn splatted_in_layers(&self, layers: &Layers, place: usize) -> &[f64] {
-        self.splatted.layers.get(place * layers.numbers..(place + 1) * layers.numbers).unwrap_or_default()
-    }
-
     /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.
     pub fn take<const N: usize, P: Polarization<N>>(
         &mut self,
@@ -139,7 +129,7 @@ impl Tile {
         // Of samples that are added, and of those that are subtracted.
         let mut sums = [PassSum::default(), PassSum::default()];
         let mut blurs = [PassSum::default(), PassSum::default()];
-        let blurs_are_told = light.tells_blur();
+        let blurs_are_told = light.photons.as_ref().is_some_and(|photons| photons.half.is_some());
         let rate = world.rate(pixel);
         let caught_before = pass.replicate.and_then(|_| self.layers.caught(&world.layers, place));
         for number in rate.of(&pass.numbers) {

@@ -158,11 +158,6 @@ impl<'a> LightPaths<'a> {
         })
     }
 
-    /// The random numbers of a path of a set.
-    fn sampler(&self, set: u32, number: u32) -> Sampler {
-        Sampler::new(self.seed ^ SEED, [set, 0], number)
-    }
-
     /// The light of a path and how the path leaves it, if it does.
     fn start(&self, sampler: &Sampler) -> Option<(LightId, LeSample)> {
         let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
@@ -234,7 +229,7 @@ impl<'a> LightPaths<'a> {
         let draw = world.method.basis.draw(0.0);
         let mut vertices = Vec::new();
         for number in paths {
-            let sampler = self.sampler(set, number as u32);
+            let sampler = Sampler::new(self.seed ^ SEED, [set, 0], number as u32);
             let Some((light, emitted)) = self.start(&sampler) else { continue };
             let photon =
                 Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over: Surfaces::All, early: true };

@@ -37,11 +37,6 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
         self.photons.as_ref().map_or(0, |photons| photons.sent)
     }
 
-    /// Whether photons tell by how much they are blurred.
-    pub fn tells_blur(&self) -> bool {
-        self.photons.as_ref().is_some_and(|photons| photons.half.is_some())
-    }
-
     /// Adds what was noticed of it.
     pub fn add_to(&self, stats: &mut Stats) {
         self.photons.iter().for_each(|photons| *stats += photons.stats);

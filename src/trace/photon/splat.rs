@@ -50,11 +50,6 @@ impl Splat {
     pub fn times(self, factor: f64) -> Self {
         Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
     }
-
-    /// The same of a photon of the first half or not, if that is said.
-    pub fn of_half(self, early: Option<bool>) -> Self {
-        Self { early: early.unwrap_or(self.early), ..self }
-    }
 }
 
 /// What a photon adds to the film around a place. It is kept whole: a wide filter spreads it over a thousand pixels.

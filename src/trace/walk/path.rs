@@ -221,16 +221,11 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// The lobe by which the first surface sends light to the camera that the path finds at a surface, in a direction
     /// that may lead beyond it; none if layers do not tell that apart.
     #[inline]
-    pub fn first_lobe(
-        &self,
-        world: &World,
-        Interaction { material, lobes, context, .. }: &Interaction<N>,
-        wi: DVec3,
-        crosses: bool,
-    ) -> Option<FirstLobe> {
+    pub fn first_lobe(&self, world: &World, at: &Interaction<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
         if self.bounces > 0 || !world.layers.lobes_apart {
             return self.first;
         }
+        let Interaction { material, lobes, context, .. } = at;
         Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, context, wi, crosses))
     }
 

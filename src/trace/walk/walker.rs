@@ -280,11 +280,6 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
     }
 
-    /// Whether a branch is what passes through.
-    fn is_onward(&self, number: usize) -> bool {
-        self.through.is_some() && number + 1 == self.branches
-    }
-
     /// How many paths together stand for this one.
     fn siblings(&self) -> f64 {
         self.at.context.draw.siblings(self.path.parted)
@@ -318,7 +313,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         pending: &mut Slots<Path<N, P>>,
     ) {
         let Self { world, path, at, .. } = self;
-        if let Some(through) = self.through.filter(|_| self.is_onward(number)) {
+        if let Some(through) = self.through.filter(|_| number + 1 == self.branches) {
             let beyond = path.passed_in_part(at.point, through);
             let (throughput, key) = (beyond.throughput.scaled(factor), path.key.child(number));
             *pending.add(|| beyond) = Path { throughput, key, ..beyond };
