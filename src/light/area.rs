@@ -83,8 +83,7 @@ impl<S> Area<S> {
         }
     }
 
-    /// Whether all that is seen of it may be a cap, so that learning it could help: of a sphere that shines everywhere
-    /// alike.
+    /// Whether a cap may be all that is seen of it, so that learning it could help: of a sphere that shines evenly.
     pub fn may_show_a_cap(&self) -> bool {
         self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.image.is_none()
     }
@@ -159,8 +158,7 @@ impl<S> Area<S> {
         Some(ShapeSample { density: None, ..sample })
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first hits the part at a
-    /// crossing.
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first hits it at a crossing.
     fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let evenly = match &self.parts {
             Some(_) => self.shape.pdf_part(ray, intersection),
@@ -238,8 +236,7 @@ impl<S> Area<S> {
         self.emission_map().map_or(1.0, |map| map.mean / map.brightness.max(f64::MIN_POSITIVE))
     }
 
-    /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that
-    /// is infinite.
+    /// A ball around the part that can be seen, and the most area that is seen of it; none of an infinite shape.
     pub fn visible_part(&self) -> Option<(Ball, f64)> {
         let own = self.shape.ball()?;
         let size = LightBounds::of_shape(&self.shape, self.sides == Sides::Both)?.intensity;
@@ -263,8 +260,7 @@ impl<S> Area<S> {
         Beam { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart }
     }
 
-    /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is
-    /// inside the ball.
+    /// A photon from a point of the surface to the ball: in the cone that it fills or, from inside, by its cosine.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let surface = self.sample_emission(ball, u)?;
         let point = &surface.point;
@@ -319,8 +315,7 @@ impl<S> Area<S> {
         Some(EmissionPoint { point, uv: surface.coordinates_at(part, at)?, density })
     }
 
-    /// A path of light from a point of the surface, by its cosine; of a sphere of which a cap is seen, from there most
-    /// often.
+    /// A path of light from a point of the surface, by its cosine; most often from the cap of a sphere that is seen.
     pub(super) fn emit(&self, [u0, u1, a, b]: [f64; 4]) -> Option<LeSample> {
         let sample = self.sample_le(&EVERYWHERE, [a, b], [u0, u1])?;
         let factor = sample.factor / self.pdf_le(&EVERYWHERE, &sample, |_| 1.0);

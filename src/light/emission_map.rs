@@ -36,8 +36,7 @@ const MOST_LOOKS: f64 = (1 << 25) as f64;
 const UNEVEN: f64 = 1.3;
 /// The same of a round shape, of which cells behind the horizon are drawn as often as those before it.
 const UNEVEN_ROUND: f64 = 4.0;
-/// How much of a part's worth is its own brightness, and not that of the whole lamp: no part is left out because its
-/// light was not seen.
+/// How much of a part's worth is its own brightness, and not the lamp's: no part is left out because it seemed dark.
 const OWN: f64 = 0.9;
 
 impl EmissionMap {

@@ -67,8 +67,7 @@ impl<S> Light<S> {
     }
 
     /// A ray from a point of a surface toward the light; none where it does not shine that way, or an area lies below
-    /// the surface's horizon there. `normal` is the surface's unit normal on the lit side, toward which most samples
-    /// lead.
+    /// the surface's horizon there. `normal` is its unit normal on the lit side, toward which most samples lead.
     pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),
@@ -90,8 +89,7 @@ impl<S> Light<S> {
     }
 
     /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
-    /// unit normal; none if it cannot. `intersection` is where the ray first hits a surface that shines, if that is
-    /// known.
+    /// unit normal; none if it cannot. `intersection` is where the ray first hits a surface that shines, if known.
     pub fn pdf_li(&self, ray: &Ray, normal: DVec3, intersection: Option<&Intersection>) -> Option<f64> {
         match self {
             Self::Area(area) if area.is_sampled => match intersection {

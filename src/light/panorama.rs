@@ -26,8 +26,7 @@ pub struct Panorama {
     pub(super) bright: Option<BrightPart>,
 }
 
-/// The texels of an image that are many times as bright as its mean, such as a sun or a studio's lamps, if they fill a
-/// small part of the sky.
+/// The texels of an image far brighter than its mean, such as a sun or lamps, if they fill a small part of the sky.
 #[derive(Clone, Debug)]
 pub struct BrightPart {
     /// Their brightness is above this one.
@@ -54,8 +53,7 @@ const MOST_SOLID_ANGLE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.02;
 
 impl BrightPart {
-    /// Of texels of some brightness, and the solid angle of each; none if few of them are so much brighter than the
-    /// mean.
+    /// Of texels of some brightness, and the solid angle of each; none if few are so much brighter than the mean.
     fn new(levels: &[f64], mean: f64, solid_angle: impl Fn(u32) -> f64) -> Option<Self> {
         let level = |texel: u32| levels[texel as usize];
         let mut texels: Vec<u32> = (0..levels.len() as u32).filter(|&texel| level(texel) > BRIGHT * mean).collect();

@@ -24,8 +24,7 @@ struct Shared {
     flux: Distribution,
 }
 
-/// The parts of meshes that are known, for all that are placed by maps that keep angles: shares of what parts send are
-/// the same there.
+/// The parts of known meshes, for all that are placed by maps that keep angles: shares of what they send are the same.
 #[derive(Default)]
 pub struct KnownParts(HashMap<*const Mesh, (Arc<Mesh>, Option<Arc<Shared>>)>);
 

@@ -11,16 +11,14 @@ use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Effort, LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
 
-/// Solid angle in steradians from which on rays hit a lamp often enough: there photons and chance cost the same
-/// (`benches/rooms.rs`).
+/// Solid angle in steradians from which rays hit a lamp so often that photons cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
 /// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
 const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
 const MOST_OF_A_SAMPLE: f64 = 4.0;
-/// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is
-/// seen through glass.
+/// A gain within this of 1 says nothing of what is seen through glass: photons bring nothing beside the rest.
 const NOTHING: f64 = 0.01;
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
@@ -178,8 +176,7 @@ pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String>
     Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
 }
 
-/// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing
-/// would be lit.
+/// Why photons that are seen are not sent: how many times shorter the time to an error would be, or nothing is lit.
 fn not_worth(gain: Option<Effort>) -> String {
     let Some(gain) = gain else { return "what they land on is black".into() };
     let is_small = gain.judged() > 1.0 && gain.of_whole.is_none_or(|of_whole| of_whole > 1.0);
@@ -287,8 +284,7 @@ fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
 }
 
-/// What is left out of the light of points that reaches a surface by way of smooth ones. `lit` is what that surface is
-/// called, diffuse or rough.
+/// What is left out of the light of points that smooth surfaces throw on one called `lit`, diffuse or rough.
 pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
     let line = |ways: &str, object: usize, but: &str| {

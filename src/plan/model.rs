@@ -176,8 +176,7 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
 fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     let of_three =
         |glass: &Dielectric<Curve>| matches!(glass.index.kind, CurveKind::Rgb([r, g, b]) if r != g || g != b);
-    // Under white light and paints of three numbers, three indices are all there is to know. Of other light, each
-    // wavelength has one index.
+    // Under white light and paints of three numbers, three indices say all. Otherwise each wavelength has its own.
     let is_plain = LazyCell::new(|| Survey::new(scene, true).is_plain());
     let parts = |glass: &Dielectric<Curve>| disperses(glass) || of_three(glass) && !*is_plain;
     scene.materials.iter().find(|m| m.material.medium().is_some_and(parts))?;

@@ -10,8 +10,7 @@ use crate::trace::{
     photons_within, reached_places,
 };
 
-/// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen
-/// through glass.
+/// Most photons per camera sample: from 0.25 to 1 the error for the time hardly changes, where glass is behind glass.
 const PHOTONS: f64 = 0.5;
 /// Fewest: of fewer a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
@@ -105,8 +104,7 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
 /// How many photons for each camera sample make the time to an error least.
 ///
 /// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l;
-/// their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays followed stand for time, so that the plan is the
-/// same everywhere.
+/// their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays stand for time: plans are the same everywhere.
 fn photons(worth: &GatheredWorth) -> f64 {
     let samples = worth.samples;
     let best = (worth.variance * samples.rays / (samples.variance * worth.rays)).sqrt();

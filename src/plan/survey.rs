@@ -323,8 +323,7 @@ impl Tint<'_> {
         self.combine(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
-    /// What is left of light of each wavelength in nm and relative width of its band, for all of which each curve is
-    /// read.
+    /// What is left of light of each wavelength in nm and relative width of its band, for all of which curves are read.
     fn combine(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),

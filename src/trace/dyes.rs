@@ -95,8 +95,7 @@ impl Dyes {
         &self.excitations[dye][source]
     }
 
-    /// The most that `number` answers for any dye which a light of an emission excites, told the dye as a source and
-    /// its lanes.
+    /// The most that `number` returns for a dye, as a source with its lanes, which light of an emission excites.
     pub(super) fn most_excited<const N: usize>(
         &self,
         light: LightId,

@@ -6,8 +6,7 @@ use crate::math::Distribution2d;
 
 /// Cells along each side of the square.
 const SIDE: usize = 64;
-/// Share of the photons that is sent everywhere, whatever was learned: what was missed must not come back much too
-/// bright.
+/// Share of the photons that is sent everywhere, whatever was learned: what was missed must not be much too bright.
 const EVERYWHERE: f64 = 0.2;
 
 /// A density on the unit square, constant in each of its cells.

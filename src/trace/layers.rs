@@ -81,8 +81,7 @@ impl CatcherLight<f64> {
         Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
     }
 
-    /// What the image covers there: the part of the luminance that other objects take, times the share of the pixel; 0
-    /// where light is added.
+    /// The alpha there: the share of the luminance that other objects take, times that of the pixel; 0 of more light.
     pub(super) fn coverage(&self) -> f64 {
         (self.share * taken(self.with, self.without)).clamp(0.0, self.share)
     }

@@ -167,8 +167,7 @@ fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     }
 }
 
-/// The ball within which photons are sent to surfaces that have no end; none where the camera sees nothing by way of
-/// them.
+/// The ball within which photons are sent to surfaces without end; none where these show the camera nothing.
 pub(super) fn reach(places: &[FocusPlace]) -> Option<Ball> {
     let places: Vec<FocusPlace> = places.iter().filter(|place| place.endless).copied().collect();
     (places.len() >= FEWEST).then(|| around(&places, REACH))

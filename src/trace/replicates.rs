@@ -195,8 +195,7 @@ impl Replicates {
         self.covered[pixel][replicate as usize].splatted += luminance as f32;
     }
 
-    /// The alpha of a pixel as each replicate has it, after so many samples of each; none where no shadow catchers make
-    /// noise of it.
+    /// The alpha of a pixel in each replicate, after so many samples of each; none without shadow catchers.
     pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
         let of = |replicate: usize| {
             let weights = self.light.weights(pixel, replicate, filter);

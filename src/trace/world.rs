@@ -177,8 +177,7 @@ impl World {
         self
     }
 
-    /// This world with the whole format in view, whatever part of it or more is made: what is learned there is the same
-    /// for all parts.
+    /// This world with the whole format in view, whatever part of it is made: all parts learn the same.
     pub fn of_the_format(&self) -> Self {
         let mut world = self.clone();
         world.scene.film = world.scene.film.of_the_format();
@@ -248,8 +247,7 @@ impl World {
     }
 
     /// Whether paths for light vertices end at an object: where interpolated normals bend glass or mirrors, whose light
-    /// cannot be followed forward alike, and where light crosses rough surfaces. What comes by way of it is left to
-    /// paths from the camera.
+    /// cannot be followed forward alike, and where light crosses rough surfaces. Paths from the camera find it.
     pub(super) fn ends_light_paths(&self, object: u32) -> bool {
         let object = &self.scene.objects[object as usize];
         let lobes = self.lobes[object.material as usize];

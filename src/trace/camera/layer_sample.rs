@@ -70,8 +70,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         self.chance *= chance;
     }
 
-    /// Forgets all that the sample has left but the light of a shadow catcher, with all objects and with those of the
-    /// plate alone.
+    /// Forgets what the sample has left but the light of a shadow catcher, with all objects and with the plate's alone.
     pub fn catch(&mut self, with_and_without: [[f64; 3]; 2]) {
         self.begin();
         if with_and_without.as_flattened().iter().all(|x| x.is_finite()) {

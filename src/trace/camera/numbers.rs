@@ -11,8 +11,7 @@ use crate::trace::walk::Path;
 /// wavelengths, and two for the place on the lens.
 pub const PLACE: u32 = 0;
 pub const LENS: u32 = 3;
-/// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, what the camera
-/// hits.
+/// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, the first hit.
 const SCATTER: u32 = 1;
 /// Which vertices of light paths are looked at.
 pub const VERTEX: u32 = 5;

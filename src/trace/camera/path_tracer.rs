@@ -41,8 +41,7 @@ pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
     excitations: Vec<Rc<Excitation<N, P>>>,
 }
 
-/// Of the paths whose light is found at light vertices, those that go on where bounces are limited: they tell how much
-/// the limits leave out.
+/// Of the paths found at light vertices, those that go on where bounces are limited, to tell what limits leave out.
 const ACCOUNTED: f64 = 1.0 / 16.0;
 
 impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
@@ -344,8 +343,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path.excitation.map(|number| self.excitations[number as usize].clone())
     }
 
-    /// Follows what excites the dyes of a surface, and answers the factor on what the surface scatters by itself; that
-    /// is 1 where it is awaited.
+    /// Follows what excites the dyes of a surface; returns the factor on what it scatters by itself, 1 if awaited.
     #[inline]
     fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, is_awaited: bool) -> f64 {
         let world = self.walker.world;

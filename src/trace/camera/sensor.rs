@@ -99,8 +99,7 @@ impl<const N: usize> Sensor<'_, N> {
         }
     }
 
-    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
-    /// before.
+    /// Tells an observer what a bounce found at a distance, where the sensor had received some light before.
     #[inline]
     pub fn tell<P: Polarization<N>>(
         &self,

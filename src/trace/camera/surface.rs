@@ -15,8 +15,7 @@ pub struct Surface<'m, const N: usize, P> {
     pub through: Option<&'m PassThrough<N, P>>,
     /// What the camera ray hits, unless it has hit something before.
     pub first: Option<FirstHit>,
-    /// How likely the path went on from it and not through its holes, if that was left to chance: its throughput is
-    /// divided by this.
+    /// How likely the path went on from it and not through its holes, by chance: its throughput is divided by this.
     pub chance: f64,
 }
 

@@ -28,8 +28,7 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
         let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
         let part = || {
-            // After other surfaces, light comes from elsewhere: between facets so small the ways of neighbors tell
-            // nothing.
+            // After other surfaces light comes from elsewhere: among such facets, neighbors tell nothing.
             see_something(rays, [first, second]) && first.legs.len() != second.legs.len()
                 || apart_by(rays, STEPS[1], at, [first, second]) >= SEEN_PIXELS
         };

@@ -23,8 +23,7 @@ pub enum FollowedBranch {
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
     FainterFirst,
-    /// The fainter one where light would first leave a dispersive body, from there on the brighter one: the way of the
-    /// rainbow.
+    /// The fainter one where light would first leave a dispersive body, then the brighter one: as in a rainbow.
     FainterInside,
 }
 

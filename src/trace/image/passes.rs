@@ -10,8 +10,7 @@ use crate::trace::pass::{Pass, Stage};
 use crate::trace::replicates::{HALF, REPLICATES};
 use crate::trace::stats::Stats;
 
-/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
-/// before.
+/// Samples of each pixel in the first pass, where no photons are gathered; each later pass doubles them.
 const FIRST_PASS: u32 = 16;
 
 /// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once: but where photons

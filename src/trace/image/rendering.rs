@@ -210,8 +210,7 @@ impl<'a> Rendering<'a> {
         self.advance_until(progress, &|| false) == Advance::Passed
     }
 
-    /// The same, but stops before the next pixels once `is_due` says so. It is asked before every pixel of a pass, from
-    /// any thread.
+    /// The same, but stops once `is_due` says so, which is asked before every pixel of a pass, from any thread.
     pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
         let stopped = AtomicBool::new(false);
         let stops = || {

@@ -13,8 +13,7 @@ use crate::trace::replicates::REPLICATES;
 const FIRST: u32 = 8;
 /// Samples of a pixel that tell its noise, at least.
 pub const FIRST_LOOK: u32 = REPLICATES as u32 * FIRST;
-/// Of the time that is left, the part that a stage is planned to take, and the part of all time that is too short for
-/// another one.
+/// The part of the time left that a stage is planned to take, and the part of all time too short for another one.
 const PLANNED: f64 = 0.95;
 const SHORT: f64 = 0.02;
 
@@ -123,8 +122,7 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     }
 }
 
-/// Whether it is known, about, how many samples of a pixel will be enough: where an error is asked for and no time, not
-/// before the first look.
+/// Whether it is about known how many samples of a pixel are enough: by an error alone, not before the first look.
 pub fn is_wanted_known(stop: &Stop, progress: &Progress) -> bool {
     stop.noise.is_none() || stop.time.is_some() || progress.measured.is_some()
 }

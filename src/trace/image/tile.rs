@@ -35,8 +35,7 @@ pub struct Tile {
     pub ahead: u32,
 }
 
-/// What photons show in a tile; empty where none are sent. Where every pass sends some, each counts as much as it takes
-/// samples.
+/// What photons show in a tile; empty without photons. Where every pass sends some, each counts by its samples.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct PhotonTile {
     /// Film values of its pixels.

@@ -85,8 +85,7 @@ pub enum Surfaces {
 
 /// Follows a photon over surfaces; `land` is told where it lands on those that scatter widely.
 ///
-/// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
-/// between media.
+/// Throughput is followed as if the light were the viewer; flux is that without the factor of radiance between media.
 pub fn follow_photon<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     photon: &Photon<N>,

@@ -26,16 +26,14 @@ use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
-/// How far, in radii, a surface may lie from where it would continue another smoothly: between flat faces that meet at
-/// 30 degrees it is less.
+/// How far, in radii, a surface may lie from where it would continue another: flat faces at 30 degrees lie nearer.
 const STEP: f64 = 0.25;
 /// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a
 /// ball of the same radius shows all that is gathered of it.
 const HIGH: f64 = 4.0;
 /// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
 const MOST: u32 = 1 << 12;
-/// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked
-/// at.
+/// Branches of random numbers, beyond those that a path may take: of these points, and of the photon looked at.
 const POINTS: usize = 128;
 const CHOICE: usize = 129;
 
@@ -276,8 +274,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         0.5 * (position - point.position).dot(normals).abs() <= STEP * self.radius
     }
 
-    /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may
-    /// change.
+    /// What is seen of what was found, over the share of the disc that is seen; how much polarization may change it.
     fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
         let GatherPoint { world, path, at, .. } = self.around;
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
@@ -314,8 +311,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         (sum, moved)
     }
 
-    /// Whether what is hit on the way to a point, or so many times as far, continues the surface; none if nothing is
-    /// hit.
+    /// Whether what a ray to a point, or so many times as far, hits continues the surface; none if it hits nothing.
     fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
         let scene = &self.around.world.scene;
         let way = to - from;

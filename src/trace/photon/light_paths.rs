@@ -27,8 +27,7 @@ use crate::trace::{Transport, World};
 
 /// Samples of each pixel that share light paths.
 pub const SHARED: u32 = 16;
-/// Camera samples for each light path, and the fewest and most light paths: what samples share does not average out
-/// over pixels.
+/// Camera samples for each light path, fewest and most light paths: noise that pixels share does not average out.
 const PER_PATH: u64 = 32;
 const FEWEST: u64 = 256;
 const MOST: u64 = 16_384;
@@ -67,8 +66,7 @@ const FAINT: f64 = 0.25;
 
 /// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
 ///
-/// Not where wavelengths are drawn anew for each camera sample, nor where light passes through surfaces at which
-/// light paths end.
+/// Not where each camera sample draws wavelengths, nor where light passes through surfaces at which light paths end.
 pub fn can_be_followed(world: &World) -> bool {
     let objects = 0..world.scene.objects.len() as u32;
     !world.method.basis.draws_wavelengths()
@@ -129,8 +127,7 @@ impl<'a> LightPaths<'a> {
         (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, rest, places, scale: OnceLock::new() })
     }
 
-    /// Whether a layer of lights is asked for whose paths would be so few that it would be too bright or too dark as a
-    /// whole.
+    /// Whether a layer of lights is asked for whose paths are so few that all of it would be too bright or too dark.
     pub fn starve_a_layer(&self) -> bool {
         if self.world.layers.at(Layer::Lights).is_none() {
             return false;

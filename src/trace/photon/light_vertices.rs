@@ -67,12 +67,10 @@ struct Candidates {
     power: OfCandidates,
 }
 
-/// A number for each candidate: for each place in a row, the numbers of all rows side by side, so that all rows
-/// are summed at once.
+/// A number for each candidate: for each place in a row, those of all rows side by side, which are summed at once.
 type OfCandidates = [[f32; ROWS]; ROW];
 
-/// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
-/// normal.
+/// Whether light between surfaces is looked for at light vertices on this one: a diffuse one, by its own normal.
 pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
     matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }
@@ -112,8 +110,7 @@ impl<const N: usize> LightVertices<N> {
         self.near_squared() / (distance_squared + self.near_squared())
     }
 
-    /// A vertex as seen from a point of a surface, for two random numbers, and one over how likely it was; none if none
-    /// is seen.
+    /// A vertex seen from a point of a surface, for two random numbers, and one over how likely it was; none if unseen.
     pub fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
         let count = self.candidates.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);

@@ -42,8 +42,7 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
     })
 }
 
-/// What some samples of a pixel are: the mean of X + Y + Z, and the variance of one. The cell of the format in which it
-/// lies.
+/// Of some samples of a pixel, the mean of X + Y + Z, the variance of one, and the pixel's cell of the format.
 struct PixelNoise {
     mean: f64,
     variance: f64,
@@ -99,8 +98,7 @@ pub struct PilotNoise {
     rays: f64,
 }
 
-/// Variances in the mean of the pixels, times the rays that they take: of a camera sample, and of a photon of each
-/// light.
+/// Variances in the mean of the pixels, times the rays they take: of a camera sample, and of a photon of each light.
 struct Work {
     samples: f64,
     photons: Vec<f64>,
@@ -160,8 +158,7 @@ impl PilotNoise {
 
     /// The least product of time and variance where the first few of some photons are sent, in an image of such a mean.
     ///
-    /// Of errors of pixels, the hundredth of the pixels in which samples vary most beside photons is left out: no
-    /// photon mends it.
+    /// Errors of pixels leave out the hundredth of them in which samples vary most beside photons: no photon mends it.
     fn effort(&self, photons: &[PhotonWorth], sent: usize, chance: impl Fn(&PixelNoise) -> f64, mean: f64) -> Effort {
         let of_pixel = |pixel: &PixelNoise| pixel.seen(photons).powi(2) + DARK * mean * mean;
         let of_whole = |_: &PixelNoise| mean * mean;

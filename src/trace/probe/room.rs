@@ -11,8 +11,7 @@ const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
 /// Share of the bounces' weight inside rooms from which on it is a picture of a room.
 const ENOUGH: f64 = 0.25;
-/// Of a box, how much is added around it; and of the way to where a ray leaves it, how far beyond it must go to have
-/// left.
+/// How much is added around a box; and how many times as far as to its side a ray must go to have left it.
 const MARGIN: f64 = 1e-6;
 const BEYOND: f64 = 1.0 + 1e-6;
 

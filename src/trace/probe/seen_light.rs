@@ -1,5 +1,4 @@
-//! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand
-//! photons.
+//! How much of the light seen polarization may change, by some hundred camera samples and some thousand photons.
 
 use std::ops::AddAssign;
 

@@ -37,8 +37,7 @@ pub fn with_light_vertices(world: &World, openings: &SkyOpenings) -> Option<Worl
 }
 
 /// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some, or else
-/// the openings through which it comes. The format counts, also where a part of it or more is made, so that all parts
-/// are made alike.
+/// the openings through which it comes. The format counts, whatever part of it is made, so that all are made alike.
 fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     let lights = &world.scene.lights;
     let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();

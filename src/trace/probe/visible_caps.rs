@@ -36,8 +36,7 @@ pub fn learn_visible_caps(world: &mut World) {
     }
 }
 
-/// The lights that paths hit by chance, in directions that were drawn where lights were sampled as well, with the unit
-/// normals there.
+/// The lights that paths hit by chance, in directions drawn where lights were sampled as well, and their unit normals.
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
     let met = RefCell::new(Vec::new());

@@ -30,8 +30,7 @@ pub struct IncidentRay<'a, const N: usize> {
     pub parted: bool,
 }
 
-/// Where a path hits a surface, and what the surface may know of it: made here, for the camera's paths, photons and
-/// probes.
+/// Where a path hits a surface, and what that may know of it: for the camera's paths, photons and probes.
 pub struct Interaction<'a, const N: usize> {
     pub object: u32,
     pub point: &'a SurfacePoint,

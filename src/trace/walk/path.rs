@@ -109,8 +109,7 @@ impl PathKind {
     }
 
     /// After one more surface; `wide` says whether light left it by a density of directions, and `followed` whether it
-    /// can be followed forward the same way. Photons are shown from the first surface alone, and gathered from all
-    /// others if they are at all.
+    /// can be followed forward the same way. Photons are splatted from the first surface, and gathered from others.
     pub fn then(self, gathers: bool, wide: bool, followed: impl Fn() -> bool) -> Self {
         match (self, wide) {
             (Self::Camera, true) => Self::Wide,
@@ -201,15 +200,13 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
 
     /// The path beyond a surface that it passes through as if nothing were there.
     ///
-    /// Lights beyond were sampled through the surface, from where its direction was: light that passes through makes
-    /// no other kind of path.
+    /// Lights beyond were sampled through the surface: light that passes through makes no other kind of path.
     pub fn passed(&self, point: &SurfacePoint) -> Self {
         let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
         Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
-    /// The path beyond a surface that it has hit and passes through in part, which is not counted among its
-    /// surfaces.
+    /// The path beyond a surface that it passes through in part, which is not counted among its surfaces.
     #[cold]
     #[inline(never)]
     pub fn passed_in_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
@@ -229,16 +226,14 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, context, wi, crosses))
     }
 
-    /// Whether photons bring what a narrow lobe of a surface sends on to it of the light that lights which send photons
-    /// shine there straight.
+    /// Whether photons bring what a narrow lobe sends the path of direct light, from lights that send photons.
     #[inline]
     pub fn leaves_narrow_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
         let has_landed = self.kind.is_of_photons() && !self.is_narrow && self.among == Among::All;
         has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
     }
 
-    /// Whether photons bring all light that a surface scatters, for it does so by narrow lobes alone: they go on from
-    /// it as from smooth ones.
+    /// Whether photons bring all light that a surface scatters: from narrow lobes alone they go on as from smooth ones.
     #[inline]
     pub fn leaves_all_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
         at.lobes.is_narrow() && self.leaves_narrow_to_photons(world, at)

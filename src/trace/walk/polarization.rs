@@ -80,12 +80,10 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// lights, and none has of those that `forward` follows.
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::RowTransfer>);
 
-    /// On the way from a surface along the unit vector `wi` to a light, where it hits panes next; makes `bsdf_cos`
-    /// that of the path's light.
+    /// On the way from a surface along the unit vector `wi` to a light or panes; makes `bsdf_cos` that of the path.
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
-    /// + Z.
+    /// How much of light along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y + Z.
     fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
     /// The same of light that the path has hit.

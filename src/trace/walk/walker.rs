@@ -43,8 +43,7 @@ const CHOICE: u32 = 2;
 /// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to an equal error.
 const SOONER: f64 = 5.0;
 
-/// How a sample goes on that has hit too many surfaces: what is left is mostly faint, and all branches are still
-/// followed that are not.
+/// How a sample goes on that has hit too many surfaces: by all bright branches, and by one of the faint ones.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
 impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
@@ -238,8 +237,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Which branches are followed by now. Where light has more ways than can be followed, one is chosen, which leaves
-    /// the mean what it is.
+    /// Which branches are followed by now. Where light has too many ways one is chosen, which keeps the mean.
     fn rule(&self) -> Transport {
         match self.transport {
             Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,
