@@ -31,8 +31,7 @@ const MOST_CELLS: f64 = (1 << 20) as f64;
 const MOST_TEXELS: f64 = MOST_CELLS;
 /// Most places of a lamp that are looked at, but for two each way in each of its cells.
 const MOST_LOOKS: f64 = (1 << 25) as f64;
-/// The mean square of a part's brightness from which its cells are kept, in units of the squared mean: below, what they
-/// take is worth more than what they bring.
+/// The mean square of a part's brightness, over its squared mean, from which cells bring more than they take.
 const UNEVEN: f64 = 1.3;
 /// The same of a round shape, of which cells behind the horizon are drawn as often as those before it.
 const UNEVEN_ROUND: f64 = 4.0;
@@ -97,8 +96,7 @@ struct Grid<F> {
 }
 
 impl<F: Fn([f64; 2]) -> Option<[f64; 2]> + Sync> Grid<F> {
-    /// Of a part on which so many texels lie; cells are coarser than these by a factor of 1 or more, and looked at in
-    /// no more columns and rows than so many.
+    /// Of a part with so many texels; cells are coarser by a factor of 1 or more, looked at in so many rows at most.
     fn new(texels: [f64; 2], [coarser, most]: [f64; 2], look: F) -> Self {
         let size = texels.map(|texels| (texels / coarser).ceil());
         // Two looks are exact where texels pass into each other, and one at each of several.

@@ -79,8 +79,7 @@ impl<S> Environment<S> {
         Environment { radiance: convert(Quantity::Emission, &self.radiance), image, polarization }
     }
 
-    /// Draws directions by the image's brightness; without one by their cosine to the unit normal of a surface, as the
-    /// irradiance of an even sky weighs them.
+    /// Draws directions by the image's brightness; without one by the cosine, as the irradiance of an even sky.
     pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let (direction, pdf) = match &self.image {
             Some(sky) => {

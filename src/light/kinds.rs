@@ -78,8 +78,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// A ray toward the light as `sample_li` draws it. Whether other triangles of the light occlude its `part`, if it
-    /// has one, is left to the caller.
+    /// A ray toward the light as `sample_li` draws it; the caller tests whether other triangles occlude its `part`.
     pub fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         if let Self::Area(area) = self {
             area.sample_li_in_part(from, normal, u)
@@ -132,8 +131,7 @@ impl<S> Light<S> {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
 
-    /// The direction toward the middle of a sun, or one toward what is bright in the image of a sky, for two random
-    /// numbers; none of other lights.
+    /// The direction toward the middle of a sun, or a random one toward what is bright in a sky; none of other lights.
     pub(crate) fn bright_direction(&self, u: [f64; 2]) -> Option<DVec3> {
         match self {
             Self::Sun(sun) => Some(sun.middle()),
@@ -160,8 +158,7 @@ impl<S> Light<S> {
         environment.beam_through(opening, ball).filter(|beam| beam.flux > 0.0)
     }
 
-    /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers;
-    /// none where the light does not shine.
+    /// The start of a photon for a place of the unit square, its way, and two random numbers; none where it is dark.
     pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),

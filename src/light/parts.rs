@@ -11,8 +11,7 @@ use crate::shape::{Mesh, Shape};
 #[derive(Clone, Debug)]
 pub struct LightParts {
     shared: Arc<Shared>,
-    /// Where a mesh is placed by a map that keeps all angles: the map back to the mesh, whose parts these are, and how
-    /// much longer lengths are in the world.
+    /// Where a mesh is placed by a map that keeps angles: the map back to the mesh, and how much longer lengths are.
     placed: Option<(Transform, f64)>,
 }
 

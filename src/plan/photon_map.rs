@@ -14,8 +14,7 @@ use crate::trace::{
 const PHOTONS: f64 = 0.5;
 /// Fewest: of fewer a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
-/// How much longer a camera sample takes that gathers wherever it can than one that gathers nowhere, as a share:
-/// measured in a room by a window.
+/// How much longer camera samples take that gather wherever they can, as a share: measured in a room by a window.
 const GATHERING: f64 = 0.5;
 /// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
 const RAREST: f64 = 1.0 / 16.0;

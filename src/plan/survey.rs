@@ -19,8 +19,7 @@ use crate::trace::{Method, Transport};
 const SHARE: f64 = 1.0 / 3.0;
 /// The relative error of an image that is aimed at where the scene does not say.
 const ERROR: f64 = 0.03;
-/// The seed of what a plan looks at. A plan is the same for all seeds of the image: otherwise its model of color could
-/// change from frame to frame.
+/// The seed of what a plan looks at, whatever the image's: else its model of color could change from frame to frame.
 const SEED: u64 = 0;
 
 /// The relative error of a color that its model may make.

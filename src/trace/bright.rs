@@ -24,8 +24,7 @@ const LARGEST: f64 = 0.5;
 /// no light comes but what is aimed at, 1 - a: the paths of such a room all weigh the same then.
 const FINITE: i32 = 2;
 const EQUAL: i32 = 1;
-/// How much more light from elsewhere counts than that of the places, which others may see as well: in rooms with a
-/// window, 2 to 6 make hardly a difference.
+/// How much more light from elsewhere counts than that of the places, which others may see too: 2 to 6 do alike.
 const ELSEWHERE: f64 = 3.0;
 /// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline is uncertain.
 const FLAT: f64 = 1e-3;

@@ -95,8 +95,7 @@ impl Media {
         strongest(scene, self.materials[..self.len as usize].iter().copied())
     }
 
-    /// What a ray hits that crosses the surface of a body; none if it leaves a body it never entered, or enters more
-    /// different ones than there is room for.
+    /// What a ray hits that crosses a body's surface; none if it never entered the body, or there is no room for more.
     fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let (here, at) = (self.inside(scene), self.place(material));
         let beyond = if enters {

@@ -143,8 +143,7 @@ pub struct MapPasses {
     pub count: u32,
     /// Photons of each, about.
     pub photons: u64,
-    /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long. A stop rule that
-    /// takes more samples makes it smaller.
+    /// Radius of gathered photons in pixels at the path's length; smaller where a stop rule takes more samples.
     pub radius: f64,
     /// The chance that photons are gathered at a place that a path reaches, above 0 to 1; they count for the others.
     pub chance: f64,

@@ -138,8 +138,7 @@ impl Products {
 }
 
 impl Replicates {
-    /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and
-    /// there are shadow catchers, or none.
+    /// Of so many pixels; of samples that are subtracted, of gathered photons and of shadow catchers if there are any.
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { ReplicateSums::new(pixels, is_signed) } else { ReplicateSums::default() };
         let covered = if catches { vec![[CoverageSums::default(); REPLICATES]; pixels] } else { Vec::new() };

@@ -67,8 +67,7 @@ impl ColorWalk {
         self.legs.last().map(|leg| &leg.0)
     }
 
-    /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
-    /// surface is hit inside a dispersive body.
+    /// Whether the way on with a share of the light is taken, not the other; `is_inside`: inside a dispersive body.
     fn takes(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
         let forks = |fork: &mut f64| {

@@ -193,8 +193,7 @@ impl<'a> LightPaths<'a> {
         LightVertices::dealt(vertices, center, near, self.rest, stats, |vertices| self.powers(vertices))
     }
 
-    /// The middle of vertices, and D, by light paths of their own: weights by a D that depends on the vertices that
-    /// they are of would be biased.
+    /// The middle of vertices, and D, by light paths of their own: by the same ones, weights would be biased.
     fn scale<const N: usize, P: Polarization<N>>(&self) -> (DVec3, f64) {
         let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
         // Medians: some vertices may lie far outside of all that is seen.

@@ -50,8 +50,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     }
 }
 
-/// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and
-/// places toward their corners.
+/// Pixels in which the camera would see objects of some materials alone: their middles, and toward their corners.
 pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[i32; 2]> {
     let scene = &world.scene;
     let wanted = |object: &u32| counts(scene.material_of(*object).lobes());

@@ -67,8 +67,7 @@ pub fn adaptive(world: &World) -> Option<Adaptive> {
     Some(Adaptive { density: SampleDensity { cells, powers: powers(&of(0..2))? }, gain, rays })
 }
 
-/// What a pixel of a cell showed in the film's channels: the mean of its samples, and the variance of one of them, as
-/// it counts where many are spread evenly.
+/// What a pixel of a cell showed in film channels: the mean of its samples, and the variance of one spread evenly.
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelMoments {
     mean: [f64; 3],

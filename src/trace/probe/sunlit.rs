@@ -1,5 +1,4 @@
-//! Where paths start from suns, and from what is bright in images of the sky, for light vertices: toward places in that
-//! light that the camera's paths find.
+//! Where paths of suns and bright parts of skies start for light vertices: toward lit places that camera paths find.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;

@@ -53,8 +53,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub is_seen: bool,
     /// Which objects there are for it.
     pub among: Among,
-    /// Whether light was looked for at light vertices before: what they carry does not count any more. Of a photon,
-    /// whether they carry its light.
+    /// Whether light was looked for at light vertices before, which count no more; of a photon, whether they carry it.
     pub resampled: bool,
     /// Whether all of its light is found otherwise, and it goes on to be accounted for alone.
     pub unlit: bool,
@@ -77,8 +76,7 @@ pub enum Among {
 pub enum PathKind {
     /// Straight from the camera.
     Camera,
-    /// Straight from the camera, through surfaces of bodies that are hidden inside others: photons that are shown to
-    /// the camera are not seen through these.
+    /// Straight from the camera, through surfaces of hidden bodies: splatted photons are not seen through these.
     PastHidden,
     /// Scattered widely by a surface from which photons are shown to the camera or gathered.
     Wide,

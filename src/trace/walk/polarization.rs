@@ -114,12 +114,10 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// What is kept of it where a photon has landed.
     fn landed(&self, at: &Interaction<N>) -> Self::Stored;
 
-    /// Brings a path from the camera, at a surface, together with a photon that has landed near and came along `wi`;
-    /// makes `bsdf_cos` that of their light.
+    /// Joins a camera path at a surface with a photon that landed near, along `wi`; makes `bsdf_cos` that of both.
     fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// By what share polarization may change the light of a photon, which came along a unit vector, that `join` has
-    /// brought together with a path in lanes.
+    /// By what share polarization may change the light of a photon, along a unit vector, that `join` joined with lanes.
     fn change_of_joined(
         &self,
         at: &Interaction<N>,
