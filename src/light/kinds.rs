@@ -50,10 +50,7 @@ impl<S> Light<S> {
 
     /// How its light is polarized; none of light that is not.
     pub fn polarization(&self) -> Option<&SkyPolarization> {
-        match self {
-            Self::Environment(environment) => environment.polarization.as_ref(),
-            Self::Area(_) | Self::Point(_) | Self::Spot(_) | Self::Sun(_) => None,
-        }
+        if let Self::Environment(environment) = self { environment.polarization.as_ref() } else { None }
     }
 
     /// Whether next-event estimation samples it; otherwise it shines by being hit.

@@ -27,12 +27,6 @@ pub(super) struct Dyes {
     pub(super) white: Material<Table>,
 }
 
-/// What shines: a light or a dye.
-struct Source<'a> {
-    curve: &'a Curve,
-    emission: Arc<Emission>,
-}
-
 impl Dyes {
     /// The dyes of a scene and what the light of each is worth to the sensor; none where there are no dyes, or where
     /// lanes are no wavelengths. Makes the basis one for them.
@@ -49,16 +43,13 @@ impl Dyes {
         let lights: Vec<&Curve> = scene.lights.iter().map(|light| light.emission()).collect();
         *basis = basis.clone().exciting(&dyes, &lights);
         let mut emissions = Distinct::default();
-        let mut source = |curve| {
-            let emission = emissions.of(curve, |curve| Arc::new(Emission::new(curve, basis.color_space())));
-            Source { curve, emission }
-        };
+        let mut emission = |curve| emissions.of(curve, |curve| Arc::new(Emission::new(curve, basis.color_space())));
         let curves = lights.iter().copied().chain(dyes.iter().map(|dye| &dye.emission));
-        let sources: Vec<Source> = curves.map(&mut source).collect();
+        let sources: Vec<(&Curve, Arc<Emission>)> = curves.map(|curve| (curve, emission(curve))).collect();
         let of_dye = |dye: &Dye| {
             let (dye, mut distinct) = (dye.excitable(), Distinct::default());
-            let of = |source: &Source| distinct.of(source.curve, |_| basis.excitation(&dye, &source.emission));
-            sources.iter().map(of).collect()
+            let mut of = |curve, emission| distinct.of(curve, |_| basis.excitation(&dye, emission));
+            sources.iter().map(|(curve, emission)| of(*curve, emission)).collect()
         };
         let share = |dye: &Dye| {
             let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);

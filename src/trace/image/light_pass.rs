@@ -65,7 +65,8 @@ pub fn show<const N: usize, P: Polarization<N>>(
     watch: &Observer,
 ) -> bool {
     let Some(targets) = &world.photon_targets else { return true };
-    let weight = pass.weight_of_photons();
+    // Where every pass sends photons, they count as much as its samples.
+    let weight = pass.replicate.map_or(1.0, |_| pass.numbers.len() as f64);
     let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
     for tile in tiles.iter_mut().filter(|tile| tile.splatted.pixels.is_empty()) {
         let pixels = tile.sums.len();

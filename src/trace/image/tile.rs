@@ -144,7 +144,7 @@ impl Tile {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
-                let early = pass.is_early(world, among_all);
+                let early = pass.is_of_first_half().unwrap_or(among_all < world.method.samples.div_ceil(2));
                 layers.keep(sample.is_subtracted);
                 self.layers.add(&world.layers, place, early, &sample, &layers.left());
             }
