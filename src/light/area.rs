@@ -20,8 +20,7 @@ pub struct Area<S> {
     pub radiance: S,
     /// The sides that show it.
     pub sides: Sides,
-    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only hit by
-    /// chance.
+    /// Whether next-event estimation samples it: finite `emissive` surfaces. Chance finds planes and glowing glass.
     pub is_sampled: bool,
     /// The image that it shows, if it shows one.
     image: Option<ShownImage>,

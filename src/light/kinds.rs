@@ -112,8 +112,7 @@ impl<S> Light<S> {
         matches!(self, Self::Environment(environment) if environment.polarization.is_none())
     }
 
-    /// Whether photons can be sent from it where a room has some openings: of a sky, then all but what is bright in it
-    /// is sent through these.
+    /// Whether photons can be sent from it in a room of these openings; skies send all but bright parts through them.
     pub fn sends_photons_with(&self, openings: &[Opening]) -> bool {
         self.sends_photons() || (!openings.is_empty() && self.sends_photons_through_openings())
     }

@@ -196,8 +196,7 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// The lights of a world that are sampled. Those are small that can send photons and are seen from the places given
-    /// under less than a solid angle.
+    /// The lights of a world that are sampled; small ones can send photons and are seen under less than a solid angle.
     pub(super) fn new(world: &World, places: &[DVec3], below: f64) -> Self {
         let lights = &world.scene().lights;
         // Some of the places, so that all of them can be held against all lights.

@@ -150,8 +150,7 @@ impl World {
         world
     }
 
-    /// This world with light vertices, for which paths from suns start where some places in their light are, and those
-    /// from skies through some openings.
+    /// This world with light vertices: paths of suns start toward places in their light, of skies through openings.
     pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: SkyOpenings) -> Self {
         let mut world = self.clone();
         world.method = Method { light_vertices: true, sunlit, openings, ..world.method };

@@ -134,8 +134,7 @@ fn weigh<const N: usize>(
 }
 
 impl PilotNoise {
-    /// How many times as long an equal error takes with other samples, both beside as many photons as are best for
-    /// them; none where there is no noise.
+    /// How many times as long an equal error takes with other samples, both with their best photons; none if no noise.
     pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<Effort> {
         let mean = others.mean(photons);
         let least = |noise: &Self| noise.effort(photons, photons.len(), |_| 0.0, mean);
@@ -144,8 +143,7 @@ impl PilotNoise {
     }
 
     /// The least product of time and variance where the first few of some photons are sent, and light of the others is
-    /// left to chance. A camera sample finds little of it, as spikes: of what photons bring, the second moment is so
-    /// many times the mean.
+    /// left to chance. Camera samples find it in spikes: its second moment is so many times the mean photons bring.
     pub fn least_work(&self, photons: &[PhotonWorth], spikes: &[f64], sent: usize) -> Effort {
         let left = || photons.iter().zip(spikes).skip(sent);
         if left().any(|(_, spike)| spike.is_infinite()) {

@@ -133,8 +133,7 @@ impl Occluders {
 
 impl VisibilityTest<'_> {
     /// What arrives of light through holes, panes and the medium, and how it is polarized beyond them; none if
-    /// something occludes it. `polarization` is that of the path at the place; it and `light` are asked only if nothing
-    /// does.
+    /// something occludes it. `polarization` of the path at the place and `light` are asked only if nothing does.
     #[inline]
     pub fn arriving<const N: usize, P: Polarization<N>>(
         &self,
@@ -163,8 +162,7 @@ impl VisibilityTest<'_> {
         Some((arriving, after))
     }
 
-    /// The share of each lane that passes through all surfaces before the light, and how it is polarized
-    /// beyond them; none if no light does.
+    /// The share of each lane that passes through all surfaces before the light, and its polarization; none if none.
     #[cold]
     #[inline(never)]
     fn transmittance<const N: usize, P: Polarization<N>>(

@@ -291,8 +291,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
-    /// The factor by which densities of aimed bounces change the throughput along a branch: of those that cross no
-    /// surface, nothing else is in `eta_scale`.
+    /// The factor of the densities of aimed bounces on the throughput: `eta_scale` where a branch crosses no surface.
     fn aimed(&self, branch: &Branch<N>) -> f32 {
         if branch.crosses { self.path.aimed } else { self.path.aimed * branch.eta_scale as f32 }
     }
