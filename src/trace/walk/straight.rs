@@ -210,7 +210,6 @@ impl VisibilityTest<'_> {
 struct StraightRay<'a, const N: usize> {
     ray: &'a Ray,
     surface_hit: &'a SurfaceHit,
-    /// The lanes on it.
     present: Lanes<N>,
     /// The medium around it.
     inside: Option<MaterialId>,
