@@ -20,8 +20,7 @@ pub struct Area<S> {
     pub radiance: S,
     /// The sides that show it.
     pub sides: Sides,
-    /// Whether next-event estimation samples it: finite `emissive` surfaces. Planes and glowing glass are only met by
-    /// chance.
+    /// Whether next-event estimation samples it: finite `emissive` surfaces. Chance finds planes and glowing glass.
     pub is_sampled: bool,
     /// The image that it shows, if it shows one.
     image: Option<ShownImage>,
@@ -83,18 +82,14 @@ impl<S> Area<S> {
         }
     }
 
-    /// Whether all that is seen of it may be a cap, so that learning it could help: of a sphere that shines everywhere
-    /// alike.
+    /// Whether a cap may be all that is seen of it, so that learning it could help: of a sphere that shines evenly.
     pub fn may_show_a_cap(&self) -> bool {
         self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.image.is_none()
     }
 
-    fn emission_map(&self) -> Option<&EmissionMap> {
+    /// How bright its image makes it, if that varies.
+    pub(super) fn emission_map(&self) -> Option<&EmissionMap> {
         self.image.as_ref()?.map.as_deref()
-    }
-
-    fn has_cells(&self) -> bool {
-        self.emission_map().is_some_and(EmissionMap::has_cells)
     }
 
     /// The shape with its image, and the cells of a part by which that is sampled, if it has some.
@@ -104,12 +99,7 @@ impl<S> Area<S> {
         Some((surface, image.map.as_ref()?.cells(part)?))
     }
 
-    /// The mean brightness of what it shows, if that varies.
-    pub(super) fn mean_brightness(&self) -> Option<f64> {
-        self.emission_map().map(EmissionMap::mean)
-    }
-
-    /// Tells the light the unit normals at which paths met it by chance: if they lie close together, it is sampled
+    /// Tells the light the unit normals at which paths hit it by chance: if they lie close together, it is sampled
     /// there.
     ///
     /// The cap is larger than that by a margin, the more so the fewer are known: what is seen beyond the rim makes rare
@@ -129,14 +119,14 @@ impl<S> Area<S> {
         }
     }
 
-    /// Whether the backs of parts may be met first: never from outside of a closed body.
+    /// Whether the backs of parts may be hit first: never from outside of a closed body.
     fn shows_backs(&self, from: DVec3) -> bool {
         self.sides == Sides::Both && self.closed.is_none_or(|bounds| bounds.contains(from))
     }
 
     /// Whether one of several parts or cells is drawn first, which uses up digits of a random number.
     pub(super) fn has_parts(&self) -> bool {
-        self.parts.is_some() || self.has_cells()
+        self.parts.is_some() || self.emission_map().is_some_and(EmissionMap::has_cells)
     }
 
     fn sample(&self, from: DVec3, normal: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
@@ -167,8 +157,7 @@ impl<S> Area<S> {
         Some(ShapeSample { density: None, ..sample })
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
-    /// crossing.
+    /// Density per steradian with which `sample_part` draws the direction of a ray that first hits it at a crossing.
     fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let evenly = match &self.parts {
             Some(_) => self.shape.pdf_part(ray, intersection),
@@ -190,7 +179,7 @@ impl<S> Area<S> {
         (!sample.part.is_some_and(is_hidden)).then_some(LightSample { part: None, ..sample })
     }
 
-    /// Looks for the light exactly as a ray that happens to meet it would: no distance needs a tolerance.
+    /// Looks for the light exactly as a ray that happens to hit it would: no distance needs a tolerance.
     pub(super) fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let sample = self.sample(from.position, normal, u)?;
         // A point in space has no horizon.
@@ -223,7 +212,7 @@ impl<S> Area<S> {
     }
 
     /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
-    /// meets it first at a crossing; none where it is seen exactly edge-on.
+    /// hits it first at a crossing; none where it is seen exactly edge-on.
     pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, intersection: &Intersection) -> Option<f64> {
         usable(match (self.seen_cap(), &self.parts) {
             (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, intersection.t),
@@ -238,16 +227,15 @@ impl<S> Area<S> {
 
     /// The factor on its radiance by the image that it shows, each place by what it sends; 1 if it shows none.
     pub fn brightness(&self) -> f64 {
-        self.emission_map().map_or(1.0, EmissionMap::brightness)
+        self.emission_map().map_or(1.0, |map| map.brightness)
     }
 
     /// The share of its area that sends as much light at that brightness; 1 if it shows no image.
     pub fn bright_share(&self) -> f64 {
-        self.emission_map().map_or(1.0, |map| map.mean() / map.brightness().max(f64::MIN_POSITIVE))
+        self.emission_map().map_or(1.0, |map| map.mean / map.brightness.max(f64::MIN_POSITIVE))
     }
 
-    /// A ball around the part that can be seen, and the area of that from where it is seen best; none of a shape that
-    /// is infinite.
+    /// A ball around the part that can be seen, and the most area that is seen of it; none of an infinite shape.
     pub fn visible_part(&self) -> Option<(Ball, f64)> {
         let own = self.shape.ball()?;
         let size = LightBounds::of_shape(&self.shape, self.sides == Sides::Both)?.intensity;
@@ -271,8 +259,7 @@ impl<S> Area<S> {
         Beam { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart }
     }
 
-    /// A photon from a point of the surface to the ball: in the cone that this fills; by its cosine where the point is
-    /// inside the ball.
+    /// A photon from a point of the surface to the ball: in the cone that it fills or, from inside, by its cosine.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let surface = self.sample_emission(ball, u)?;
         let point = &surface.point;
@@ -327,8 +314,7 @@ impl<S> Area<S> {
         Some(EmissionPoint { point, uv: surface.coordinates_at(part, at)?, density })
     }
 
-    /// A path of light from a point of the surface, by its cosine; of a sphere of which a cap is seen, from there most
-    /// often.
+    /// A path of light from a point of the surface, by its cosine; most often from the cap of a sphere that is seen.
     pub(super) fn emit(&self, [u0, u1, a, b]: [f64; 4]) -> Option<LeSample> {
         let sample = self.sample_le(&EVERYWHERE, [a, b], [u0, u1])?;
         let factor = sample.factor / self.pdf_le(&EVERYWHERE, &sample, |_| 1.0);

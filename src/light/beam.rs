@@ -45,8 +45,7 @@ impl Beam {
         Some(Ray { origin, direction: -toward })
     }
 
-    /// Where the way from a point along a unit vector toward the sky runs through the disc across the ball, as a place
-    /// of the unit square; none beside it.
+    /// The place of the unit square where the way from a point toward the sky runs through the disc; none beside it.
     pub(crate) fn place_in_disc(&self, from: DVec3, toward: DVec3) -> Option<[f64; 2]> {
         let local = Frame::about(toward).to_local(from - self.ball.center) / self.ball.radius;
         square_around_disk([local.x, local.y])

@@ -84,7 +84,7 @@ impl LightGroup {
 
     /// The paper's cost of holding so much light in so large a box, facing so many ways.
     pub fn cost(&self) -> f64 {
-        let edges = self.bounds.max - self.bounds.min;
+        let edges = self.bounds.size();
         let area = edges.x * edges.y + edges.y * edges.z + edges.z * edges.x;
         // Lamps on a line or in a point have no area; their length tells them apart.
         self.intensity * (area + 1e-6 * edges.length_squared()) * orientations(self.least_cosine())

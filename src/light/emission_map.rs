@@ -11,8 +11,10 @@ use crate::spectrum::CurveKind;
 /// Cells are about as large as texels; those of large images hold several. A part that is nearly even has none.
 #[derive(Clone, Debug)]
 pub struct EmissionMap {
-    mean: f64,
-    brightness: f64,
+    /// The mean brightness of the lamp, a third of red, green and blue.
+    pub(super) mean: f64,
+    /// Its brightness, each place by what it sends: the mean square over the mean.
+    pub(super) brightness: f64,
     parts: Vec<Part>,
 }
 
@@ -29,13 +31,11 @@ const MOST_CELLS: f64 = (1 << 20) as f64;
 const MOST_TEXELS: f64 = MOST_CELLS;
 /// Most places of a lamp that are looked at, but for two each way in each of its cells.
 const MOST_LOOKS: f64 = (1 << 25) as f64;
-/// The mean square of a part's brightness from which its cells are kept, in units of the squared mean: below, what they
-/// take is worth more than what they bring.
+/// The mean square of a part's brightness, over its squared mean, from which cells bring more than they take.
 const UNEVEN: f64 = 1.3;
 /// The same of a round shape, of which cells behind the horizon are drawn as often as those before it.
 const UNEVEN_ROUND: f64 = 4.0;
-/// How much of a part's worth is its own brightness, and not that of the whole lamp: no part is left out because its
-/// light was not seen.
+/// How much of a part's worth is its own brightness, and not the lamp's: no part is left out because it seemed dark.
 const OWN: f64 = 0.9;
 
 impl EmissionMap {
@@ -72,22 +72,11 @@ impl EmissionMap {
         Some(Self { mean: light / whole, brightness, parts })
     }
 
-    /// The mean brightness of the lamp, a third of red, green and blue.
-    pub fn mean(&self) -> f64 {
-        self.mean
-    }
-
-    /// Its brightness, each place by what it sends: the mean square over the mean.
-    pub fn brightness(&self) -> f64 {
-        self.brightness
-    }
-
     /// By how much an area of a part counts.
     pub(super) fn worth(&self, part: u32) -> f64 {
         OWN * self.parts[part as usize].mean + (1.0 - OWN) * self.mean
     }
 
-    /// Whether parts are sampled by their cells.
     pub(super) fn has_cells(&self) -> bool {
         self.parts.iter().any(|part| part.cells.is_some())
     }
@@ -107,8 +96,7 @@ struct Grid<F> {
 }
 
 impl<F: Fn([f64; 2]) -> Option<[f64; 2]> + Sync> Grid<F> {
-    /// Of a part on which so many texels lie; cells are coarser than these by a factor of 1 or more, and looked at in
-    /// no more columns and rows than so many.
+    /// Of a part with so many texels; cells are coarser by a factor of 1 or more, looked at in so many rows at most.
     fn new(texels: [f64; 2], [coarser, most]: [f64; 2], look: F) -> Self {
         let size = texels.map(|texels| (texels / coarser).ceil());
         // Two looks are exact where texels pass into each other, and one at each of several.

@@ -62,7 +62,7 @@ pub struct Sky<S> {
 impl Sky<Curve> {
     /// An image, turned from its own directions into the world's by a rotation.
     pub fn new(panorama: Panorama, rotation: DMat3) -> Self {
-        let texture = Texture { image: panorama.image().clone(), placement: Placement::default() };
+        let texture = Texture { image: panorama.image.clone(), placement: Placement::default() };
         let colors = CurveKind::Texture(texture).into();
         Self { panorama: Arc::new(panorama), turn: rotation.transpose(), colors }
     }
@@ -79,8 +79,7 @@ impl<S> Environment<S> {
         Environment { radiance: convert(Quantity::Emission, &self.radiance), image, polarization }
     }
 
-    /// Draws directions by the image's brightness; without one by their cosine to the unit normal of a surface, as the
-    /// irradiance of an even sky weighs them.
+    /// Draws directions by the image's brightness; without one by the cosine, as the irradiance of an even sky.
     pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let (direction, pdf) = match &self.image {
             Some(sky) => {
@@ -105,7 +104,7 @@ impl<S> Environment<S> {
 
     /// The bright part of its image, from which photons are sent; none of a polarized sky.
     pub fn bright(&self) -> Option<&BrightPart> {
-        self.image.as_ref().filter(|_| self.polarization.is_none())?.panorama.bright()
+        self.image.as_ref().filter(|_| self.polarization.is_none())?.panorama.bright.as_ref()
     }
 
     /// Whether a direction lies in that part.
@@ -129,7 +128,7 @@ impl<S> Environment<S> {
 
     /// Photons of the bright part.
     pub(super) fn beam(&self, ball: &Ball) -> Option<Beam> {
-        Some(Beam::from_sky(ball, self.bright()?.irradiance()))
+        Some(Beam::from_sky(ball, self.bright()?.irradiance))
     }
 
     /// Photons of all its light that comes through an opening, but that of the bright part; none of a polarized sky.
@@ -156,7 +155,7 @@ impl<S> Environment<S> {
 
     /// The mean over all directions of the factor on `radiance`.
     pub fn mean(&self) -> f64 {
-        self.image.as_ref().map_or(1.0, |sky| sky.panorama.mean())
+        self.image.as_ref().map_or(1.0, |sky| sky.panorama.mean)
     }
 }
 

@@ -19,7 +19,7 @@ pub enum Light<S> {
     Point(Point<S>),
     /// A point that shines into a cone.
     Spot(Spot<S>),
-    /// What rays meet that miss everything.
+    /// What rays hit that miss everything.
     Environment(Environment<S>),
     /// A disc in the sky.
     Sun(Sun<S>),
@@ -50,13 +50,10 @@ impl<S> Light<S> {
 
     /// How its light is polarized; none of light that is not.
     pub fn polarization(&self) -> Option<&SkyPolarization> {
-        match self {
-            Self::Environment(environment) => environment.polarization.as_ref(),
-            Self::Area(_) | Self::Point(_) | Self::Spot(_) | Self::Sun(_) => None,
-        }
+        if let Self::Environment(environment) = self { environment.polarization.as_ref() } else { None }
     }
 
-    /// Whether next-event estimation samples it; otherwise it shines by being met.
+    /// Whether next-event estimation samples it; otherwise it shines by being hit.
     pub fn is_sampled(&self) -> bool {
         if let Self::Area(area) = self { area.is_sampled } else { true }
     }
@@ -67,8 +64,7 @@ impl<S> Light<S> {
     }
 
     /// A ray from a point of a surface toward the light; none where it does not shine that way, or an area lies below
-    /// the surface's horizon there. `normal` is the surface's unit normal on the lit side, toward which most samples
-    /// lead.
+    /// the surface's horizon there. `normal` is its unit normal on the lit side, toward which most samples lead.
     pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),
@@ -79,8 +75,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// A ray toward the light as `sample_li` draws it. Whether other triangles of the light occlude its `part`, if it
-    /// has one, is left to the caller.
+    /// A ray toward the light as `sample_li` draws it; the caller tests whether other triangles occlude its `part`.
     pub fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         if let Self::Area(area) = self {
             area.sample_li_in_part(from, normal, u)
@@ -90,8 +85,7 @@ impl<S> Light<S> {
     }
 
     /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
-    /// unit normal; none if it cannot. `intersection` is where the ray first meets a surface that shines, if that is
-    /// known.
+    /// unit normal; none if it cannot. `intersection` is where the ray first hits a surface that shines, if known.
     pub fn pdf_li(&self, ray: &Ray, normal: DVec3, intersection: Option<&Intersection>) -> Option<f64> {
         match self {
             Self::Area(area) if area.is_sampled => match intersection {
@@ -118,6 +112,11 @@ impl<S> Light<S> {
         matches!(self, Self::Environment(environment) if environment.polarization.is_none())
     }
 
+    /// Whether photons can be sent from it in a room of these openings; skies send all but bright parts through them.
+    pub fn sends_photons_with(&self, openings: &[Opening]) -> bool {
+        self.sends_photons() || (!openings.is_empty() && self.sends_photons_through_openings())
+    }
+
     /// The mean radiance of a sky, per emission; 0 of other lights.
     pub fn mean_radiance(&self) -> f64 {
         if let Self::Environment(environment) = self { environment.mean() } else { 0.0 }
@@ -128,8 +127,7 @@ impl<S> Light<S> {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
 
-    /// The direction toward the middle of a sun, or one toward what is bright in the image of a sky, for two random
-    /// numbers; none of other lights.
+    /// The direction toward the middle of a sun, or a random one toward what is bright in a sky; none of other lights.
     pub(crate) fn bright_direction(&self, u: [f64; 2]) -> Option<DVec3> {
         match self {
             Self::Sun(sun) => Some(sun.middle()),
@@ -156,8 +154,7 @@ impl<S> Light<S> {
         environment.beam_through(opening, ball).filter(|beam| beam.flux > 0.0)
     }
 
-    /// The start of a photon for a place of the unit square, which stands for its way, and two more random numbers;
-    /// none where the light does not shine.
+    /// The start of a photon for a place of the unit square, its way, and two random numbers; none where it is dark.
     pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
@@ -211,7 +208,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether it is met by rays that meet nothing else.
+    /// Whether it is hit by rays that hit nothing else.
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Environment(_) | Self::Sun(_))
     }
@@ -232,7 +229,7 @@ impl<S> Light<S> {
 }
 
 impl Light<Table> {
-    /// What the light sends along a direction toward it, which meets it at `uv`: its emission, lane by lane.
+    /// What the light sends along a direction toward it, which hits it at `uv`: its emission, lane by lane.
     pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3, uv: [f64; 2]) -> Lanes<N> {
         match self {
             Self::Environment(environment) => environment.toward(draw, direction),
@@ -242,7 +239,7 @@ impl Light<Table> {
 
     /// The mean brightness of the image that lies on a lamp, which may be a small part of its file.
     pub fn shown(&self) -> Option<f64> {
-        if let Self::Area(area) = self { area.mean_brightness() } else { None }
+        if let Self::Area(area) = self { area.emission_map().map(|map| map.mean) } else { None }
     }
 
     /// The largest irradiance that a sky gives; 0 of other lights.

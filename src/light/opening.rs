@@ -108,8 +108,7 @@ mod tests {
         [at(0.0, 1.0), at(0.5, 0.4)]
     }
 
-    /// The measure of lines that enter a rectangle is pi times its area. Of two, it is that of both less that of the
-    /// lines through both.
+    /// The measure of lines that enter a rectangle is pi times its area; that of both counts lines through both once.
     #[test]
     fn lines_through_openings_are_drawn_as_densely_as_is_said() {
         let openings = openings();

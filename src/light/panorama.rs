@@ -16,16 +16,17 @@ use crate::spectrum::{Image, Wrap};
 /// Importance Sampling*.
 #[derive(Clone, Debug)]
 pub struct Panorama {
-    image: Arc<Image>,
-    mean: f64,
+    pub(super) image: Arc<Image>,
+    /// The mean of its brightness, a third of red, green and blue, over all directions.
+    pub(super) mean: f64,
     texels: Distribution2d,
     /// Cosine of the angle from the top to the upper edge of each row, and to the lower edge of the last.
     edges: Vec<f64>,
-    bright: Option<BrightPart>,
+    /// What is brightest in it, if that is much brighter than the rest.
+    pub(super) bright: Option<BrightPart>,
 }
 
-/// The texels of an image that are many times as bright as its mean, such as a sun or a studio's lamps, if they fill a
-/// small part of the sky.
+/// The texels of an image far brighter than its mean, such as a sun or lamps, if they fill a small part of the sky.
 #[derive(Clone, Debug)]
 pub struct BrightPart {
     /// Their brightness is above this one.
@@ -33,11 +34,11 @@ pub struct BrightPart {
     texels: Vec<u32>,
     by_light: Distribution,
     /// At right angles, for one of the image.
-    irradiance: f64,
+    pub(super) irradiance: f64,
     /// In steradians.
-    solid_angle: f64,
+    pub solid_angle: f64,
     /// Their radiance, each direction by what it sends, for one of the image.
-    radiance: f64,
+    pub radiance: f64,
 }
 
 /// How densely directions are drawn at least, in units of how they would be by brightness alone: what is dimmer than
@@ -52,8 +53,7 @@ const MOST_SOLID_ANGLE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.02;
 
 impl BrightPart {
-    /// Of texels of some brightness, and the solid angle of each; none if few of them are so much brighter than the
-    /// mean.
+    /// Of texels of some brightness, and the solid angle of each; none if few are so much brighter than the mean.
     fn new(levels: &[f64], mean: f64, solid_angle: impl Fn(u32) -> f64) -> Option<Self> {
         let level = |texel: u32| levels[texel as usize];
         let mut texels: Vec<u32> = (0..levels.len() as u32).filter(|&texel| level(texel) > BRIGHT * mean).collect();
@@ -80,21 +80,6 @@ impl BrightPart {
         let radiance = squares / irradiance;
         Some(Self { above, texels, by_light, irradiance, solid_angle: whole, radiance })
     }
-
-    /// In steradians.
-    pub fn solid_angle(&self) -> f64 {
-        self.solid_angle
-    }
-
-    /// At right angles, for one of the image.
-    pub(super) fn irradiance(&self) -> f64 {
-        self.irradiance
-    }
-
-    /// Its radiance, each direction by what it sends, for one of the image.
-    pub fn radiance(&self) -> f64 {
-        self.radiance
-    }
 }
 
 impl Panorama {
@@ -117,16 +102,6 @@ impl Panorama {
         let texels = Distribution2d::new(size, weight, by_row);
         let bright = BrightPart::new(&levels, mean, |texel| TAU / width as f64 * by_row(texel as usize / width));
         Self { image, mean, texels, edges, bright }
-    }
-
-    /// The image.
-    pub fn image(&self) -> &Arc<Image> {
-        &self.image
-    }
-
-    /// The mean of its brightness, a third of red, green and blue, over all directions.
-    pub fn mean(&self) -> f64 {
-        self.mean
     }
 
     /// Where a direction lies in the image, in texels from its upper left corner.
@@ -158,11 +133,6 @@ impl Panorama {
         let radius = (1.0 - y * y).max(0.0).sqrt();
         let (sin, cos) = libm::sincos(angle);
         DVec3::new(radius * sin, y, radius * cos)
-    }
-
-    /// What is brightest in it, if that is much brighter than the rest.
-    pub fn bright(&self) -> Option<&BrightPart> {
-        self.bright.as_ref()
     }
 
     /// Whether a direction lies in the bright part.
@@ -303,7 +273,7 @@ mod tests {
         let of = |i: usize| if i == 17 || i == 100 { 900.0 } else { (i % 5) as f32 };
         let texels: Vec<[f32; 3]> = (0..width * height).map(|i| [of(i); 3]).collect();
         let panorama = panorama(width, &texels);
-        let bright = panorama.bright().expect("two texels are bright");
+        let bright = panorama.bright.as_ref().expect("two texels are bright");
         let (mut irradiance, mut solid_angle) = (0.0, 0.0);
         for texel in (0..width * height).map(|i| [i % width, i / width]) {
             let here = panorama.solid_angle(texel[1]);
@@ -312,9 +282,9 @@ mod tests {
                 solid_angle += here;
             }
         }
-        assert!((bright.irradiance() / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
-        assert!((bright.solid_angle() / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
-        assert!(bright.radiance() > 300.0 && bright.radiance() < 900.0, "{}", bright.radiance());
+        assert!((bright.irradiance / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
+        assert!((bright.solid_angle / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
+        assert!(bright.radiance > 300.0 && bright.radiance < 900.0, "{}", bright.radiance);
         // Every draw stands for the same irradiance but for what changes within a texel, whose rows are 15 degrees high
         // here: their mean is that of linear interpolation by solid angle, the table's by latitude.
         let mut sum = 0.0;
@@ -324,6 +294,6 @@ mod tests {
             sum += f64::from(panorama.color(direction)[0]) / pdf / 160_000.0;
         }
         assert!((sum / irradiance - 1.0).abs() < 0.02, "{sum} for {irradiance}");
-        assert!(self::panorama(width, &vec![[1.0; 3]; width * height]).bright().is_none());
+        assert!(self::panorama(width, &vec![[1.0; 3]; width * height]).bright.is_none());
     }
 }

@@ -11,8 +11,7 @@ use crate::shape::{Mesh, Shape};
 #[derive(Clone, Debug)]
 pub struct LightParts {
     shared: Arc<Shared>,
-    /// Where a mesh is placed by a map that keeps all angles: the map back to the mesh, whose parts these are, and how
-    /// much longer lengths are in the world.
+    /// Where a mesh is placed by a map that keeps angles: the map back to the mesh, and how much longer lengths are.
     placed: Option<(Transform, f64)>,
 }
 
@@ -24,8 +23,7 @@ struct Shared {
     flux: Distribution,
 }
 
-/// The parts of meshes that are known, for all that are placed by maps that keep angles: shares of what parts send are
-/// the same there.
+/// The parts of known meshes, for all that are placed by maps that keep angles: shares of what they send are the same.
 #[derive(Default)]
 pub struct KnownParts(HashMap<*const Mesh, (Arc<Mesh>, Option<Arc<Shared>>)>);
 
@@ -53,14 +51,12 @@ impl Shared {
 impl LightParts {
     /// Those of a shape of several that shines everywhere alike; none of a shape of one part.
     pub fn even(shape: &Shape, known: &mut KnownParts) -> Option<Self> {
-        let (mesh, placed) = match shape {
-            Shape::Mesh(mesh) => (mesh, None),
-            Shape::Instance(instance) => match instance.similarity() {
-                Some(placed) => (instance.mesh(), Some(placed)),
-                None => return Self::of(shape, |_| 1.0),
-            },
-            _ => return Self::of(shape, |_| 1.0),
+        let of_mesh = match shape {
+            Shape::Mesh(mesh) => Some((mesh, None)),
+            Shape::Instance(instance) => instance.similarity().map(|placed| (instance.mesh(), Some(placed))),
+            _ => None,
         };
+        let Some((mesh, placed)) = of_mesh else { return Self::of(shape, |_| 1.0) };
         Some(Self { shared: known.of(mesh)?, placed })
     }
 

@@ -5,7 +5,7 @@ use crate::math::{Ray, ball_surface};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
-/// A point that shines evenly in all directions; rays never meet it.
+/// A point that shines evenly in all directions; rays never hit it.
 ///
 /// ```toml
 /// [[light]]

@@ -18,7 +18,7 @@ pub struct LightSample {
     pub pdf: Option<f64>,
     /// Factor on the light's emission that makes radiance of it or, without a pdf, irradiance at right angles.
     pub factor: f64,
-    /// Where the light is met on the image that it shows, if it shows one.
+    /// Where the light is hit on the image that it shows, if it shows one.
     pub uv: [f64; 2],
 }
 
@@ -28,8 +28,7 @@ impl LightSample {
         Self { ray, distance: f64::INFINITY, object: None, part: None, pdf, factor, uv: [0.0; 2] }
     }
 
-    /// Of a point that shines with a part of its intensity in each direction; none where the surface touches it, or
-    /// where it is dark.
+    /// Of a point that shines by a part of its intensity in each direction; none at the point, or where it is dark.
     pub(super) fn of_point(from: &SurfacePoint, light: DVec3, part: impl Fn(DVec3) -> f64) -> Option<Self> {
         let ray = from.leave((light - from.position).try_normalize()?);
         let squared = (light - ray.origin).length_squared();

@@ -5,7 +5,7 @@ use crate::math::{Cone, DVec3, Ray, unit};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
-/// A point that shines into a cone, dimmer toward its edge; rays never meet it.
+/// A point that shines into a cone, dimmer toward its edge; rays never hit it.
 ///
 /// ```toml
 /// [[light]]
@@ -89,17 +89,14 @@ mod tests {
     #[test]
     fn light_is_full_in_the_middle_and_fades_to_the_edge() {
         let spot = Spot { position: [0.0; 3], toward: [0.0, -2.0, 0.0], cone_angle: 60.0, blend: 0.5, intensity: () };
-        let at = |degrees: f64| {
+        let part = |spot: &Spot<()>, degrees: f64| {
             let (sin, cos) = libm::sincos(degrees.to_radians());
             spot.part(DVec3::new(sin, -cos, 0.0))
         };
-        assert_eq!([at(0.0), at(14.9), at(30.1), at(90.0), at(180.0)], [1.0, 1.0, 0.0, 0.0, 0.0]);
+        let at = |degrees: f64| part(&spot, degrees);
+        assert_eq!([0.0, 14.9, 30.1, 90.0, 180.0].map(at), [1.0, 1.0, 0.0, 0.0, 0.0]);
         assert!((at(22.5) - 0.5).abs() < 1e-12 && at(16.0) > at(20.0) && at(20.0) > at(29.0));
         let sharp = Spot { blend: 0.0, ..spot };
-        let edge = |degrees: f64| {
-            let (sin, cos) = libm::sincos(f64::to_radians(degrees));
-            sharp.part(DVec3::new(sin, -cos, 0.0))
-        };
-        assert_eq!([edge(29.99), edge(30.01)], [1.0, 0.0]);
+        assert_eq!([29.99, 30.01].map(|degrees| part(&sharp, degrees)), [1.0, 0.0]);
     }
 }

@@ -125,8 +125,7 @@ mod tests {
         }
     }
 
-    /// Rounding puts what is drawn beyond the rim of a disc that is not much wider than it: a seventh of the light was
-    /// lost.
+    /// Rounding puts draws beyond the rim of a disc that is not much wider than it: a seventh of the light was lost.
     #[test]
     fn a_very_small_sun_loses_no_light() {
         for angular_diameter in [1e-9, 1e-11, 1e-13, 1e-14, 1e-15] {

@@ -3,8 +3,7 @@ use std::f64::consts::PI;
 use crate::math::{DVec3, cosine_about};
 use crate::shape::Ball;
 
-/// How a photon leaves a point of a surface toward a ball: in the cone that the ball fills or, from inside of it, by
-/// the cosine to the unit normal.
+/// How a photon leaves a point of a surface toward a ball: in the cone that it fills or, from inside, by the cosine.
 pub(super) struct TowardBall<'a> {
     pub(super) ball: &'a Ball,
     pub(super) from: DVec3,

@@ -115,7 +115,7 @@ fn split(lights: &[LightBounds], items: &mut [u32], depth: u32) -> usize {
     }
     let center = |item: u32| lights[item as usize].bounds.center();
     let centers = Bounds::around(items.iter().map(|&item| center(item)));
-    let (low, size) = (centers.min, centers.max - centers.min);
+    let (low, size) = (centers.min, centers.size());
     let slice = |item: u32, axis: usize| {
         (((center(item)[axis] - low[axis]) / size[axis] * SLICES as f64) as usize).min(SLICES - 1)
     };
@@ -167,7 +167,7 @@ impl Node {
         // Rounding leaves no normal out: each of two unit vectors has six roundings, their product three.
         let widened = (least - gamma(15)).max(-1.0);
         let cos = if items.len() == 1 && axis.is_some() { 1.0 } else { widened };
-        let radius = (0.5 * (all.bounds.max - all.bounds.min)).length();
+        let radius = (0.5 * all.bounds.size()).length();
         Self {
             center: all.bounds.center(),
             radius,

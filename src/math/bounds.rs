@@ -47,9 +47,14 @@ impl Bounds {
         !(point.cmplt(self.min).any() || point.cmpgt(self.max).any())
     }
 
+    /// How long it is along each axis; negative where it is empty.
+    pub fn size(&self) -> DVec3 {
+        self.max - self.min
+    }
+
     /// Half the surface.
     pub fn half_area(&self) -> f64 {
-        let DVec3 { x, y, z } = (self.max - self.min).max(DVec3::ZERO);
+        let DVec3 { x, y, z } = self.size().max(DVec3::ZERO);
         if self.is_empty() { 0.0 } else { x * y + y * z + z * x }
     }
 

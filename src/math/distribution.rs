@@ -102,11 +102,6 @@ impl Distribution2d {
         [self.columns[0].count(), self.columns.len()]
     }
 
-    /// Sum of all products of the weights of cells and rows.
-    pub fn total(&self) -> f64 {
-        self.rows.total()
-    }
-
     /// The column and the row for two random numbers in [0, 1).
     pub fn sample(&self, [u, v]: [f64; 2]) -> [DiscreteSample; 2] {
         let row = self.rows.sample(v);
@@ -164,7 +159,7 @@ mod tests {
     fn cells_are_drawn_by_their_own_weight_times_that_of_their_row() {
         let (cell, row) = (|[x, y]: [usize; 2]| [[1.0, 0.0, 3.0], [2.0, 2.0, 0.0]][y][x], |y: usize| [2.0, 4.0][y]);
         let distribution = Distribution2d::new([3, 2], cell, row);
-        assert_eq!(distribution.total(), 24.0);
+        assert_eq!(distribution.rows.total(), 24.0);
         let mut counts = [[0; 3]; 2];
         for u in (0..240).flat_map(|i| (0..240).map(move |j| [i, j].map(|k| f64::from(k) / 240.0))) {
             let [column, row] = distribution.sample(u).map(|drawn| drawn.index);

@@ -9,8 +9,7 @@ pub fn neighbors<T>(items: &mut [T], most: usize, center: &impl Fn(&T) -> DVec3,
     if most == 1 {
         return take(items);
     }
-    let Bounds { min, max } = Bounds::around(items.iter().map(center));
-    let size = max - min;
+    let size = Bounds::around(items.iter().map(center)).size();
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
     items.sort_by(|a, b| center(a)[axis].total_cmp(&center(b)[axis]));
     let (left, right) = items.split_at_mut(items.len() / 2);

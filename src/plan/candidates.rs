@@ -27,7 +27,7 @@ impl Candidate {
 const MOST: [usize; 2] = [20, 6];
 
 /// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
-/// over what light of a probe meets, however many smooth surfaces those are.
+/// over what light of a probe hits, however many smooth surfaces those are.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
     let scattered = error_of_paths(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
     scattered.max(seen.error(survey, basis)).max(dyes::error(survey, basis))
@@ -96,7 +96,8 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Ve
 
 /// Of the first tints, in which light interferes, whether light crosses them.
 fn films_of(smooth: &[&Tint]) -> Vec<bool> {
-    smooth.iter().take_while(|tint| tint.has_fringes()).map(|tint| tint.is_crossed_film()).collect()
+    let is_crossed = |tint: &&Tint| matches!(tint, Tint::Film(film) if film.crosses);
+    smooth.iter().take_while(|tint| tint.has_fringes()).map(is_crossed).collect()
 }
 
 /// Mean reflectance beyond which a closed room is not followed.

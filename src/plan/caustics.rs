@@ -6,21 +6,19 @@ use super::efficiency::{PhotonGain, rounded, weigh};
 use super::words::{as_long, in_number};
 use crate::light::{Light, LightId, Opening};
 use crate::material::Material;
-use crate::math::{DVec2, DVec3};
+use crate::math::{DVec2, DVec3, median};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Effort, LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
 
-/// Solid angle in steradians from which on rays meet a lamp often enough: there photons and chance cost the same
-/// (`benches/rooms.rs`).
+/// Solid angle in steradians from which rays hit a lamp so often that photons cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: from fewer it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
 /// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
 const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
 const MOST_OF_A_SAMPLE: f64 = 4.0;
-/// A gain that is 1 but for this: what photons would bring is nothing beside the rest, and tells nothing of what is
-/// seen through glass.
+/// A gain within this of 1 says nothing of what is seen through glass: photons bring nothing beside the rest.
 const NOTHING: f64 = 0.01;
 /// Pairs of a light and a place whose solid angles are looked at.
 const PAIRS: usize = 1 << 19;
@@ -95,7 +93,7 @@ impl Caustics {
 pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice {
     let Sources { small, mut large, openings } = match sources(scene, unguided) {
         Ok(sources) => sources,
-        Err(why) => return CausticChoice::not(why.into_iter().collect(), sees_receivers(scene)),
+        Err(why) => return CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()),
     };
     let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
     let lights = small.iter().map(|light| light.0).collect();
@@ -178,8 +176,7 @@ pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String>
     Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
 }
 
-/// Why photons that are seen are not sent, as the time to an error would be so many times shorter by them, or nothing
-/// would be lit.
+/// Why photons that are seen are not sent: how many times shorter the time to an error would be, or nothing is lit.
 fn not_worth(gain: Option<Effort>) -> String {
     let Some(gain) = gain else { return "what they land on is black".into() };
     let is_small = gain.judged() > 1.0 && gain.of_whole.is_none_or(|of_whole| of_whole > 1.0);
@@ -188,14 +185,38 @@ fn not_worth(gain: Option<Effort>) -> String {
 }
 
 /// A light and the largest solid angle under which it is seen.
-type SizedLight = (LightId, f64);
+pub(super) type SizedLight = (LightId, f64);
 
 /// Lights whose caustics chance would hardly find, and others.
-struct Sources {
-    small: Vec<SizedLight>,
+pub(super) struct Sources {
+    pub(super) small: Vec<SizedLight>,
     large: Vec<SizedLight>,
     /// The openings through which those that are skies shine.
-    openings: Vec<Opening>,
+    pub(super) openings: Vec<Opening>,
+}
+
+impl Sources {
+    /// The lights of a world that are sampled; small ones can send photons and are seen under less than a solid angle.
+    pub(super) fn new(world: &World, places: &[DVec3], below: f64) -> Self {
+        let lights = &world.scene().lights;
+        // Some of the places, so that all of them can be held against all lights.
+        let step = places.len() * lights.len() / PAIRS + 1;
+        let places: Vec<DVec3> = places.iter().copied().step_by(step).collect();
+        let openings = world.openings();
+        let are_small = of_openings(&openings, &places).is_some_and(|size| size < below);
+        let openings = if are_small { openings } else { Vec::new() };
+        let mut sources = Self { small: Vec::new(), large: Vec::new(), openings };
+        for (id, light) in lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
+            match solid_angle(light, &sources.openings, &places) {
+                Some(size) if size < below && light.sends_photons_with(&sources.openings) => {
+                    sources.small.push((id, size));
+                }
+                Some(size) => sources.large.push((id, size)),
+                None => {}
+            }
+        }
+        sources
+    }
 }
 
 /// The lights that photons may be sent from, or why none are sent, if that is worth telling.
@@ -209,20 +230,12 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     if scene.render.caustics == AutoText::Off {
         return Err(Some(format!("caustics \"off\": no photon tracing{}", missing(scene))));
     }
-    let places = thinned(lit_places(scene), scene.lights.len());
+    let places = lit_places(scene);
     if places.is_empty() {
         let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
         return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
     }
-    let openings = openings(world, &places, SMALL);
-    let mut sources = Sources { small: Vec::new(), large: Vec::new(), openings };
-    for (id, light) in world.scene().lights.iter().enumerate().filter(|(_, light)| light.is_sampled()) {
-        match solid_angle(light, &sources.openings, &places) {
-            Some(size) if size < SMALL && sends(light, &sources.openings) => sources.small.push((id, size)),
-            Some(size) => sources.large.push((id, size)),
-            None => {}
-        }
-    }
+    let sources = Sources::new(world, &places, SMALL);
     if sources.small.is_empty() {
         let why = match sources.large.as_slice() {
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
@@ -254,37 +267,9 @@ pub(super) fn targets(scene: &Scene<Curve>, smooth: &[Smoothness]) -> Vec<usize>
     (0..scene.objects.len()).filter(|&object| Smoothness::sent_to(scene, object, smooth).is_some()).collect()
 }
 
-/// Whether the camera sees any surface straight on which a caustic may lie.
-fn sees_receivers(scene: &Scene<Curve>) -> bool {
-    !lit_places(scene).is_empty()
-}
-
 /// Whether caustics can be seen on a material.
 fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
     material.lobes().is_wide() && !(material.lobes().is_diffuse() && scene.render.diffuse_bounces == Some(0))
-}
-
-/// Lights that photons can be sent from and that are seen from the places given under less than a solid angle, and the
-/// openings through which skies among them are.
-pub(super) fn small_lights(world: &World, places: &[DVec3], small: f64) -> (Vec<LightId>, Vec<Opening>) {
-    let scene = world.scene();
-    let places = thinned(places.to_vec(), scene.lights.len());
-    let openings = openings(world, &places, small);
-    let is_small = |light: &Light<_>| solid_angle(light, &openings, &places).is_some_and(|size| size < small);
-    let lights = scene.lights.iter().enumerate();
-    let wanted = lights.filter(|(_, light)| light.is_sampled() && sends(light, &openings) && is_small(light));
-    (wanted.map(|(id, _)| id).collect(), openings)
-}
-
-/// Whether a light can send photons, a sky also through openings.
-fn sends<S>(light: &Light<S>, openings: &[Opening]) -> bool {
-    light.sends_photons() || (!openings.is_empty() && light.sends_photons_through_openings())
-}
-
-/// The openings at which bounces are aimed, where all are seen under less than a solid angle.
-fn openings(world: &World, places: &[DVec3], small: f64) -> Vec<Opening> {
-    let openings = world.openings();
-    if of_openings(&openings, places).is_some_and(|size| size < small) { openings } else { Vec::new() }
 }
 
 /// Under which solid angle all openings are seen from half of some places or more.
@@ -293,24 +278,12 @@ fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
 }
 
-fn median(mut angles: Vec<f64>) -> Option<f64> {
-    angles.sort_by(f64::total_cmp);
-    angles.get(angles.len() / 2).copied()
-}
-
-/// Some of the places, so that all of them can be held against all lights.
-fn thinned(places: Vec<DVec3>, lights: usize) -> Vec<DVec3> {
-    let step = places.len() * lights / PAIRS + 1;
-    places.into_iter().step_by(step).collect()
-}
-
-/// What cannot be met by chance at all.
+/// What cannot be hit by chance at all.
 fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
 }
 
-/// What is left out of the light of points that reaches a surface by way of smooth ones. `lit` is what that surface is
-/// called, diffuse or rough.
+/// What is left out of the light of points that smooth surfaces throw on one called `lit`, diffuse or rough.
 pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
     let line = |ways: &str, object: usize, but: &str| {
@@ -381,7 +354,7 @@ fn solid_angle<S>(light: &Light<S>, openings: &[Opening], places: &[DVec3]) -> O
         Light::Point(_) | Light::Spot(_) => Some(0.0),
         Light::Sun(sun) => Some(sun.solid_angle()),
         Light::Environment(environment) => {
-            let bright = environment.bright().map(|bright| bright.solid_angle());
+            let bright = environment.bright().map(|bright| bright.solid_angle);
             bright.or_else(|| of_openings(openings, places).filter(|_| light.sends_photons_through_openings()))
         }
         Light::Area(area) => {

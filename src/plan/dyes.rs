@@ -31,8 +31,7 @@ impl PathTints<'_> {
     }
 }
 
-/// The largest relative error of the color that a basis makes of a surface with a dye, seen by way of every other
-/// surface and lit by way of every other.
+/// The largest relative error that a basis makes of the color of a dye, seen and lit by way of every other surface.
 pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     if survey.dyes.is_empty() {
         return 0.0;
@@ -57,7 +56,6 @@ pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
 /// A surface with a dye under a light.
 struct LitDye<'a> {
     dye: &'a Excitable<'a>,
-    /// What it shines.
     glow: &'a FilmColors,
     reflectance: &'a Curve,
     /// The light as it is written, and as it shines.

@@ -13,8 +13,7 @@ const LEFT: f64 = 0.5;
 pub(super) struct PhotonGain {
     /// The photons of those lights whose photons lower the time to an error.
     pub(super) photons: Vec<PhotonWorth>,
-    /// How many times as long chance takes to the same error; none where it misses light for good, or there is no
-    /// light.
+    /// How many times as long chance takes to the same error; none where it misses light for good, or there is none.
     pub(super) gain: Option<Effort>,
     /// Whether some of the photons were sent to what is smooth, all of it or a part.
     pub(super) of_smooth: bool,
@@ -22,7 +21,7 @@ pub(super) struct PhotonGain {
 
 /// Weighs photons of some lights, which the world sends, against chance.
 ///
-/// A light that is left to chance adds to the noise of camera samples: one that meets the lamp sees f of its radiance,
+/// A light that is left to chance adds to the noise of camera samples: one that hits the lamp sees f of its radiance,
 /// and does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there
 /// are is found when all else is decided.
 pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> PhotonGain {
@@ -50,8 +49,7 @@ pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) 
     PhotonGain { photons, gain, of_smooth }
 }
 
-/// The nearest power of the square root of 2: the least of time x variance is flat, and rounding must not change an
-/// image.
+/// The nearest power of the root of 2: the least of time x variance is flat, and rounding must not change an image.
 pub(super) fn rounded(photons: f64) -> f64 {
     libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
 }
@@ -84,7 +82,7 @@ impl<'a> TargetObjects<'a> {
         let factor = match light {
             Light::Area(area) => area.brightness() * blurred,
             Light::Environment(environment) => {
-                environment.bright().map_or(environment.mean(), |bright| bright.radiance()) * blurred
+                environment.bright().map_or(environment.mean(), |bright| bright.radiance) * blurred
             }
             Light::Sun(sun) if sun.angular_diameter > 0.0 => sun.radiance_factor() * blurred,
             _ if self.spread == 0.0 => return None,

@@ -18,7 +18,6 @@ pub(super) struct Film<'a> {
     thickest: bool,
 }
 
-/// What a film lies on.
 #[derive(Clone, Copy)]
 enum Beyond<'a> {
     Nothing,
@@ -49,8 +48,7 @@ pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
 }
 
 impl Film<'_> {
-    /// What is left of light of each wavelength in nm and relative width of its band, for all of which each curve is
-    /// read.
+    /// What is left of light of each wavelength in nm and relative width of its band, for all of which curves are read.
     pub(super) fn left(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         let stacks = self.stacks(waves, &read);
         let (n, k) = match self.beyond {

@@ -42,8 +42,7 @@ pub use candidates::Candidate;
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,
-    /// What it will cost, how far colors may be off and what is left out; then one decision a line, each with its
-    /// numbers.
+    /// What it will cost, how far colors may be off and what is left out; then one decision a line, with its numbers.
     pub because: Vec<String>,
     /// How many of these lines come before the decisions.
     pub summary_lines: usize,

@@ -176,8 +176,7 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
 fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     let of_three =
         |glass: &Dielectric<Curve>| matches!(glass.index.kind, CurveKind::Rgb([r, g, b]) if r != g || g != b);
-    // Under white light and paints of three numbers, three indices are all there is to know. Of other light, each
-    // wavelength has one index.
+    // Under white light and paints of three numbers, three indices say all. Otherwise each wavelength has its own.
     let is_plain = LazyCell::new(|| Survey::new(scene, true).is_plain());
     let parts = |glass: &Dielectric<Curve>| disperses(glass) || of_three(glass) && !*is_plain;
     scene.materials.iter().find(|m| m.material.medium().is_some_and(parts))?;
@@ -192,22 +191,16 @@ fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
         p if p == 0.0 || p >= 0.5 => format!("{p:.0} %"),
         p => format!("{p:.1e} %"),
     };
-    let lit = format!("{} pixels", pixels(dispersion.lit_pixels));
-    let shown = if dispersion.dark && dispersion.lit_pixels == 0.0 {
-        format!(
-            "no ray of the probe saw anything through the dispersive glass in {share} of the view, where it is assumed"
-        )
-    } else if dispersion.dark {
-        format!(
-            "no ray of the probe saw anything through the dispersive glass in {share} of the view, which pulls {from} and {to} nm up to \
-             {lit} apart where it lights surfaces"
-        )
-    } else {
-        let seen = pixels(dispersion.seen_pixels);
-        format!(
-            "dispersive glass in {share} of the view pulls {from} and {to} nm up to {seen} pixels apart, and up to {lit} where it lights \
-             surfaces"
-        )
+    let unseen = format!("no ray of the probe saw anything through the dispersive glass in {share} of the view");
+    let (pulls, lit) = (format!("pulls {from} and {to} nm up to"), pixels(dispersion.lit_pixels));
+    let shown = match dispersion.dark {
+        true if dispersion.lit_pixels == 0.0 => format!("{unseen}, where it is assumed"),
+        true => format!("{unseen}, which {pulls} {lit} pixels apart where it lights surfaces"),
+        false => {
+            let seen =
+                format!("dispersive glass in {share} of the view {pulls} {} pixels", pixels(dispersion.seen_pixels));
+            format!("{seen} apart, and up to {lit} pixels where it lights surfaces")
+        }
     };
     let what = match (visible, hero) {
         (true, true) => "so wavelengths separate",
@@ -258,7 +251,6 @@ fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     told.into_iter().take(TOLD).flatten().chain(more).collect()
 }
 
-/// What is said of a material.
 fn about_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
     let dyes: Vec<Dye> = material.dyes().into_iter().map(|dye| dye.dye()).collect();
     let numbers = match material {

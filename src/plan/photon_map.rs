@@ -1,6 +1,6 @@
 //! Whether caustics that are not seen straight need a map of photons.
 
-use super::caustics::{small_lights, targets};
+use super::caustics::{Sources, targets};
 use super::efficiency::rounded;
 use super::words::{in_number, percent};
 use crate::scene::{AutoText, Scene};
@@ -10,17 +10,15 @@ use crate::trace::{
     photons_within, reached_places,
 };
 
-/// Most photons per camera sample: between 0.25 and 1 the error for the time hardly changes, where glass is seen
-/// through glass.
+/// Most photons per camera sample: from 0.25 to 1 the error for the time hardly changes, where glass is behind glass.
 const PHOTONS: f64 = 0.5;
 /// Fewest: of fewer a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
-/// How much longer a camera sample takes that gathers wherever it can than one that gathers nowhere, as a share:
-/// measured in a room by a window.
+/// How much longer camera samples take that gather wherever they can, as a share: measured in a room by a window.
 const GATHERING: f64 = 0.5;
 /// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
 const RAREST: f64 = 1.0 / 16.0;
-/// Solid angle in steradians of lights that rays meet too rarely from where nothing is shown.
+/// Solid angle in steradians of lights that rays hit too rarely from where nothing is shown.
 const SMALL: f64 = 0.1;
 /// Radius in pixels of a map of one sample per pixel.
 const RADIUS: f64 = 2.0;
@@ -59,8 +57,8 @@ pub(super) fn with_map(
     };
     let map = passes(PHOTONS, OF_A_PASS);
     let pass = shown.cloned().unwrap_or_else(|| {
-        let (lights, openings) = small_lights(unguided, &places, SMALL);
-        let photons = (PHOTONS * samples).ceil() as u64;
+        let Sources { small, openings, .. } = Sources::new(unguided, &places, SMALL);
+        let (lights, photons) = (small.iter().map(|light| light.0).collect(), (PHOTONS * samples).ceil() as u64);
         LightPass { photons, lights, openings, to: vec![Smoothness::Whole], map: None }
     });
     if pass.lights.is_empty() {
@@ -105,8 +103,7 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
 /// How many photons for each camera sample make the time to an error least.
 ///
 /// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l;
-/// their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays followed stand for time, so that the plan is the
-/// same everywhere.
+/// their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays stand for time: plans are the same everywhere.
 fn photons(worth: &GatheredWorth) -> f64 {
     let samples = worth.samples;
     let best = (worth.variance * samples.rays / (samples.variance * worth.rays)).sqrt();

@@ -4,13 +4,12 @@ use super::survey::tolerance;
 use super::words::{against, percent};
 use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{Polarizing, World, polarization_error, seen_light};
+use crate::trace::{Polarizing, World, most_changed, polarization_error};
 
 /// What is done about polarization, and what is said of it.
 pub(super) struct Decided {
     pub(super) polarization: Polarizing,
     pub(super) why: Option<String>,
-    /// What is left out of the image.
     pub(super) left_out: Option<String>,
     /// How far the image is off where it is not traced, if that was measured.
     pub(super) error: Option<f64>,
@@ -34,14 +33,14 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     match scene.render.polarization {
         PolarizationText::On => return on("the scene asks for it".into()),
         PolarizationText::Off => {
-            return off(Some("the scene asks for it".into()), left_out(seen_light(world).change_of_part()));
+            return off(Some("the scene asks for it".into()), left_out(most_changed(world)));
         }
         PolarizationText::Auto => {}
     }
     if let Some(asking) = asking(scene) {
         return on(asking);
     }
-    let bound = seen_light(world).change_of_part();
+    let bound = most_changed(world);
     let tolerated = tolerance(scene);
     if bound <= tolerated {
         let within = |what: String| format!("{what}, within the {} that are tolerated", percent(tolerated));

@@ -1,4 +1,4 @@
-//! The colors that the camera sees of a scene, as a probe finds them: products of as many tints as light really meets.
+//! The colors that the camera sees of a scene, as a probe finds them: products of as many tints as light really hits.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ type Weighted = Vec<(usize, f64)>;
 #[derive(Default)]
 pub(super) struct Seen<'a> {
     tints: Vec<Tint<'a>>,
-    /// Tints that light meets one after another, each as often as it is met.
+    /// Tints that light hits one after another, each as often as it is hit.
     products: Vec<Vec<u32>>,
     colors: Vec<Color>,
 }
@@ -40,7 +40,7 @@ const COSINES: f64 = 32.0;
 const WEIGHTS: f64 = 100.0;
 
 impl<'a> Seen<'a> {
-    /// Sends a few hundred rays and keeps what they met; nothing where smooth surfaces tint no light.
+    /// Sends a few hundred rays and keeps what they hit; nothing where smooth surfaces tint no light.
     pub(super) fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
         if survey.is_plain() || survey.smooth(1).is_empty() {
             return Self::default();
@@ -89,12 +89,11 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// A tint that was met, so that it is known again: material, part, what light does there, and a number.
+/// A tint that was hit, so that it is known again: material, part, what light does there, and a number.
 type Key = (u32, usize, u8, i64);
 /// A color to be known again: light, diffuse surfaces, products with rounded weights.
 type ColorKey = (usize, u32, Vec<(usize, i64)>);
 
-/// Collects what rays met.
 struct Keeping<'a> {
     scene: &'a Scene<Curve>,
     /// The survey's light of each light.
@@ -112,7 +111,6 @@ impl<'a> Keeping<'a> {
         Self { scene, lights, seen: Seen::default(), tints, products, colors }
     }
 
-    /// Adds the colors of one pixel.
     fn keep(&mut self, found: &[Route]) {
         let mut of_pixel: BTreeMap<(usize, u32), Weighted> = BTreeMap::new();
         for route in found {
@@ -138,7 +136,6 @@ impl<'a> Keeping<'a> {
         *self.products.entry(numbers).or_insert(next)
     }
 
-    /// The tints of a step.
     fn met(&mut self, step: &Step) -> Vec<u32> {
         let (way, rounded) = match step.way {
             RouteEvent::Reflected(cos) => (0, (cos * COSINES).round().max(1.0) as i64),

@@ -8,8 +8,7 @@ use crate::trace::{FIRST_LOOK, Stop};
 
 /// Fewest that replicates can share.
 const FEWEST: u32 = 8;
-/// Camera samples of a whole image that an error is believed of, at least: 64 of a single pixel would often miss a lamp
-/// that fills a hundredth of it.
+/// Fewest camera samples of an image that an error is believed of: 64 of a pixel would often miss a small lamp.
 const BELIEVED: u32 = 4096;
 /// Most samples where the scene does not say.
 const MOST: u32 = 65_536;

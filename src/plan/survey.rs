@@ -19,8 +19,7 @@ use crate::trace::{Method, Transport};
 const SHARE: f64 = 1.0 / 3.0;
 /// The relative error of an image that is aimed at where the scene does not say.
 const ERROR: f64 = 0.03;
-/// The seed of what a plan looks at. A plan is the same for all seeds of the image: otherwise its model of color could
-/// change from frame to frame.
+/// The seed of what a plan looks at, whatever the image's: else its model of color could change from frame to frame.
 const SEED: u64 = 0;
 
 /// The relative error of a color that its model may make.
@@ -189,7 +188,6 @@ impl<'a> Survey<'a> {
         }
     }
 
-    /// The emissions of all different lights.
     pub(super) fn emissions(&self) -> Vec<Emission> {
         self.lights.iter().map(|(_, light)| light.clone()).collect()
     }
@@ -275,7 +273,7 @@ const FILMS: usize = 4;
 /// The longest straight way through the largest body of a material.
 fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
     let bodies = scene.objects.iter().filter(|object| object.material == material);
-    let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| (bounds.max - bounds.min).min_element());
+    let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| bounds.size().min_element());
     sizes.fold(0.0, f64::max)
 }
 
@@ -291,14 +289,8 @@ impl Tint<'_> {
         }
     }
 
-    /// Whether light interferes in it.
     pub(super) fn has_fringes(&self) -> bool {
         matches!(self, Self::Film(_) | Self::Plate(_))
-    }
-
-    /// Whether it is a film that lets light through.
-    pub(super) fn is_crossed_film(&self) -> bool {
-        matches!(self, Self::Film(film) if film.crosses)
     }
 
     fn is_scattering(&self) -> bool {
@@ -330,8 +322,7 @@ impl Tint<'_> {
         self.combine(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
-    /// What is left of light of each wavelength in nm and relative width of its band, for all of which each curve is
-    /// read.
+    /// What is left of light of each wavelength in nm and relative width of its band, for all of which curves are read.
     fn combine(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),

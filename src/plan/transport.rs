@@ -11,7 +11,7 @@ use crate::trace::{Branching, Method, Transport, World, branching};
 
 /// Weight below which deterministic transport follows no branch.
 const CUTOFF: f64 = 1e-9;
-/// Surfaces that one of its camera samples may meet: eight times what a mean one may.
+/// Surfaces that one of its camera samples may hit: eight times what a mean one may.
 const MOST_SURFACES: u64 = 16_384;
 /// Nothing is left to chance.
 const DETERMINISTIC: Transport = Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES };
@@ -19,7 +19,7 @@ const DETERMINISTIC: Transport = Transport::Deterministic { cutoff: CUTOFF, most
 const SPLIT: f64 = 0.05;
 /// Weight below which paths are ended at random.
 const ROULETTE: f64 = 0.05;
-/// Surfaces that a mean sample may meet where all branches are followed: about as many as 256 samples that choose one.
+/// Surfaces that a mean sample may hit where all branches are followed: about as many as 256 samples that choose one.
 const AFFORDABLE: f64 = 2048.0;
 
 /// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.

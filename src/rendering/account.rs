@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::image::Image;
 use super::image_error::ImageError;
 use crate::plan::Plan;
+use crate::trace::Report;
 
 /// How a scene will be rendered.
 #[derive(Clone, Debug, Serialize)]
@@ -52,32 +53,13 @@ impl<'a> PlanAccount<'a> {
 /// What rendering noticed.
 #[derive(Clone, Debug, Serialize)]
 pub struct RenderAccount<'a> {
-    /// Camera samples of all pixels together.
-    pub samples: u64,
-    /// Rays that were followed.
-    pub rays: u64,
-    /// Photons that were sent.
-    pub photons: u64,
+    /// What the tracer noticed.
+    #[serde(flatten)]
+    pub report: &'a Report,
     /// How long it took.
     pub seconds: f64,
     /// How long the plan expected it to take.
     pub expected_seconds: f64,
-    /// Share of the weight in branches that were not followed because they weigh little.
-    pub dropped: f64,
-    /// Share of the weight that the limits of bounces stopped.
-    pub stopped: f64,
-    /// Camera samples whose light had too many ways to follow all.
-    pub by_chance: u64,
-    /// Samples that are left out because they are not finite.
-    pub non_finite: u64,
-    /// How often light left a clear body that it had not entered.
-    pub unmatched: u64,
-    /// Share of the light that polarization may change, where it is not traced.
-    pub polarization: f64,
-    /// Share of the light that polarization may change in the 16 x 16 pixels where it is largest.
-    pub polarization_of_tile: f64,
-    /// What ended it: error, time or samples; none where it has no stop rule.
-    pub stopped_by: Option<&'static str>,
     /// How far the image is off, where that was measured.
     pub error: Option<ErrorAccount<'a>>,
     /// What the process has taken so far, where the system tells it.
@@ -89,21 +71,10 @@ pub struct RenderAccount<'a> {
 impl<'a> RenderAccount<'a> {
     /// Of an image that took some time, where its plan expected another.
     pub fn new(image: &'a Image, took: Duration, expected: Duration) -> Self {
-        let report = image.report();
         Self {
-            samples: report.samples,
-            rays: report.rays,
-            photons: report.photons,
+            report: image.report(),
             seconds: took.as_secs_f64(),
             expected_seconds: expected.as_secs_f64(),
-            dropped: report.dropped,
-            stopped: report.stopped,
-            by_chance: report.by_chance,
-            non_finite: report.non_finite,
-            unmatched: report.unmatched,
-            polarization: report.polarization,
-            polarization_of_tile: report.polarization_of_tile,
-            stopped_by: report.stopped_by.map(|by| by.name()),
             error: image.error().map(ErrorAccount::new),
             processor_seconds: ProcessTime::try_now().ok().map(|time| time.as_duration().as_secs_f64()),
             peak_memory_bytes: peak_memory(),

@@ -1,4 +1,4 @@
-use crate::math::{Cone, DVec3, one_minus_cos_of_cone};
+use crate::math::{Bounds, Cone, DVec3, one_minus_cos_of_cone};
 
 /// A ball around something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +10,11 @@ pub struct Ball {
 }
 
 impl Ball {
+    /// Through the corners of a box.
+    pub fn of_box(bounds: &Bounds) -> Self {
+        Self { center: bounds.center(), radius: 0.5 * bounds.size().length() }
+    }
+
     /// The cone of directions in which the ball is seen from a point; all directions from inside of it.
     pub fn cone_from(&self, from: DVec3) -> Cone {
         let way = self.center - from;

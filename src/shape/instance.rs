@@ -118,7 +118,7 @@ impl Instance {
         let (own, Bounds { min, max }) = (self.mesh.bounds(), self.bounds);
         let reach = own.min.abs().max(own.max.abs());
         let pad = 2.0 * self.error(reach, min.abs().max(max.abs()), reach * gamma(16)) + rounding;
-        let half = 0.5 * (own.max - own.min);
+        let half = 0.5 * own.size();
         let axes = DVec3::AXES.map(|axis| self.to_world.vector(axis * half));
         Hull::new(self.to_world.point(own.center()), axes, false, pad)
     }

@@ -248,8 +248,7 @@ impl Shape {
         if let Self::Sphere(sphere) = self {
             return Some(sphere.ball());
         }
-        let bounds = self.bounds()?;
-        Some(Ball { center: bounds.center(), radius: (0.5 * (bounds.max - bounds.min)).length() })
+        self.bounds().as_ref().map(Ball::of_box)
     }
 
     /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.

@@ -101,7 +101,7 @@ const FARTHEST: f64 = 16.0;
 /// The places of vertices, in 64 bits where 32 would round them by too much.
 fn vertices(places: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
     let bounds = Bounds::around(places.clone().map(DVec3::from));
-    let widest = (bounds.max - bounds.min).max_element();
+    let widest = bounds.size().max_element();
     if bounds.min.abs().max(bounds.max.abs()).max_element() <= FARTHEST * widest {
         Vertices::Single(places.map(|place| place.map(|x| x as f32)).collect())
     } else {

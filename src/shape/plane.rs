@@ -32,7 +32,7 @@ impl Plane {
 
     /// Whether it cuts a box, or passes it within `near` times the box's diagonal.
     pub fn meets(&self, bounds: &Bounds, near: f64) -> bool {
-        let size = bounds.max - bounds.min;
+        let size = bounds.size();
         let half = 0.5 * size.dot(self.normal.abs());
         (bounds.center() - self.point).dot(self.normal).abs() <= half + near * size.length()
     }

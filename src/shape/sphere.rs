@@ -76,7 +76,7 @@ impl Sphere {
     /// The ball that fills its box.
     pub(super) fn ball(&self) -> Ball {
         let bounds = self.bounds();
-        Ball { center: bounds.center(), radius: 0.5 * (bounds.max - bounds.min).max_element() }
+        Ball { center: bounds.center(), radius: 0.5 * bounds.size().max_element() }
     }
 
     /// The sphere after a map; none after an uneven one, which makes an ellipsoid of it.

@@ -24,11 +24,9 @@ const LARGEST: f64 = 0.5;
 /// no light comes but what is aimed at, 1 - a: the paths of such a room all weigh the same then.
 const FINITE: i32 = 2;
 const EQUAL: i32 = 1;
-/// How much more light from elsewhere counts than that of the places, which others may see as well: in rooms with a
-/// window, 2 to 6 make hardly a difference.
+/// How much more light from elsewhere counts than that of the places, which others may see too: 2 to 6 do alike.
 const ELSEWHERE: f64 = 3.0;
-/// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline has no certain
-/// extent.
+/// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline is uncertain.
 const FLAT: f64 = 1e-3;
 
 /// A rectangle from which or through which much light comes.
@@ -233,8 +231,7 @@ mod tests {
         ((local.z * ROWS as f64) as usize).min(ROWS - 1) * COLUMNS + (column as usize).min(COLUMNS - 1)
     }
 
-    /// Directions drawn, from the middle of things and from a point that lies in the plane of a place, follow their
-    /// density.
+    /// Directions drawn from the middle of things, and from a point in the plane of a place, follow their density.
     #[test]
     fn aimed_directions_follow_their_density() {
         let bright = bright();
@@ -263,8 +260,7 @@ mod tests {
             assert!((sum - 1.0).abs() < 1e-3, "the density sums to {sum}");
             let (mut counts, total) = (vec![0.0; expected.len()], 1 << 18);
             for number in 0..total {
-                // Points of two additive sequences and one of their mixture: spread, but without the structure of
-                // cells.
+                // Points of two additive sequences: spread, but without the structure of cells.
                 let u = |step: f64| (0.5 + f64::from(number) * step).fract();
                 let [a, b] = [u(0.754_877_666_246_692_8), u(0.569_840_290_998_053_3)];
                 let direction = match aiming.divided(a) {

@@ -30,9 +30,9 @@ pub(super) enum FoundBy {
     Hit { normal: Option<DVec3>, scattered: bool },
     /// The light was sampled.
     Sampled,
-    /// A path from the light was met.
+    /// A path from the light was hit.
     Connected,
-    /// Photons were gathered, or one was met where it had landed.
+    /// Photons were gathered, or one was hit where it had landed.
     Gathered,
     /// A photon was shown to the camera.
     Splatted,

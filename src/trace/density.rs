@@ -15,8 +15,7 @@ use serde::{Deserialize, Serialize};
 pub struct SampleDensity {
     /// Cells along both sides, 1 or more. Each has as many pixels as any other, or one more.
     pub cells: [u32; 2],
-    /// Of each cell, row by row, the power of two by which it takes more samples, from [`LEAST`](Self::LEAST) to
-    /// [`MOST`](Self::MOST).
+    /// Of each cell, row by row, the power of two of its samples, [`LEAST`](Self::LEAST) to [`MOST`](Self::MOST).
     pub powers: Vec<i8>,
 }
 

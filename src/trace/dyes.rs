@@ -13,7 +13,6 @@ use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Emission, Lanes, Quanti
 const LEAST: f64 = 0.05;
 const MOST: f64 = 0.75;
 
-/// The dyes of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Dyes {
     /// The number of the first dye of each material, and of one more.
@@ -26,12 +25,6 @@ pub(super) struct Dyes {
     lights: usize,
     /// The matte white surface at which paths look for what excites a dye: `excitations` know how much that absorbs.
     pub(super) white: Material<Table>,
-}
-
-/// What shines: a light or a dye.
-struct Source<'a> {
-    curve: &'a Curve,
-    emission: Arc<Emission>,
 }
 
 impl Dyes {
@@ -50,16 +43,13 @@ impl Dyes {
         let lights: Vec<&Curve> = scene.lights.iter().map(|light| light.emission()).collect();
         *basis = basis.clone().exciting(&dyes, &lights);
         let mut emissions = Distinct::default();
-        let mut source = |curve| {
-            let emission = emissions.of(curve, |curve| Arc::new(Emission::new(curve, basis.color_space())));
-            Source { curve, emission }
-        };
+        let mut emission = |curve| emissions.of(curve, |curve| Arc::new(Emission::new(curve, basis.color_space())));
         let curves = lights.iter().copied().chain(dyes.iter().map(|dye| &dye.emission));
-        let sources: Vec<Source> = curves.map(&mut source).collect();
+        let sources: Vec<(&Curve, Arc<Emission>)> = curves.map(|curve| (curve, emission(curve))).collect();
         let of_dye = |dye: &Dye| {
             let (dye, mut distinct) = (dye.excitable(), Distinct::default());
-            let of = |source: &Source| distinct.of(source.curve, |_| basis.excitation(&dye, &source.emission));
-            sources.iter().map(of).collect()
+            let mut of = |curve, emission| distinct.of(curve, |_| basis.excitation(&dye, emission));
+            sources.iter().map(|(curve, emission)| of(*curve, emission)).collect()
         };
         let share = |dye: &Dye| {
             let absorbed = basis.tabulate(Quantity::Excitation, &dye.absorption);
@@ -96,8 +86,7 @@ impl Dyes {
         &self.excitations[dye][source]
     }
 
-    /// The most that `number` answers for any dye which a light of an emission excites, told the dye as a source and
-    /// its lanes.
+    /// The most that `number` returns for a dye, as a source with its lanes, which light of an emission excites.
     pub(super) fn most_excited<const N: usize>(
         &self,
         light: LightId,

@@ -18,8 +18,7 @@ pub(super) enum FirstLobe {
 
 impl FirstLobe {
     /// Of a material that scatters light from the unit vector `wi` in every direction, through the surface or not.
-    /// Where it reflects by both lobes, they are held against each other in a white light: exactly where each lane is a
-    /// channel of the film.
+    /// Where it reflects by both lobes, these are compared in white light: exact where each lane is a film channel.
     pub(super) fn scattered<const N: usize>(
         white: Option<&White>,
         material: &Material<Table>,

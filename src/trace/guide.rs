@@ -6,8 +6,7 @@ use crate::math::Distribution2d;
 
 /// Cells along each side of the square.
 const SIDE: usize = 64;
-/// Share of the photons that is sent everywhere, whatever was learned: what was missed must not come back much too
-/// bright.
+/// Share of the photons that is sent everywhere, whatever was learned: what was missed must not be much too bright.
 const EVERYWHERE: f64 = 0.2;
 
 /// A density on the unit square, constant in each of its cells.
@@ -91,7 +90,6 @@ impl Guide {
         1.0 / ((SIDE * SIDE) as f64 * (0..SIDE * SIDE).map(|cell| probability(cell) * probability(cell)).sum::<f64>())
     }
 
-    /// The density of places drawn.
     pub(super) fn density(&self, place: [f64; 2]) -> f64 {
         self.cells.density(place)
     }
@@ -107,7 +105,6 @@ fn touches_disc(cell: usize) -> bool {
     x * x + y * y < 1.0
 }
 
-/// The number of a place's cell.
 pub(super) fn cell_of(place: [f64; 2]) -> usize {
     let [column, row] = place.map(|x| ((x * SIDE as f64) as usize).min(SIDE - 1));
     row * SIDE + column

@@ -81,8 +81,7 @@ impl CatcherLight<f64> {
         Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
     }
 
-    /// What the image covers there: the part of the luminance that other objects take, times the share of the pixel; 0
-    /// where light is added.
+    /// The alpha there: the share of the luminance that other objects take, times that of the pixel; 0 of more light.
     pub(super) fn coverage(&self) -> f64 {
         (self.share * taken(self.with, self.without)).clamp(0.0, self.share)
     }
@@ -96,7 +95,6 @@ pub(super) const STOKES: usize = 4;
 pub(super) const OF_A_HALF: usize = 4;
 
 impl Layers {
-    /// The layers that a scene asks for.
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis) -> Self {
         let color_space = scene.film.color_space;
         let (luminance, film_white) = (color_space.to_xyz()[1], apply(&color_space.of_xyz(), color_space.white()));
@@ -145,7 +143,6 @@ impl Layers {
         self.ids.iter().map(|(matte, _)| Manifest::new(matte.name(), names(scene, *matte))).collect()
     }
 
-    /// Whether there are none.
     pub(super) fn is_empty(&self) -> bool {
         self.wanted.is_empty() && self.caught.is_none() && self.spectrum.is_none()
     }
@@ -167,7 +164,6 @@ impl Layers {
         [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
     }
 
-    /// Whether there are shadow catchers.
     pub(super) fn catches(&self) -> bool {
         self.caught.is_some()
     }
@@ -256,7 +252,6 @@ impl Layers {
         }
     }
 
-    /// How bright a color is.
     pub(super) fn luminance_of(&self, rgb: &[f64; 3]) -> f64 {
         (0..3).map(|channel| self.luminance[channel] * rgb[channel]).sum()
     }

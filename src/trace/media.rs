@@ -21,6 +21,9 @@ pub(super) struct Media {
     len: u8,
 }
 
+/// Whether an object counts.
+type Counts<'a> = &'a dyn Fn(u32) -> bool;
+
 /// What crossing a surface does to the media of a ray.
 #[derive(Clone, Copy)]
 pub(super) struct Boundary {
@@ -55,12 +58,7 @@ impl Media {
     }
 
     /// The media around a point, of those objects that count. Walks begin near `direction`.
-    pub(super) fn around_of(
-        scene: &Scene<Table>,
-        start: DVec3,
-        direction: DVec3,
-        counts: &dyn Fn(u32) -> bool,
-    ) -> Self {
+    pub(super) fn around_of(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Self {
         let is_bounded = |object: u32| scene.objects[object as usize].shape.is_bounded() && counts(object);
         let left = Self::left_by(scene, start, aside(direction), &is_bounded);
         let mut media = Self::default();
@@ -74,12 +72,7 @@ impl Media {
     }
 
     /// How much more often a walk to infinity leaves bodies of each medium than it enters them.
-    fn left_by(
-        scene: &Scene<Table>,
-        start: DVec3,
-        direction: DVec3,
-        counts: &dyn Fn(u32) -> bool,
-    ) -> Vec<(MaterialId, i32)> {
+    fn left_by(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
         for MediumChange { material, enters } in medium_changes(scene, Ray { origin: start, direction }, None, counts) {
             let step = if enters { -1 } else { 1 };
@@ -92,7 +85,7 @@ impl Media {
     }
 
     /// The media after walking from one point to another along a straight line, through those objects that count.
-    pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: &dyn Fn(u32) -> bool) -> Self {
+    pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: Counts) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
         medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
     }
@@ -102,8 +95,7 @@ impl Media {
         strongest(scene, self.materials[..self.len as usize].iter().copied())
     }
 
-    /// What a ray meets that crosses the surface of a body; none if it leaves a body it never entered, or enters more
-    /// different ones than there is room for.
+    /// What a ray hits that crosses a body's surface; none if it never entered the body, or there is no room for more.
     fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let (here, at) = (self.inside(scene), self.place(material));
         let beyond = if enters {
@@ -128,7 +120,7 @@ impl Media {
         if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
-    /// What a ray of a direction meets that crosses a surface of any material, which may bound no medium; and whether
+    /// What a ray of a direction hits that crosses a surface of any material, which may bound no medium; and whether
     /// the bodies around the ray fit to it.
     pub(super) fn at_surface(
         &self,
@@ -195,7 +187,7 @@ fn medium_changes(
     scene: &Scene<Table>,
     mut ray: Ray,
     to: Option<DVec3>,
-    counts: &dyn Fn(u32) -> bool,
+    counts: Counts,
 ) -> impl Iterator<Item = MediumChange> {
     let surfaces = std::iter::from_fn(move || {
         let left = to.map_or(f64::INFINITY, |to| (to - ray.origin).dot(ray.direction));
@@ -214,12 +206,7 @@ fn medium_changes(
 ///
 /// What is between two planes that look away from each other is a slab: behind which of them one is everywhere does not
 /// count. So many are taken off as lie around at infinity, forward or backward, or where all planes of the medium look.
-fn behind_planes(
-    scene: &Scene<Table>,
-    start: DVec3,
-    direction: DVec3,
-    counts: &dyn Fn(u32) -> bool,
-) -> Vec<(MaterialId, u32)> {
+fn behind_planes(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Vec<(MaterialId, u32)> {
     let mut planes: Vec<(MaterialId, Vec<&Plane>)> = Vec::new();
     for (number, object) in scene.unbounded().filter(|(number, _)| counts(*number)) {
         let is_medium = scene.material_of(number).medium().is_some();
@@ -245,7 +232,7 @@ fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> O
 }
 
 /// A unit vector near another. One that a scene gives, toward what a camera looks at or straight up, may lead exactly
-/// to a corner of an outline, which is met once where a body is entered and left, or neither.
+/// to a corner of an outline, which is hit once where a body is entered and left, or neither.
 fn aside(direction: DVec3) -> DVec3 {
     unit(Frame::about(direction).to_world(DVec3::new(7.31e-4, 4.19e-4, 1.0)))
 }

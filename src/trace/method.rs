@@ -33,8 +33,7 @@ pub struct Method {
     pub bright: Option<BrightPlaces>,
     /// Whether light that surfaces send each other is also looked for at vertices of paths from the lights.
     pub light_vertices: bool,
-    /// Where paths from suns, and from what is bright in an image of the sky, start for that; light of others is left
-    /// to the camera's paths.
+    /// Where paths of suns and of bright parts of skies start for that; paths from the camera find the other light.
     pub sunlit: Vec<SunlitPlaces>,
     /// Openings through which paths from skies start for that.
     pub openings: SkyOpenings,
@@ -122,8 +121,7 @@ pub struct LightPass {
     pub openings: Vec<Opening>,
     /// How smooth the objects are that they are sent to.
     pub to: Vec<Smoothness>,
-    /// How those caustics are found that the camera does not see straight; none leaves them to the camera's rays and
-    /// chance.
+    /// How caustics are found that the camera does not see straight; none leaves them to the camera's rays.
     pub map: Option<MapPasses>,
 }
 
@@ -145,11 +143,9 @@ pub struct MapPasses {
     pub count: u32,
     /// Photons of each, about.
     pub photons: u64,
-    /// Photons are gathered within this radius, in pixels as wide as the path from the camera is long. A stop rule that
-    /// takes more samples makes it smaller.
+    /// Radius of gathered photons in pixels at the path's length; smaller where a stop rule takes more samples.
     pub radius: f64,
-    /// The chance of each place that a path reaches that photons are gathered there, above 0 to 1; what is found counts
-    /// for the others.
+    /// The chance that photons are gathered at a place that a path reaches, above 0 to 1; they count for the others.
     pub chance: f64,
 }
 
@@ -167,11 +163,10 @@ pub enum Transport {
     Deterministic {
         /// Smallest weight that is followed.
         cutoff: f64,
-        /// Surfaces that one camera sample may meet; beyond them it goes on by chance, to the same mean.
+        /// Surfaces that one camera sample may hit; beyond them it goes on by chance, to the same mean.
         most: u64,
     },
-    /// All while the weight is above `split`, then one; below `roulette` a path goes on with probability weight /
-    /// roulette.
+    /// All while the weight is above `split`, then one; below `roulette` a path survives with weight / roulette.
     Random {
         /// Weight above which all branches are followed and all lights are aimed at.
         split: f64,

@@ -7,7 +7,7 @@
 //! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
 //! 4. The walker is a loop over pending rays: it follows all branches while the weight is large, then one, then
 //!    plays roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
-//! 5. Light that goes straight on, through holes and panes, makes no other kind of path: next-event estimation and
+//! 5. Light that passes through holes and panes makes no other kind of path: next-event estimation and
 //!    photons look through them.
 //! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
 //!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
@@ -73,8 +73,8 @@ pub use photon::light_paths_reach;
 pub use photon_focus::Smoothness;
 pub use probe::{
     Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, RoomLight, SampleWorth,
-    SeenLight, adaptive, branching, gathered_worth, photon_times, photons_within, photons_worth, pilot_noise, piloted,
-    polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_light, seen_photons,
+    adaptive, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth, pilot_noise,
+    piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_photons,
     with_light_vertices,
 };
 pub use replicates::REPLICATES;

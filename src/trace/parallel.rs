@@ -20,7 +20,6 @@ pub(super) fn in_parallel<T: Send>(count: usize, work: &(dyn Fn(usize) -> T + Sy
     (0..count).into_par_iter().with_max_len(1).map(work).collect()
 }
 
-/// Does work on each of some items.
 pub(super) fn for_each_in_parallel<T: Send>(items: Vec<T>, work: &(dyn Fn(T) + Sync)) {
     items.into_par_iter().with_max_len(1).for_each(work);
 }

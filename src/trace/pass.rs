@@ -58,19 +58,9 @@ impl Pass {
         }
     }
 
-    /// What its photons count: as much as its samples, where every pass sends some.
-    pub(super) fn weight_of_photons(&self) -> f64 {
-        self.replicate.map_or(1.0, |_| self.numbers.len() as f64)
-    }
-
     /// Whether it is of the first half of all replicates, where there are some.
     pub(super) fn is_of_first_half(&self) -> Option<bool> {
         self.replicate.map(|replicate| replicate < HALF)
-    }
-
-    /// Whether one of its samples is of the first half of all.
-    pub(super) fn is_early(&self, world: &World, number: u32) -> bool {
-        self.is_of_first_half().unwrap_or(number < world.method.samples.div_ceil(2))
     }
 }
 

@@ -69,8 +69,7 @@ impl PathStart {
         }
     }
 
-    /// The start of a path, for four random numbers; its factor makes flux of the emission. None where the light does
-    /// not shine.
+    /// The start of a path, for four random numbers; its factor makes flux of the emission. None where it is dark.
     pub(super) fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
         match self {
             Self::Nowhere => None,

@@ -167,8 +167,7 @@ fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     }
 }
 
-/// The ball within which photons are sent to surfaces that have no end; none where the camera sees nothing by way of
-/// them.
+/// The ball within which photons are sent to surfaces without end; none where these show the camera nothing.
 pub(super) fn reach(places: &[FocusPlace]) -> Option<Ball> {
     let places: Vec<FocusPlace> = places.iter().filter(|place| place.endless).copied().collect();
     (places.len() >= FEWEST).then(|| around(&places, REACH))
@@ -203,8 +202,8 @@ pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball,
 
 /// A ball around some places, so many times as large as it must be.
 fn around(places: &[FocusPlace], wider: f64) -> Ball {
-    let bounds = Bounds::around(places.iter().map(|place| place.at));
-    Ball { center: bounds.center(), radius: 0.5 * wider * (bounds.max - bounds.min).length() }
+    let ball = Ball::of_box(&Bounds::around(places.iter().map(|place| place.at)));
+    Ball { radius: wider * ball.radius, ..ball }
 }
 
 #[cfg(test)]

@@ -15,7 +15,6 @@ use crate::spectrum::Table;
 pub(super) struct PhotonTarget {
     pub(super) light: LightId,
     smoothness: Smoothness,
-    /// How many photons are sent.
     pub(super) photons: u64,
     /// The share of those of the whole ball; of a part, it is worth as much however small it is.
     share: f64,
@@ -45,8 +44,7 @@ pub(super) struct PhotonTargets {
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to: of more objects, neighbors share one; and most targets of all lights
-/// together.
+/// Most balls of objects that photons are sent to: of more, neighbors share one; and most targets of all lights.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
 /// Most parts of a ball, and of all balls of all lights if that is more than one for each.
@@ -100,7 +98,6 @@ impl PhotonTargets {
         (!targets.targets.is_empty()).then_some(targets)
     }
 
-    /// How many photons are sent in all.
     pub(super) fn photons(&self) -> u64 {
         self.targets.iter().map(|target| target.photons).sum()
     }
@@ -195,8 +192,7 @@ impl PhotonTargets {
     /// The start of a photon of a target for a place that its guide has drawn and two random numbers; none where the
     /// light does not shine.
     ///
-    /// Its flux is divided by how many photons all targets of the light send along the same line: their beams may
-    /// overlap.
+    /// Its flux is divided by how many photons all targets of the light send along that line: beams may overlap.
     pub(super) fn sample_le(
         &self,
         scene: &Scene<Table>,

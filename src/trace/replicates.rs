@@ -28,7 +28,7 @@ pub(super) struct Replicates {
 /// How much of a pixel is covered: sums over samples.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct CoverageSums {
-    /// Samples that met something, of those that are added and subtracted.
+    /// Samples that hit something, of those that are added and subtracted.
     met: [u32; 2],
     /// The luminance of shadow catchers with all objects and with those of the plate alone, and samples of them.
     caught: [f32; 3],
@@ -138,8 +138,7 @@ impl Products {
 }
 
 impl Replicates {
-    /// Of so many pixels; some samples of theirs are subtracted, or none is, photons are gathered, or are not, and
-    /// there are shadow catchers, or none.
+    /// Of so many pixels; of samples that are subtracted, of gathered photons and of shadow catchers if there are any.
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { ReplicateSums::new(pixels, is_signed) } else { ReplicateSums::default() };
         let covered = if catches { vec![[CoverageSums::default(); REPLICATES]; pixels] } else { Vec::new() };
@@ -163,14 +162,11 @@ impl Replicates {
             && self.covered.len() == other.covered.len()
     }
 
-    /// Adds the samples of a pixel in one pass of a replicate: those that are added, and those that are subtracted.
-    pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
+    /// Adds the samples of a pixel in one pass of a replicate, and by how much gathered photons blur them: of both,
+    /// those that are added, and those that are subtracted.
+    pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], blurs: [&PassSum; 2]) {
         self.light.add(pixel, replicate, samples);
-    }
-
-    /// Adds by how much gathered photons blur them.
-    pub(super) fn add_blur(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
-        self.blur.add(pixel, replicate, samples);
+        self.blur.add(pixel, replicate, blurs);
     }
 
     /// Adds what photons of a replicate show in a pixel.
@@ -198,8 +194,7 @@ impl Replicates {
         self.covered[pixel][replicate as usize].splatted += luminance as f32;
     }
 
-    /// The alpha of a pixel as each replicate has it, after so many samples of each; none where no shadow catchers make
-    /// noise of it.
+    /// The alpha of a pixel in each replicate, after so many samples of each; none without shadow catchers.
     pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
         let of = |replicate: usize| {
             let weights = self.light.weights(pixel, replicate, filter);

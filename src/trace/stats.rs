@@ -11,17 +11,16 @@ pub(super) struct Stats {
     pub(super) rays: u64,
     /// Weight of the branches that deterministic transport did not follow.
     pub(super) dropped: f64,
-    /// Weight of paths that were cut by limits of bounces, or met more surfaces than any path should.
+    /// Weight of paths that were cut by limits of bounces, or hit more surfaces than any path should.
     pub(super) stopped: f64,
     /// Surfaces of bodies that were left without having been entered.
     pub(super) unmatched: u64,
-    /// Surfaces at which lanes parted.
     pub(super) partings: u64,
     /// All light that was seen, as X + Y + Z.
     pub(super) light: f64,
     /// Most of it that polarization may have changed.
     pub(super) polarization: f64,
-    /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
+    /// Camera samples of deterministic transport that hit so many surfaces that they went on by chance.
     pub(super) by_chance: u64,
     /// Surfaces from which a vertex of a light path was looked at.
     pub(super) resampled: u64,

@@ -50,7 +50,7 @@ pub struct World {
     pub(super) has_mattes: bool,
     /// The lobes of each material.
     pub(super) lobes: Vec<Lobes>,
-    /// Whether each object lets light straight on; empty where none does.
+    /// Whether each object lets light pass through; empty where none does.
     see_through: Vec<bool>,
     /// What bounces are aimed at.
     pub(super) bright: Option<Bright>,
@@ -150,8 +150,7 @@ impl World {
         world
     }
 
-    /// This world with light vertices, for which paths from suns start where some places in their light are, and those
-    /// from skies through some openings.
+    /// This world with light vertices: paths of suns start toward places in their light, of skies through openings.
     pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: SkyOpenings) -> Self {
         let mut world = self.clone();
         world.method = Method { light_vertices: true, sunlit, openings, ..world.method };
@@ -160,10 +159,9 @@ impl World {
     }
 
     /// This world with more samples at some places and fewer at others.
-    pub fn with_density(&self, density: Option<SampleDensity>) -> Self {
-        let mut world = self.clone();
-        world.method.density = density;
-        world
+    pub fn with_density(mut self, density: Option<SampleDensity>) -> Self {
+        self.method.density = density;
+        self
     }
 
     /// How many samples a pixel of the format takes.
@@ -173,14 +171,12 @@ impl World {
     }
 
     /// This world with polarization traced or not.
-    pub fn with_polarization(&self, polarization: Polarizing) -> Self {
-        let mut world = self.clone();
-        world.method.polarization = polarization;
-        world
+    pub fn with_polarization(mut self, polarization: Polarizing) -> Self {
+        self.method.polarization = polarization;
+        self
     }
 
-    /// This world with the whole format in view, whatever part of it or more is made: what is learned there is the same
-    /// for all parts.
+    /// This world with the whole format in view, whatever part of it is made: all parts learn the same.
     pub fn of_the_format(&self) -> Self {
         let mut world = self.clone();
         world.scene.film = world.scene.film.of_the_format();
@@ -207,9 +203,8 @@ impl World {
     fn choose_photon_targets(&mut self) {
         (self.photon_targets, self.map_targets) = (None, None);
         let Some(pass) = &self.method.light_pass else { return };
-        let through = |light: &Light<Table>| !pass.openings.is_empty() && light.sends_photons_through_openings();
-        let sends = |light: &Light<Table>| light.sends_photons() || through(light);
-        let senders: Vec<LightId> = pass.lights.iter().copied().filter(|&id| sends(&self.scene.lights[id])).collect();
+        let sends = |id: &LightId| self.scene.lights[*id].sends_photons_with(&pass.openings);
+        let senders: Vec<LightId> = pass.lights.iter().copied().filter(sends).collect();
         let places = places(&self.scene, &senders, &pass.openings, &pass.to);
         let senders: Vec<_> = senders.into_iter().map(|light| (light, self.luminance(light))).collect();
         let targets_of =
@@ -240,19 +235,18 @@ impl World {
         self.dyes.is_some()
     }
 
-    /// Whether any object lets light straight on.
+    /// Whether any object lets light pass through.
     pub(super) fn has_see_through(&self) -> bool {
         !self.see_through.is_empty()
     }
 
-    /// Whether an object lets light straight on.
+    /// Whether an object lets light pass through.
     pub(super) fn is_see_through(&self, object: u32) -> bool {
         self.see_through.get(object as usize).is_some_and(|&on| on)
     }
 
     /// Whether paths for light vertices end at an object: where interpolated normals bend glass or mirrors, whose light
-    /// cannot be followed forward alike, and where light crosses rough surfaces. What comes by way of it is left to
-    /// paths from the camera.
+    /// cannot be followed forward alike, and where light crosses rough surfaces. Paths from the camera find it.
     pub(super) fn ends_light_paths(&self, object: u32) -> bool {
         let object = &self.scene.objects[object as usize];
         let lobes = self.lobes[object.material as usize];
@@ -271,7 +265,6 @@ impl World {
         if amount > 0.0 { self.amount(changed) / amount - 1.0 } else { 0.0 }
     }
 
-    /// What the camera sees of an object.
     pub(super) fn visibility(&self, object: u32) -> Visibility {
         self.scene.objects[object as usize].visibility
     }
@@ -302,7 +295,7 @@ impl World {
         self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
     }
 
-    /// The media around a surface that the camera's ray has met, of bodies that the camera does not see.
+    /// The media around a surface that the camera's ray has hit, of bodies that the camera does not see.
     #[cold]
     pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
@@ -352,23 +345,21 @@ impl World {
         self.map_targets.is_some()
     }
 
-    /// Whether a light sends photons.
     pub(super) fn sends_photons(&self, light: LightId) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
 
-    /// Whether light paths for light vertices start along a ray that meets a light.
+    /// Whether light paths for light vertices start along a ray that hits a light.
     pub(super) fn is_found_by_light_paths(&self, light: LightId, ray: &Ray) -> bool {
         self.path_starts.get(light).is_some_and(|start| start.covers(&self.scene.lights[light], ray))
     }
 
-    /// Whether photons bring the light of a ray that meets a light.
+    /// Whether photons bring the light of a ray that hits a light.
     pub(super) fn is_found_by_photons(&self, light: LightId, ray: &Ray) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.start_along(&self.scene, light, ray))
     }
 }
 
-/// How paths of each light start.
 fn path_starts(scene: &Scene<Table>, method: &Method) -> Arc<[PathStart]> {
     (0..scene.lights.len()).map(|id| PathStart::of(scene, id, &method.sunlit, &method.openings.openings)).collect()
 }

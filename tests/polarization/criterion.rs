@@ -5,7 +5,7 @@ use std::fmt::Write;
 use abbe::plan::plan;
 use abbe::scene::Scene;
 use abbe::spectrum::Curve;
-use abbe::trace::{Method, Polarizing, Transport, polarization_error, prepare, seen_light};
+use abbe::trace::{Method, Polarizing, Transport, most_changed, polarization_error, prepare};
 
 use crate::support::random::Random;
 use crate::support::scenes::{film_of, scene};
@@ -105,7 +105,7 @@ fn polarization_stays_off_only_where_that_changes_little() {
             off += 1;
             kept += u32::from(error <= TOLERATED);
             let averaged = Method { polarization: Polarizing::Averaged, ..planned.method.clone() };
-            if seen_light(&prepare(&compiled, averaged)).change_of_part() == 0.0 && is_exact {
+            if most_changed(&prepare(&compiled, averaged)) == 0.0 && is_exact {
                 assert!(error < 1e-6, "scene {number}: {error} where none was possible\n{text}");
             }
         } else {

@@ -5,8 +5,8 @@ use crate::shape::{Shape, SurfacePoint};
 
 /// A ray from outside of a box to the place at these shares of its sides, by way of a ball around it.
 pub(in crate::scene) fn ray_into(bounds: &Bounds, place: DVec3, on_ball: [f64; 2]) -> Option<Ray> {
-    let size = (bounds.max - bounds.min).length();
-    let target = bounds.min + (bounds.max - bounds.min) * place;
+    let size = bounds.size().length();
+    let target = bounds.min + bounds.size() * place;
     let direction = (target - (bounds.center() + ball_surface(on_ball) * size)).try_normalize()?;
     Some(Ray { origin: target - direction * (2.0 * size), direction })
 }

@@ -131,7 +131,7 @@ fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
         let ([x, y, z, _], [u, v, ..]) =
             (sampler.four_plain(BranchKey::CAMERA, 0), sampler.four_plain(BranchKey::CAMERA, 1));
         let bounds = boxes[number % boxes.len()];
-        let origin = bounds.min + (bounds.max - bounds.min) * DVec3::new(x, y, z);
+        let origin = bounds.min + bounds.size() * DVec3::new(x, y, z);
         let sample = light.sample_li(&SurfacePoint::in_space(origin), ball_surface([u, v]), [z, x]);
         sample.is_some_and(|sample| !view.is_occluded(&sample.ray, f64::INFINITY, None))
     })

@@ -87,7 +87,7 @@ fn share_a_surface(body: &Object, other: &Object) -> bool {
         return false;
     }
     let Some(bounds) = body.shape.bounds() else { return false };
-    let size = (bounds.max - bounds.min).length();
+    let size = bounds.size().length();
     let step = 1e-3 * size;
     (0..RAYS).any(|number| {
         let [u, v, x, y] = Sampler::new(0, [0, 0], number).four(BranchKey::CAMERA, 0);

@@ -64,7 +64,7 @@ fn pair(counting: &[bool], one: &Boxed, other: &Boxed) -> Option<(usize, usize)>
 
 /// How far apart surfaces of a body and another may lie in one place.
 fn reach(of: &Bounds) -> f64 {
-    (of.max - of.min).max_element() * NEAR
+    of.size().max_element() * NEAR
 }
 
 /// Whether a body's box and another's meet.
@@ -86,7 +86,7 @@ struct Grid {
 impl Grid {
     fn new(boxes: &[Option<Bounds>]) -> Self {
         let around = Bounds::around(boxes.iter().flatten().map(Bounds::center));
-        let size = around.max - around.min;
+        let size = around.size();
         let along = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
         let across = [(along + 1) % 3, (along + 2) % 3];
         let cells = (boxes.len() as f64).cbrt().ceil();

@@ -115,11 +115,11 @@ fn cube(value: Value) -> Option<Shape> {
 /// where it stands.
 pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };
-    let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.max - bounds.min);
+    let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.size());
     let edges = match shape {
         Shape::Cube(cube) => Some(cube.edges()),
         Shape::Sphere(_) => {
-            let around = shape.bounds().map(|around| around.max - around.min);
+            let around = shape.bounds().map(|around| around.size());
             around.map(|size| [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * size))
         }
         _ => None,

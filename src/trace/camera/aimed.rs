@@ -19,8 +19,7 @@ pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
 
 /// The ways on from a surface whose bounces are aimed.
 ///
-/// Roulette is to end aimed paths as often as others: what their density takes from the weight is no measure of
-/// importance.
+/// Roulette ends aimed paths as often as others: what their density takes from the weight is no importance.
 pub fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
     let Interaction { material, context, flat, .. } = at;
     let divided = aiming.divided(u[0]);

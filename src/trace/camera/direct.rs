@@ -137,7 +137,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let flat = if normal.dot(context.wo) < 0.0 { -normal } else { normal };
         let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(at.material, context, flat, wi)?;
         if !std::ptr::eq(at, self.at) {
-            // Where photons bring what the path meets, it finds no light by itself.
+            // Where photons bring what the path hits, it finds no light by itself.
             bsdf_pdf = 0.0;
         }
         let (light, probability) = (drawn.light, drawn.probability * side.chance.unwrap_or(1.0));
@@ -159,14 +159,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let context = &at.context;
         let ends = RayEnds { left: self.path.left, light: *object, part: *part };
         let (distance, inside, last_occluder) = (*distance, side.inside, self.last_occluder);
-        let segment = VisibilityTest {
-            ray,
-            distance,
-            ends,
-            inside,
-            occluders: Occluders::Objects(self.path.among),
-            last_occluder,
-        };
+        let occluders = Occluders::Objects(self.path.among);
+        let segment = VisibilityTest { ray, distance, ends, inside, occluders, last_occluder };
         let wi = ray.direction;
         let light_of = || world.scene.lights[*light].toward(context.draw, wi, sample.uv);
         let mut bsdf_cos = *bsdf_cos;

@@ -1,4 +1,4 @@
-//! Light that a path meets by itself: of the sky, or of a surface that shines.
+//! Light that a path hits by itself: of the sky, or of a surface that shines.
 
 use super::direct::weight_of_hit;
 use crate::light::{Light, LightId};
@@ -7,7 +7,6 @@ use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
 use crate::trace::walk::{Path, Polarization, SurfaceHit};
 
-/// An emitter that a path hit.
 pub struct EmitterHit<const N: usize, P> {
     pub light: LightId,
     pub lanes: Lanes<N>,
@@ -32,7 +31,7 @@ impl<const N: usize, P: Polarization<N>> EmitterHit<N, P> {
         Some(Self { light, lanes, normal: None, polarization: polarization.unwrap_or(path.polarization) })
     }
 
-    /// Of a surface that a path has met; none of a side that is dark.
+    /// Of a surface that a path has hit; none of a side that is dark.
     pub fn of_surface(world: &World, draw: &Draw<N>, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Option<Self> {
         let SurfaceHit { hit, point } = surface_hit;
         let object = &world.scene.objects[hit.object as usize];

@@ -1,8 +1,9 @@
 //! What one camera sample leaves in the layers.
 
 use super::numbers::ALBEDO;
+use super::surface::Surface;
 use crate::film::{FirstSurface, Layer};
-use crate::material::{Branch, Straight};
+use crate::material::Branch;
 use crate::math::Sampler;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::World;
@@ -11,7 +12,7 @@ use crate::trace::layers::Layers;
 use crate::trace::photon::{Gathered, PhotonShare, PhotonSpectrum};
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::SpectrumSample;
-use crate::trace::walk::{Among, Audit, Interaction, Path, Polarization, SurfaceHit, shading};
+use crate::trace::walk::{Among, Audit, Interaction, Path, Polarization, shading};
 
 /// A row of numbers, filled by one camera sample after another.
 pub struct LayerSample<'a, const N: usize> {
@@ -21,9 +22,9 @@ pub struct LayerSample<'a, const N: usize> {
     spectrum: Option<SpectrumSample<'a, N>>,
     /// The largest share of the sample that a surface had so far: places are those of that surface.
     share: f64,
-    /// How likely the camera ray met what it has met, of surfaces with holes and what is behind them.
+    /// How likely the camera ray hit what it has hit, of surfaces with holes and what is behind them.
     chance: f64,
-    /// The object that the camera ray met.
+    /// The object that the camera ray hit.
     object: Option<u32>,
     branches: Vec<Branch<N>>,
 }
@@ -31,21 +32,8 @@ pub struct LayerSample<'a, const N: usize> {
 /// What a camera sample has left.
 pub struct SampleRow<'a> {
     pub row: &'a [f64],
-    /// The object that the camera ray met, if any.
+    /// The object that the camera ray hit, if any.
     pub object: Option<u32>,
-}
-
-/// A surface that a path has met.
-pub struct LayerHit<'a, const N: usize, P> {
-    pub path: &'a Path<N, P>,
-    pub surface_hit: &'a SurfaceHit,
-    pub at: &'a Interaction<'a, N>,
-    /// What goes straight on.
-    pub straight: Option<&'a Straight<N>>,
-    /// Whether it is what the camera ray meets.
-    pub is_met_first: bool,
-    /// What the throughput was divided by, as the path did not go through the surface's holes.
-    pub chance: f64,
 }
 
 impl<'a, const N: usize> LayerSample<'a, N> {
@@ -53,15 +41,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     pub fn of(world: &'a World) -> Option<Self> {
         let Layers { numbers, .. } = world.layers;
         let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
-        (!world.layers.is_empty()).then(|| Self {
-            world,
-            row,
-            spectrum,
-            share: 0.0,
-            chance: 1.0,
-            object: None,
-            branches: Vec::new(),
-        })
+        let (share, chance, object, branches) = (0.0, 1.0, None, Vec::new());
+        (!world.layers.is_empty()).then_some(Self { world, row, spectrum, share, chance, object, branches })
     }
 
     /// Begins another sample.
@@ -72,7 +53,6 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         self.object = None;
     }
 
-    /// What the sample has left.
     pub fn left(&self) -> SampleRow<'_> {
         SampleRow { row: &self.row, object: self.object }
     }
@@ -84,14 +64,13 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Remembers the object that the camera ray met, or none if it went through a hole of one, and how likely that was.
+    /// Remembers the object that the camera ray hit, or none if it went through a hole of one, and how likely that was.
     pub fn choose(&mut self, met: Option<u32>, chance: f64) {
         self.object = met;
         self.chance *= chance;
     }
 
-    /// Forgets all that the sample has left but the light of a shadow catcher, with all objects and with those of the
-    /// plate alone.
+    /// Forgets what the sample has left but the light of a shadow catcher, with all objects and with the plate's alone.
     pub fn catch(&mut self, with_and_without: [[f64; 3]; 2]) {
         self.begin();
         if with_and_without.as_flattened().iter().all(|x| x.is_finite()) {
@@ -150,24 +129,29 @@ impl<'a, const N: usize> LayerSample<'a, N> {
     }
 
     /// Remembers a surface, if it is the first one.
-    pub fn meet<P: Polarization<N>>(&mut self, met: &LayerHit<N, P>, sampler: &Sampler) {
+    pub fn meet<P: Polarization<N>>(
+        &mut self,
+        path: &Path<N, P>,
+        at: &Interaction<N>,
+        surface: &Surface<N, P>,
+        sampler: &Sampler,
+    ) {
         let layers = &self.world.layers;
-        if met.path.among == Among::Plate {
+        if path.among == Among::Plate {
             return;
         }
         // A filter before the camera is no part of what a surface is.
         let unfiltered = 1.0 / self.world.scene.camera.transmittance();
-        let share = if layers.see_surfaces() { met.share(layers.first, unfiltered) } else { 0.0 };
+        let share = if layers.see_surfaces() { surface.share(path, at, layers.first, unfiltered) } else { 0.0 };
         if share <= 0.0 {
             return;
         }
-        let LayerHit { path, surface_hit, at, .. } = met;
         let normal = shading::plain_normal(at.point, at.context.wo);
         layers.add_to(Layer::Normal, &mut self.row, (share * normal).to_array());
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
-        // What a pane lets straight on is of it as what glass refracts is, unless what is behind counts by itself.
-        let panes = met.straight.filter(|_| layers.first == FirstSurface::Met).map(|straight| straight.panes);
-        // Of surfaces with holes and what is behind them, one has been met by chance: that is in its weight already.
+        // What passes through a pane is of it as what glass refracts is, unless what is behind counts by itself.
+        let panes = surface.through.filter(|_| layers.first == FirstSurface::Met).map(|through| through.straight.panes);
+        // Of surfaces with holes and what is behind them, one has been hit by chance: that is in its weight already.
         let chance = if layers.first == FirstSurface::Met { self.chance } else { 1.0 };
         let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x / chance);
         layers.add_to(Layer::Albedo, &mut self.row, albedo);
@@ -176,7 +160,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             let position = at.point.position;
             let object = &self.world.scene.objects[at.object as usize];
             self.place(Layer::Position, &position.to_array());
-            self.place(Layer::Uv, &object.chart_uv(&surface_hit.hit.intersection, at.point));
+            self.place(Layer::Uv, &object.chart_uv(&surface.surface_hit.hit.intersection, at.point));
         }
     }
 
@@ -216,26 +200,5 @@ impl<'a, const N: usize> LayerSample<'a, N> {
             (0..3).for_each(|channel| albedo[channel] += rgb[channel] / scale);
         }
         albedo
-    }
-}
-
-impl<const N: usize, P: Polarization<N>> LayerHit<'_, N, P> {
-    /// The share of the camera sample for which the surface is the first: `unfiltered` of the weight along its path.
-    fn share(&self, first: FirstSurface, unfiltered: f64) -> f64 {
-        let Self { path, at, .. } = self;
-        if first == FirstSurface::Met {
-            return f64::from(u8::from(self.is_met_first));
-        }
-        let is_smooth = at.lobes.has_delta() && !at.lobes.is_wide();
-        if !path.is_seen || is_smooth {
-            return 0.0;
-        }
-        let draw = at.context.draw;
-        let shares = draw.shares(path.parted);
-        let through =
-            |straight: &Straight<N>| path.throughput.through(straight.share()).weight(shares) / path.eta_scale;
-        // A surface covers what does not go through its holes, even if by chance all of the path was there.
-        let received = self.chance * path.weight(draw);
-        unfiltered * (received - self.straight.map_or(0.0, through)) / draw.siblings(path.parted)
     }
 }

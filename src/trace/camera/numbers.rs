@@ -7,11 +7,11 @@
 use crate::math::{BranchKey, Sampler};
 use crate::trace::walk::Path;
 
-/// Use of the camera's numbers, which have the first vertex's key: the place in the pixel, and that on the lens.
-const PLACE: u32 = 0;
-const LENS: u32 = 3;
-/// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, what the camera
-/// meets.
+/// Use of the camera's numbers, which have the first vertex's key: two for the place in the pixel and one for the
+/// wavelengths, and two for the place on the lens.
+pub const PLACE: u32 = 0;
+pub const LENS: u32 = 3;
+/// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, the first hit.
 const SCATTER: u32 = 1;
 /// Which vertices of light paths are looked at.
 pub const VERTEX: u32 = 5;
@@ -26,16 +26,6 @@ pub const FURTHER_LIGHTS: u32 = 16;
 /// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
 /// samples see so many different places that plain random numbers, which cost less, are taken.
 const SPREAD: u32 = 4;
-
-/// Two numbers for the place in the pixel, one for the wavelengths, and a spare one.
-pub fn film(sampler: &Sampler) -> [f64; 4] {
-    sampler.four(BranchKey::CAMERA, PLACE)
-}
-
-/// Two numbers for the place on the lens where the ray starts, and two spare ones.
-pub fn lens(sampler: &Sampler) -> [f64; 4] {
-    sampler.four(BranchKey::CAMERA, LENS)
-}
 
 /// At a surface that scatters widely: two numbers for the direction to a light, two for that of the bounce.
 pub fn scatter<const N: usize, P>(sampler: &Sampler, path: &Path<N, P>) -> [f64; 4] {

@@ -5,15 +5,15 @@ use std::rc::Rc;
 use super::aimed::{albedo, may_aim, scatter_aimed};
 use super::direct::DirectLighting;
 use super::emitter_hit::EmitterHit;
-use super::layer_sample::{LayerHit, LayerSample};
+use super::layer_sample::LayerSample;
 use super::numbers;
 use super::resampling::Resampling;
 use super::sensor::{Sensor, SensorEvent};
-use super::surface::{FirstMet, PathContinuation, Surface, Through};
+use super::surface::{FirstHit, PathContinuation, Surface, Through};
 use crate::film::{Layer, Sample};
 use crate::light::LightId;
 use crate::material::{Material, Straight};
-use crate::math::{DVec2, Sampler};
+use crate::math::{BranchKey, DVec2, Sampler};
 use crate::scene::Visibility;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
@@ -41,8 +41,7 @@ pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
     excitations: Vec<Rc<Excitation<N, P>>>,
 }
 
-/// Of the paths whose light is found at light vertices, those that go on where bounces are limited: they tell how much
-/// the limits leave out.
+/// Of the paths found at light vertices, those that go on where bounces are limited, to tell what limits leave out.
 const ACCOUNTED: f64 = 1.0 / 16.0;
 
 impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
@@ -53,7 +52,6 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         Self { walker, sensor, photons: None, light_vertices: None, draw, excitations: Vec::new() }
     }
 
-    /// With photons that are gathered.
     pub fn with_photons(self, photons: Option<&'a PhotonMap<N, P>>) -> Self {
         Self { photons, ..self }
     }
@@ -81,17 +79,17 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
-        let drawn = |numbers: fn(&Sampler) -> [f64; 4]| match world.method.transport {
+        let drawn = |purpose: u32| match world.method.transport {
             Transport::Deterministic { .. } => [0.5; 4],
-            Transport::Random { .. } => numbers(sampler),
+            Transport::Random { .. } => sampler.four(BranchKey::CAMERA, purpose),
         };
-        let [u, v, wavelength, _] = drawn(numbers::film);
+        let [u, v, wavelength, _] = drawn(numbers::PLACE);
         let place = world.scene.film.filter.place([u, v]);
         let film = DVec2::new(f64::from(x), f64::from(y)) + place;
         let is_subtracted = world.scene.film.filter.subtracts(place);
         let draw = self.draw.clone().unwrap_or_else(|| world.method.basis.draw(wavelength));
         let ray = if camera.has_lens() {
-            let [u, v, ..] = drawn(numbers::lens);
+            let [u, v, ..] = drawn(numbers::LENS);
             camera.lens_ray(film, [u, v])
         } else {
             camera.ray(film)
@@ -120,13 +118,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         std::mem::take(&mut self.sensor.blur)
     }
 
-    /// Whether the camera ray has met a shadow catcher.
+    /// Whether the camera ray has hit a shadow catcher.
     fn sees_shadow_catcher(&self) -> bool {
         let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
         object.is_some_and(|object| self.walker.world.visibility(object) == Visibility::ShadowCatcher)
     }
 
-    /// Holds the light of a path that met a shadow catcher against that of the same path among the objects of the plate
+    /// Holds the light of a path that hit a shadow catcher against that of the same path among the objects of the plate
     /// alone. Neither is seen in the image, which gets nothing, unless one is not finite.
     #[cold]
     fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> [f64; 3] {
@@ -170,7 +168,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.sensor.is_deaf = path.unlit;
         let before = self.sensor.rgb;
-        let Some(surface_hit) = self.walker.meet(path, draw) else {
+        let Some(surface_hit) = self.walker.next_hit(path, draw) else {
             self.background(path, draw);
             self.sensor.tell(world, path, draw, f64::INFINITY, before);
             return;
@@ -180,7 +178,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             Err(hidden) => {
                 self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
                 self.sensor.tell(world, path, draw, surface_hit.hit.intersection.t, before);
-                return self.walker.go_on_past(path, &surface_hit, &hidden);
+                return self.walker.pass_hidden(path, &surface_hit, &hidden);
             }
         };
         let mut through = self.walker.straight(path, draw, &surface_hit);
@@ -205,11 +203,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         path.vertices += 1;
         if is_held_out {
-            self.walker.audit.iter_mut().for_each(|audit| audit.end_beside(path, through.as_ref(), draw));
-            return self.walker.go_on_in_part(path, point, through.as_ref());
+            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, through.as_ref(), draw));
+            return self.walker.pass_in_part(path, point, through.as_ref());
         }
         let is_first = path.surfaces() == 1 && first.is_none();
-        let met = is_first.then(|| self.first_met(path, draw, sampler, &surface_hit, through.as_ref(), first));
+        let met = is_first.then(|| self.first_hit(path, draw, sampler, &surface_hit, through.as_ref(), first));
         self.receive(path, draw, EmitterHit::of_surface(world, draw, path, &surface_hit));
         let surface = Surface { surface_hit: &surface_hit, boundary, through: through.as_ref(), first: met, chance };
         if path.surfaces() > world.method.max_bounces {
@@ -221,8 +219,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// What the camera ray meets: a surface, which becomes the first, or what is behind its holes.
-    fn first_met(
+    /// What the camera ray hits: a surface, which becomes the first, or what is behind its holes.
+    fn first_hit(
         &mut self,
         path: &Path<N, P>,
         draw: &Draw<N>,
@@ -230,13 +228,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         surface_hit: &SurfaceHit,
         through: Option<&PassThrough<N, P>>,
         first: &mut Option<SurfacePoint>,
-    ) -> FirstMet {
-        let straight::Cutout { is_met, weight, .. } = straight::met(self.walker.world, draw, sampler, path, through);
+    ) -> FirstHit {
+        let straight::Cutout { is_hit, weight, .. } = straight::hit(self.walker.world, draw, sampler, path, through);
         if let Some(layers) = &mut self.sensor.layers {
-            layers.choose(is_met.then_some(surface_hit.hit.object), weight);
+            layers.choose(is_hit.then_some(surface_hit.hit.object), weight);
         }
-        *first = is_met.then_some(surface_hit.point);
-        if is_met { FirstMet::Here } else { FirstMet::Beyond }
+        *first = is_hit.then_some(surface_hit.point);
+        if is_hit { FirstHit::Here } else { FirstHit::Beyond }
     }
 
     /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
@@ -249,11 +247,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         // Beyond both in part light is polarized by their mean.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
         let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
-        let straight::Cutout { is_met, chance, .. } =
-            straight::met(self.walker.world, draw, sampler, path, Some(&whole));
+        let straight::Cutout { is_hit, chance, .. } =
+            straight::hit(self.walker.world, draw, sampler, path, Some(&whole));
         let before = path.throughput;
-        let (holes, panes) = if is_met { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
-        if !is_met {
+        let (holes, panes) = if is_hit { (Lanes::ZERO, whole.straight.panes) } else { (Lanes::ONE, Lanes::ZERO) };
+        if !is_hit {
             path.throughput = before.through(whole.straight.holes);
             path.key = path.key.child(0);
         }
@@ -261,10 +259,10 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         *through = (!straight.share().is_zero()).then_some(PassThrough { straight, ..whole });
         path.throughput = path.throughput.scaled(1.0 / chance);
         self.walker.audit.iter_mut().for_each(|audit| audit.absorb(path, before, draw));
-        if is_met { chance } else { 1.0 }
+        if is_hit { chance } else { 1.0 }
     }
 
-    /// Ends a path that has met as many surfaces as it may, but for what goes straight on.
+    /// Ends a path that has hit as many surfaces as it may, but for what passes through.
     fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
         let &Surface { surface_hit, boundary, through, .. } = surface;
         if self.sensor.layers.is_some() {
@@ -274,15 +272,15 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if !matches!(self.walker.world.scene.material_of(surface_hit.hit.object), Material::Emissive(_)) {
             self.walker.stats.stopped += path.share(draw);
         } else if let Some(audit) = &mut self.walker.audit {
-            audit.end_beside(path, through, draw);
+            audit.end(path, through, draw);
         }
-        self.walker.go_on_in_part(path, &surface_hit.point, through);
+        self.walker.pass_in_part(path, &surface_hit.point, through);
     }
 
     /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
     fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let world = self.walker.world;
-        self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
+        self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
         for &light in &world.scene.infinite_lights {
             let is_hidden = path.kind.is_from_camera() && world.scene.hidden_lights.contains(&light);
             if !is_hidden {
@@ -291,7 +289,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// Hands light that a path has met to the sensor, unless it is found otherwise.
+    /// Hands light that a path has hit to the sensor, unless it is found otherwise.
     fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<EmitterHit<N, P>>) {
         let Some(EmitterHit { light, lanes, normal, polarization }) = met else { return };
         if self.is_found_otherwise(path, light) {
@@ -320,7 +318,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let at = Interaction::new(world, draw, &path.arriving(), surface_hit, boundary);
         self.show(path, &at, surface, sampler);
-        let leaving = PathContinuation { through, is_awaited: first == Some(FirstMet::Beyond), gathers: !ends };
+        let leaving = PathContinuation { through, is_awaited: first == Some(FirstHit::Beyond), gathers: !ends };
         match self.excite(path, &at, sampler, leaving.is_awaited) {
             0.0 => {}
             1.0 => self.scatter_at(path, &at, sampler, leaving),
@@ -335,9 +333,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
     #[inline]
     fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
-            let &Surface { surface_hit, chance, first, through, .. } = surface;
-            let (straight, is_met_first) = (through.map(|through| &through.straight), first == Some(FirstMet::Here));
-            layers.meet(&LayerHit { path, surface_hit, at, straight, is_met_first, chance }, sampler);
+            layers.meet(path, at, surface, sampler);
         }
     }
 
@@ -347,8 +343,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         path.excitation.map(|number| self.excitations[number as usize].clone())
     }
 
-    /// Follows what excites the dyes of a surface, and answers the factor on what the surface scatters by itself; that
-    /// is 1 where it is awaited.
+    /// Follows what excites the dyes of a surface; returns the factor on what it scatters by itself, 1 if awaited.
     #[inline]
     fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, is_awaited: bool) -> f64 {
         let world = self.walker.world;
@@ -406,15 +401,16 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         self.walker.polarize(path, at);
         self.walker.account(path, at, through.map(|through| &through.straight));
-        let departure = OutgoingPath::new(world, path, at).of_camera_path();
-        let mut departure = departure.with(scatter.as_ref(), through).awaiting(is_awaited);
+        let (scatter, is_seen) = (scatter.as_ref(), path.is_seen);
+        let departure = OutgoingPath::new(world, path, at);
+        let mut departure = OutgoingPath { scatter, through, is_awaited, is_seen, ..departure };
         if !goes_on {
             self.walker.keep_single(&departure);
         }
         self.walker.follow(&mut departure, sampler);
     }
 
-    /// Hands the light of a light vertex to the sensor, where the path meets a diffuse surface.
+    /// Hands the light of a light vertex to the sensor, where the path hits a diffuse surface.
     fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
         let is_asked = path.among == Among::All && !path.resampled;
         let Some(vertices) = self.light_vertices.filter(|_| is_asked) else { return false };
@@ -447,7 +443,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if !ends {
             return false;
         }
-        let rest = vertices.rest();
+        let rest = vertices.rest;
         let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest.unwrap_or(ACCOUNTED) };
         // A pilot that looks on wants to know of light alone.
         let is_asked = rest.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());
@@ -455,7 +451,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             (path.resampled, path.unlit) = (true, rest.is_none());
             path.throughput = path.throughput.scaled(1.0 / goes_on);
         } else {
-            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, draw));
+            self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
         }
         true
     }

@@ -59,19 +59,12 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         // direction is rounded, passes that within some roundings of the distance.
         let short = (vertex.error + gamma(8) * distance) / cos;
         let ends = RayEnds { left: self.path.left, ..RayEnds::default() };
-        let (distance, inside) = (distance - short, at.boundary.here);
-        let segment = VisibilityTest {
-            ray: &ray,
-            distance,
-            ends,
-            inside,
-            occluders: Occluders::Objects(Among::All),
-            last_occluder: self.last_occluder,
-        };
+        let (distance, inside, last_occluder) = (distance - short, at.boundary.here, self.last_occluder);
+        let occluders = Occluders::Objects(Among::All);
+        let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let toward = || self.path.polarization.toward(at, direction, &mut bsdf_cos);
         let (arriving, on_its_way) = segment.arriving(world, at.context.draw, toward, || vertex.leaving)?;
-        let near_squared = self.vertices.near_squared();
-        let factor = factor * cos / (squared + near_squared);
+        let factor = factor * cos / (squared + self.vertices.near_squared());
         let lanes = &self.path.throughput.scaled(factor).of(bsdf_cos * arriving);
         let received = ReceivedLight { source: vertex.light, draw: at.context.draw, lanes, parted: self.path.parted };
         let met = FoundLight::new(world, &received, None);

@@ -20,13 +20,11 @@ pub struct Bounce {
     pub distance: f64,
     /// What the sensor got of the light found at its end, as X + Y + Z.
     pub light: f64,
-    /// The path's weight.
     pub weight: f64,
 }
 
 /// What the camera's paths find, as somebody is told who wants to know it beside the image.
 pub enum SensorEvent<'a> {
-    /// Light reached the sensor.
     Light(&'a Contribution),
     /// A path has come, by way of other surfaces, to a place that scatters widely.
     Place(DVec3),
@@ -54,21 +52,16 @@ impl<const N: usize> Sensor<'_, N> {
         Self { is_deaf: false, rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
     }
 
-    /// Receives light, the lanes by which it arrives, and how the path is polarized where it meets the light.
+    /// Receives light, the lanes by which it arrives, and how the path is polarized where it hits the light.
     #[inline]
-    pub fn receive<P: Polarization<N>>(
-        &mut self,
-        contribution: Contribution,
-        light: &FoundLight<N, P>,
-        polarization: &P,
-    ) {
+    pub fn receive<P: Polarization<N>>(&mut self, contribution: Contribution, light: &FoundLight<N, P>, polarized: &P) {
         if self.is_deaf {
             return;
         }
         if let Some(layers) = &mut self.layers {
             let FoundLight { world, received, excitation, .. } = *light;
             match excitation {
-                None => layers.receive(&contribution, received, polarization.stokes()),
+                None => layers.receive(&contribution, received, polarized.stokes()),
                 Some(dye) => {
                     let stokes = dye.polarization.stokes();
                     dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes));
@@ -106,8 +99,7 @@ impl<const N: usize> Sensor<'_, N> {
         }
     }
 
-    /// Tells an observer what a bounce found that went on for a distance, where the sensor had received some light
-    /// before.
+    /// Tells an observer what a bounce found at a distance, where the sensor had received some light before.
     #[inline]
     pub fn tell<P: Polarization<N>>(
         &self,
@@ -125,7 +117,6 @@ impl<const N: usize> Sensor<'_, N> {
         }
     }
 
-    /// Forgets what the sample received.
     pub fn forget(&mut self) {
         (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
     }

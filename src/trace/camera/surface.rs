@@ -1,38 +1,59 @@
-//! A surface that a path from the camera has met, and how the path leaves it.
+//! A surface that a path from the camera has hit, and how the path leaves it.
 
+use crate::film::FirstSurface;
 use crate::trace::media::Boundary;
-use crate::trace::walk::{PassThrough, SurfaceHit};
+use crate::trace::walk::{Interaction, PassThrough, Path, Polarization, SurfaceHit};
 
-/// What goes straight on through a surface, if anything does.
+/// What passes through a surface, if anything does.
 pub type Through<const N: usize, P> = Option<PassThrough<N, P>>;
 
-/// A surface that a path has met.
+/// A surface that a path has hit.
 pub struct Surface<'m, const N: usize, P> {
     pub surface_hit: &'m SurfaceHit,
     pub boundary: Boundary,
-    /// What goes straight on.
+    /// What passes through.
     pub through: Option<&'m PassThrough<N, P>>,
-    /// What the camera ray meets, unless it has met something before.
-    pub first: Option<FirstMet>,
-    /// How likely the path went on from it and not through its holes, if that was left to chance: its throughput is
-    /// divided by this.
+    /// What the camera ray hits, unless it has hit something before.
+    pub first: Option<FirstHit>,
+    /// How likely the path went on from it and not through its holes, by chance: its throughput is divided by this.
     pub chance: f64,
+}
+
+impl<const N: usize, P: Polarization<N>> Surface<'_, N, P> {
+    /// The share of the camera sample for which the surface is the first: `unfiltered` of the weight along its path.
+    pub fn share(&self, path: &Path<N, P>, at: &Interaction<N>, first: FirstSurface, unfiltered: f64) -> f64 {
+        if first == FirstSurface::Met {
+            return f64::from(u8::from(self.first == Some(FirstHit::Here)));
+        }
+        let is_smooth = at.lobes.has_delta() && !at.lobes.is_wide();
+        if !path.is_seen || is_smooth {
+            return 0.0;
+        }
+        let draw = at.context.draw;
+        let shares = draw.shares(path.parted);
+        let through = |through: &PassThrough<N, P>| {
+            path.throughput.through(through.straight.share()).weight(shares) / path.eta_scale
+        };
+        // A surface covers what does not go through its holes, even if by chance all of the path was there.
+        let received = self.chance * path.weight(draw);
+        unfiltered * (received - self.through.map_or(0.0, through)) / draw.siblings(path.parted)
+    }
 }
 
 /// How a path leaves a surface.
 #[derive(Clone, Copy)]
 pub struct PathContinuation<'m, const N: usize, P> {
-    /// What goes straight on.
+    /// What passes through.
     pub through: Option<&'m PassThrough<N, P>>,
-    /// Whether that is followed for certain: behind the surface's holes the camera ray meets something.
+    /// Whether that is followed for certain: behind the surface's holes the camera ray hits something.
     pub is_awaited: bool,
     /// Whether photons are gathered.
     pub gathers: bool,
 }
 
-/// Of a surface with holes and what is behind them, what the camera ray meets.
+/// Of a surface with holes and what is behind them, what the camera ray hits.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum FirstMet {
+pub enum FirstHit {
     Here,
     Beyond,
 }

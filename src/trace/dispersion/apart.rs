@@ -28,8 +28,7 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
         let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
         let part = || {
-            // After other surfaces, light comes from elsewhere: between facets so small the ways of neighbors tell
-            // nothing.
+            // After other surfaces light comes from elsewhere: among such facets, neighbors tell nothing.
             see_something(rays, [first, second]) && first.legs.len() != second.legs.len()
                 || apart_by(rays, STEPS[1], at, [first, second]) >= SEEN_PIXELS
         };
@@ -42,7 +41,8 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
 fn see_something(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
     let out = walks.iter().all(|walk| walk.is_out());
-    !(lost || out && shows_nothing(rays.colors.world))
+    // All that leaves the scene sees the same where skies are even.
+    !(lost || out && skies_seen(rays.colors.world).all(Light::is_even_sky))
 }
 
 /// How many pixels apart both colors show what lies behind.
@@ -72,11 +72,6 @@ fn between(a: &ColorWalk, b: &ColorWalk, distance: Option<f64>) -> f64 {
         Some(distance) => (a.at(distance) - b.at(distance)).length(),
         None => angle(a.direction, b.direction),
     }
-}
-
-/// Whether all that leaves the scene sees the same.
-fn shows_nothing(world: &World) -> bool {
-    skies_seen(world).all(Light::is_even_sky)
 }
 
 /// Whether all that leaves the scene sees nothing.

@@ -20,12 +20,10 @@ const SURFACE: u32 = 7;
 /// Which way is followed where light may go two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FollowedBranch {
-    /// The brighter one.
     Brighter,
     /// The fainter one at the first surface that has one, from there on the brighter one.
     FainterFirst,
-    /// The fainter one where light would first leave a dispersive body, from there on the brighter one: the way of the
-    /// rainbow.
+    /// The fainter one where light would first leave a dispersive body, then the brighter one: as in a rainbow.
     FainterInside,
 }
 
@@ -48,7 +46,7 @@ pub struct ColorWalk {
     pub weight: f64,
     /// The share of the fainter way at the first surface that has one.
     pub fork: f64,
-    /// The share of the fainter way at the first surface that has one and is met inside a dispersive body.
+    /// The share of the fainter way at the first surface that has one and is hit inside a dispersive body.
     pub fork_inside: f64,
     media: Media,
 }
@@ -69,8 +67,7 @@ impl ColorWalk {
         self.legs.last().map(|leg| &leg.0)
     }
 
-    /// Whether the way on with a share of the light is taken, and not the other one. `is_inside` says whether the
-    /// surface is met inside a dispersive body.
+    /// Whether the way on with a share of the light is taken, not the other; `is_inside`: inside a dispersive body.
     fn takes(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
         let forks = |fork: &mut f64| {
@@ -91,7 +88,7 @@ impl ColorWalk {
     }
 }
 
-/// Where a walk meets a surface, with four random numbers.
+/// Where a walk hits a surface, with four random numbers.
 #[derive(Clone, Copy)]
 struct WalkSurface<'a> {
     ray: &'a Ray,
@@ -124,7 +121,7 @@ impl Colors<'_> {
     }
 
     /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
-    /// not there for its ray as long as that goes straight on.
+    /// not there for its ray as long as that is straight.
     pub fn walk(
         &self,
         lane: usize,

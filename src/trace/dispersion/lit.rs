@@ -1,5 +1,4 @@
-//! Light through dispersive objects: rays of two colors from the lights to them, and from there to what the camera
-//! sees.
+//! Light through dispersive objects: rays of two colors from the lights to them, and on to what the camera sees.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -21,8 +20,7 @@ const OF_A_PAIR: usize = 1024;
 const LIGHTS: usize = 16;
 /// Colors that are apart by less than this part of the lamp's own blur look white.
 const CONTRAST: f64 = 0.05;
-/// Light by way of an object that is less than this share of the lamp's own, beside it, is not seen: a color may miss
-/// as much.
+/// Light by way of an object that is fainter than this share of the lamp's own is not seen: a color may miss as much.
 const FAINT: f64 = 0.01;
 /// How far beside a ray its neighbors are, in radii of the object: near enough to go the same way.
 const BESIDE: f64 = 1e-3;
@@ -191,7 +189,6 @@ impl Pair<'_> {
         Some(self.ball.center + Frame::about(axis).to_world(DVec3::new(x, y, 0.0)))
     }
 
-    /// The ray from the light.
     fn start(&self, back: &Ray, distance: f64) -> Option<Ray> {
         let scene = &self.colors.world.scene;
         match &scene.lights[self.light] {

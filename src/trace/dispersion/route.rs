@@ -1,4 +1,4 @@
-//! A way of light to the camera: what it meets, how far it has been followed back, and the surface that it meets there.
+//! A way of light to the camera: what it hits, how far it has been followed back, and the surface that it hits there.
 
 use super::color_walk::visible_facet;
 use crate::light::LightId;
@@ -7,9 +7,10 @@ use crate::math::{BranchKey, DVec3, Ray};
 use crate::scene::MaterialId;
 use crate::shape::SurfacePoint;
 use crate::spectrum::Lanes;
+use crate::trace::World;
 use crate::trace::media::Media;
 
-/// Something that light meets on its way.
+/// Something that light hits on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The material.
@@ -24,7 +25,7 @@ pub struct Step {
 /// What light does at a surface, or in a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RouteEvent {
-    /// It is mirrored, by a surface or a facet of it met under an angle of this cosine.
+    /// It is mirrored, by a surface or a facet of it hit under an angle of this cosine.
     Reflected(f64),
     /// It goes through the surface.
     Crossed,
@@ -37,7 +38,7 @@ pub enum RouteEvent {
 /// A way of light from a light to the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// What it meets, the nearest to the camera first.
+    /// What it hits, the nearest to the camera first.
     pub steps: Vec<Step>,
     /// Where it comes from.
     pub light: LightId,
@@ -54,7 +55,7 @@ pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 #[derive(Clone)]
 pub struct RouteWalk {
     pub ray: Ray,
-    /// Whether the camera sees straight what it meets next, if it sees that at all.
+    /// Whether the camera sees straight what it hits next, if it sees that at all.
     pub is_from_camera: bool,
     pub media: Media,
     pub key: BranchKey,
@@ -63,11 +64,17 @@ pub struct RouteWalk {
     /// What is left of the light, with the steps.
     pub left: Lanes<4>,
     pub scattered: u32,
-    /// Surfaces met but for those that it goes straight through: `max_bounces` limits them.
+    /// Surfaces hit but for those that it passes through: `max_bounces` limits them.
     pub surfaces: u32,
 }
 
 impl RouteWalk {
+    pub fn from_camera(world: &World, ray: Ray) -> Self {
+        let (media, key, steps) = (world.media_at_camera(&ray), BranchKey::CAMERA, Vec::new());
+        let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
+        Self { ray, is_from_camera, media, key, steps, weight, left, scattered: 0, surfaces: 0 }
+    }
+
     pub fn brightest(&self) -> f32 {
         self.left.0.into_iter().fold(0.0, f32::max)
     }
@@ -80,7 +87,7 @@ impl RouteWalk {
     }
 }
 
-/// Where a way meets a surface.
+/// Where a way hits a surface.
 pub struct RouteVertex<'a> {
     pub walk: &'a RouteWalk,
     pub material: MaterialId,

@@ -3,12 +3,12 @@
 use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, RouteWalk, Step};
 use crate::light::{Light, LightId};
 use crate::material::{Facets, Interface, Material, reflect};
-use crate::math::{BranchKey, DVec3, Ray, Sampler, cosine_about};
+use crate::math::{DVec3, Ray, Sampler, cosine_about};
 use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
-/// Surfaces that are met for one pixel.
+/// Surfaces that are hit for one pixel.
 const SURFACES: usize = 256;
 /// Ways that leave less than this share of the brightest one of a pixel are left.
 const FAINT: f32 = 1e-3;
@@ -32,22 +32,9 @@ impl<'a> RouteWalker<'a> {
         Self { world, draw, sampler, pending: Vec::new(), found: Vec::new() }
     }
 
-    /// Answers how many surfaces it met.
+    /// Answers how many surfaces it hit.
     pub fn walk(&mut self, ray: Ray) -> usize {
-        let media = self.world.media_at_camera(&ray);
-        let (steps, key) = (Vec::new(), BranchKey::CAMERA);
-        let (weight, left, is_from_camera) = (1.0, Lanes::ONE, true);
-        self.pending.push(RouteWalk {
-            ray,
-            is_from_camera,
-            media,
-            key,
-            steps,
-            weight,
-            left,
-            scattered: 0,
-            surfaces: 0,
-        });
+        self.pending.push(RouteWalk::from_camera(self.world, ray));
         let mut best = 0.0_f32;
         for met in 0..SURFACES {
             let order = |a: &usize, b: &usize| self.pending[*a].brightest().total_cmp(&self.pending[*b].brightest());
@@ -177,7 +164,7 @@ impl<'a> RouteWalker<'a> {
         u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
-    /// The material that is met, by chance where there are several.
+    /// The material that is hit, by chance where there are several.
     fn part(&self, material: &Material<Table>, uv: [f64; 2], u: f64) -> usize {
         match material {
             Material::Mix(mix) => {

@@ -1,4 +1,4 @@
-//! The ways that light takes to the camera, as far as they tint it: which surfaces and bodies it meets, and how often.
+//! The ways that light takes to the camera, as far as they tint it: which surfaces and bodies it hits, and how often.
 
 use super::route::Route;
 use super::route_walk::RouteWalker;
@@ -9,7 +9,7 @@ use crate::trace::probe::pixels_of_objects;
 
 /// Pixels along each side of the image.
 const SIDE: u32 = 24;
-/// Surfaces that are met for all pixels over the image or on objects.
+/// Surfaces that are hit for all pixels over the image or on objects.
 const ALL_SURFACES: usize = 16_384;
 
 /// The routes to a few hundred pixels, those of each together, in a world of the lanes

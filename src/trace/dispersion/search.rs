@@ -1,6 +1,6 @@
 //! Where in the view dispersion is seen: what is small in the picture is still the picture.
 //!
-//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not met is divided,
+//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not hit is divided,
 //! down to a part of a pixel; so small objects are found also behind panes, in mirrors and in water, by a number of
 //! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
 //! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
@@ -92,7 +92,7 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
             break;
         }
         let (divided, whole): (Vec<Look>, Vec<Look>) =
-            looks.into_iter().partition(|look| look.touched.is_some() && look.cell.is_divisible());
+            looks.into_iter().partition(|look| look.touched.is_some() && look.cell.size.max_element() > SMALLEST);
         settled.extend(whole);
         let mut next: Vec<(usize, ViewCell)> = Vec::new();
         for look in &divided {
@@ -187,10 +187,6 @@ impl ViewCell {
 
     fn is_whole(&self, colors: &Colors) -> bool {
         self.size.x * f64::from(SIDE) >= f64::from(colors.world.scene.film.width)
-    }
-
-    fn is_divisible(&self) -> bool {
-        self.size.max_element() > SMALLEST
     }
 
     /// Its halves along each side that can be divided.

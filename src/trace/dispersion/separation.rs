@@ -12,8 +12,7 @@ use crate::trace::World;
 pub struct Dispersion {
     /// Share of the view that is on dispersive surfaces.
     pub seen: f64,
-    /// How many pixels apart 400 and 700 nm show what lies behind dispersive surfaces, on a fifth of a pixel of the
-    /// view or more.
+    /// How many pixels apart 400 and 700 nm are behind dispersive surfaces, on a fifth of a pixel or more.
     pub seen_pixels: f64,
     /// How many pixels apart light of 400 and 700 nm lands on diffuse surfaces that are seen, after dispersive ones.
     pub lit_pixels: f64,

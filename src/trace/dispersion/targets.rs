@@ -19,13 +19,11 @@ pub struct SearchTarget {
 }
 
 impl SearchTarget {
-    /// A ball around it.
     pub fn ball(&self) -> Ball {
-        Ball { center: self.bounds.center(), radius: 0.5 * (self.bounds.max - self.bounds.min).length() }
+        Ball::of_box(&self.bounds)
     }
 }
 
-/// All of them.
 pub struct Targets {
     /// Dispersive ones first.
     pub all: Vec<SearchTarget>,
@@ -56,7 +54,7 @@ impl Targets {
         Self { all, of_object }
     }
 
-    /// The first target that a beam may touch which not all of its rays have met; none if there is none.
+    /// The first target that a beam may touch which not all of its rays have hit; none if there is none.
     ///
     /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes
     /// its own way it is only known how wide a beam it would be that nothing has bent: `width` is its angle.
@@ -118,7 +116,7 @@ fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
 impl Beam {
     /// Whether a box lies within the beam in part, or may.
     fn touches(&self, bounds: &Bounds) -> bool {
-        let (half, middle) = (0.5 * (bounds.max - bounds.min).length(), bounds.center() - self.ray.origin);
+        let (half, middle) = (0.5 * bounds.size().length(), bounds.center() - self.ray.origin);
         let farthest = (middle.dot(self.ray.direction) + half).clamp(0.0, self.length);
         let radius = DVec3::splat(self.radius + self.slope * farthest);
         let (low, high) = (bounds.min - radius - self.ray.origin, bounds.max + radius - self.ray.origin);

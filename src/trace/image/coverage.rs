@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::film::RANKS;
 
-/// Of each pixel, the objects that its camera samples met, with how many did.
+/// Of each pixel, the objects that its camera samples hit, with how many did.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Coverage(Vec<Vec<ObjectSamples>>);
 
@@ -15,12 +15,10 @@ struct ObjectSamples {
 }
 
 impl Coverage {
-    /// Of so many pixels.
     pub fn new(pixels: usize) -> Self {
         Self(vec![Vec::new(); pixels])
     }
 
-    /// How many pixels there are.
     pub fn pixels(&self) -> usize {
         self.0.len()
     }
@@ -30,7 +28,7 @@ impl Coverage {
         self.0.iter().flatten().all(|covered| (covered.object as usize) < objects)
     }
 
-    /// Counts a camera sample that met an object.
+    /// Counts a camera sample that hit an object.
     pub fn add(&mut self, pixel: usize, object: u32) {
         let pixel = &mut self.0[pixel];
         match pixel.iter_mut().find(|covered| covered.object == object) {

@@ -19,7 +19,7 @@ pub struct LayerSums {
     /// The depth of what each pixel's places are of.
     depths: Vec<f64>,
     /// The objects of each pixel, if there are mattes.
-    covered: Coverage,
+    pub covered: Coverage,
 }
 
 impl LayerSums {
@@ -97,11 +97,6 @@ impl LayerSums {
     pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CatcherLight<f64>> {
         let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.luminance_caught(&caught));
         layers.catches().then(|| self.rows(layers, pixel)[0]).and_then(of)
-    }
-
-    /// Which objects each pixel shows.
-    pub fn covered(&self) -> &Coverage {
-        &self.covered
     }
 }
 

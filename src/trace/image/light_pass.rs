@@ -14,7 +14,7 @@ use crate::trace::World;
 use crate::trace::contribution::{Contribution, FoundBy};
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, Splat, batches_of_pass, send_splatted};
+use crate::trace::photon::{Batch, Splat, batches_of_pass, send, splat_photon};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
@@ -36,18 +36,12 @@ pub struct Observer<'a> {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LightPassProgress {
     /// Batches that are done.
-    batches: usize,
-    /// Photons sent.
+    pub batches: usize,
     pub photons: u64,
     pub(in crate::trace) stats: Stats,
 }
 
 impl LightPassProgress {
-    /// Another one follows.
-    pub fn begin_anew(&mut self) {
-        self.batches = 0;
-    }
-
     /// The part of a pass's photons that are sent.
     pub(in crate::trace) fn part(&self, world: &World, pass: &Pass) -> f64 {
         let Some(targets) = world.photon_targets.as_ref().filter(|_| self.batches > 0) else { return 0.0 };
@@ -71,14 +65,16 @@ pub fn show<const N: usize, P: Polarization<N>>(
     watch: &Observer,
 ) -> bool {
     let Some(targets) = &world.photon_targets else { return true };
-    let weight = pass.weight_of_photons();
+    // Where every pass sends photons, they count as much as its samples.
+    let weight = pass.replicate.map_or(1.0, |_| pass.numbers.len() as f64);
     let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
     for tile in tiles.iter_mut().filter(|tile| tile.splatted.pixels.is_empty()) {
         let pixels = tile.sums.len();
         tile.splatted = PhotonTile { pixels: vec![[0.0; 3]; pixels], layers: vec![0.0; pixels * numbers], moved: 0.0 };
     }
     let add = &mut |pixel: u32, splat: Splat| {
-        let splat = splat.times(weight).of_half(pass.is_of_first_half());
+        let early = pass.is_of_first_half().unwrap_or(splat.early);
+        let splat = Splat { early, ..splat.times(weight) };
         let Splat { change, rgb, .. } = splat;
         let Some([tile, place]) = shard.place_of(window, pixel) else { return };
         let Tile { splatted, replicates, .. } = &mut tiles[tile];
@@ -143,7 +139,9 @@ fn send_on<const N: usize, P: Polarization<N>>(
 ) -> bool {
     let batches = batches_of_pass(targets, 0, seed ^ SEED);
     for group in batches.get(sending.batches..).unwrap_or_default().chunks(AT_ONCE) {
-        let send = |number: usize| (!(watch.is_due)()).then(|| send_splatted::<N, P>(world, targets, group[number]));
+        let send = |number: usize| {
+            (!(watch.is_due)()).then(|| send(world, targets, group[number], false, &splat_photon::<N, P>))
+        };
         let done = in_parallel(group.len(), &send);
         for (batch, sent) in group.iter().zip(done) {
             // Splats are added in the order of the batches: what was found beyond a gap is found again.

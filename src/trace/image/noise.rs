@@ -24,8 +24,7 @@ use crate::trace::replicates::{Products, REPLICATES, Replicates};
 
 /// How far the replicates of an image are apart, and what that tells of their mean.
 ///
-/// Errors are relative: the root of the mean square, over all pixels and the three film channels, by that of the image
-/// itself.
+/// Errors are relative: the root of the mean square over all pixels and film channels, by that of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Camera samples of each pixel that it is the noise of.
@@ -150,8 +149,7 @@ impl Spread {
         }
     }
 
-    /// The mean square error of a replicate, and what the error of the mean of all stays below in 95 of 100 cases,
-    /// times their number.
+    /// The mean square error of a replicate, and the 95 % bound of the error of the mean of all, times their number.
     fn errors(&self) -> [f64; 2] {
         let (count, numbers) = (REPLICATES as f64, self.numbers.max(1.0));
         // Each replicate is a part of the mean that its deviation is from.

@@ -10,8 +10,7 @@ use crate::trace::pass::{Pass, Stage};
 use crate::trace::replicates::{HALF, REPLICATES};
 use crate::trace::stats::Stats;
 
-/// Samples of each pixel in the first pass, where no photons are gathered; every other pass takes as many as were taken
-/// before.
+/// Samples of each pixel in the first pass, where no photons are gathered; each later pass doubles them.
 const FIRST_PASS: u32 = 16;
 
 /// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once: but where photons
@@ -35,7 +34,6 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The next pass.
     pub(in crate::trace) fn pass(&self, world: &World) -> Pass {
         if world.method.stop.is_some() {
             return self.stage.pass(world, self.passes, most_at_once(world));
@@ -49,13 +47,12 @@ impl Progress {
         self.samples + self.pass(world).numbers.len() as u32
     }
 
-    /// Counts a pass that is finished.
     pub(in crate::trace) fn finish(&mut self, pass: &Pass) {
         let samples = pass.numbers.len() as u32;
         (self.samples, self.passes) = (self.samples + samples, self.passes + 1);
         if pass.replicate.is_some() {
             self.stage = self.stage.after(samples);
-            self.sending.begin_anew();
+            self.sending.batches = 0;
         }
     }
 

@@ -31,8 +31,8 @@ use crate::trace::{World, media};
 /// Tiles whose values are made before they are put into the image.
 const TILES_AT_A_TIME: usize = 256;
 
-/// What rendering noticed.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// What rendering noticed; as programs read it, without what messages alone say.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
     /// Camera samples taken.
     pub samples: u64,
@@ -41,6 +41,7 @@ pub struct Report {
     /// Samples left out because they were not finite.
     pub non_finite: u64,
     /// Column, row and number of the first of them.
+    #[serde(skip)]
     pub first_non_finite: Option<[i64; 3]>,
     /// Mean weight per camera sample of the branches that deterministic transport dropped.
     pub dropped: f64,
@@ -49,20 +50,24 @@ pub struct Report {
     /// Surfaces of clear bodies that were left without having been entered: open meshes.
     pub unmatched: u64,
     /// Whether there are more clear materials than may overlap in one place.
+    #[serde(skip)]
     pub has_many_media: bool,
-    /// Camera samples of deterministic transport that met so many surfaces that they went on by chance.
+    /// Camera samples of deterministic transport that hit so many surfaces that they went on by chance.
     pub by_chance: u64,
     /// Most of the light seen, as a share, that polarization, which is not traced, may change.
     pub polarization: f64,
     /// The same in the tile of 16 x 16 pixels where it is largest.
     pub polarization_of_tile: f64,
     /// All light that camera rays and photons found, as X + Y + Z of every camera sample.
+    #[serde(skip)]
     pub light: f64,
     /// Photons sent by the light pass.
     pub photons: u64,
     /// How far the image is off by chance, where a stop rule has it measured.
+    #[serde(skip)]
     pub noise: Option<Noise>,
     /// By how much photons that were gathered blur it, where a stop rule has it measured.
+    #[serde(skip)]
     pub blur: Option<Estimate>,
     /// What ended the render, if a stop rule could, and it is finished.
     pub stopped_by: Option<Stopped>,
@@ -205,8 +210,7 @@ impl<'a> Rendering<'a> {
         self.advance_until(progress, &|| false) == Advance::Passed
     }
 
-    /// The same, but stops before the next pixels once `is_due` says so. It is asked before every pixel of a pass, from
-    /// any thread.
+    /// The same, but stops once `is_due` says so, which is asked before every pixel of a pass, from any thread.
     pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
         let stopped = AtomicBool::new(false);
         let stops = || {

@@ -83,7 +83,7 @@ pub fn restore(
     for tile in tiles {
         let mut restored: Tile = blocks.block()?;
         let passes = u64::from(restored.passes);
-        let fits = restored.is_shaped_as(tile, &world.layers) && restored.layers.covered().is_among(objects);
+        let fits = restored.is_shaped_as(tile, &world.layers) && restored.layers.covered.is_among(objects);
         if !fits || ![0, 1].map(|more| u64::from(progress.passes) + more).contains(&passes) {
             return Err(blocks.damaged());
         }

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
+
 use super::noise::Measured;
 use super::passes::Progress;
 use crate::trace::Stop;
@@ -11,15 +13,16 @@ use crate::trace::replicates::REPLICATES;
 const FIRST: u32 = 8;
 /// Samples of a pixel that tell its noise, at least.
 pub const FIRST_LOOK: u32 = REPLICATES as u32 * FIRST;
-/// Of the time that is left, the part that a stage is planned to take, and the part of all time that is too short for
-/// another one.
+/// The part of the time left that a stage is planned to take, and the part of all time too short for another one.
 const PLANNED: f64 = 0.95;
 const SHORT: f64 = 0.02;
 
 /// What ended a render that had a stop rule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Stopped {
     /// The error is as small as was asked for.
+    #[serde(rename = "error")]
     Noise,
     /// The time is over.
     Time,
@@ -84,7 +87,6 @@ fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
     stop.noise.zip(measured).is_some_and(|(wanted, error)| is_small(wanted, error))
 }
 
-/// Most samples of each replicate.
 fn most(stop: &Stop) -> u32 {
     stop.most / REPLICATES as u32
 }
@@ -120,8 +122,7 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     }
 }
 
-/// Whether it is known, about, how many samples of a pixel will be enough: where an error is asked for and no time, not
-/// before the first look.
+/// Whether it is about known how many samples of a pixel are enough: by an error alone, not before the first look.
 pub fn is_wanted_known(stop: &Stop, progress: &Progress) -> bool {
     stop.noise.is_none() || stop.time.is_some() || progress.measured.is_some()
 }

@@ -17,14 +17,12 @@ use crate::trace::replicates::Replicates;
 use crate::trace::stats::Stats;
 use crate::trace::walk::Polarization;
 
-/// A small part of the image.
 #[derive(Serialize, Deserialize)]
 pub struct Tile {
     /// Sums of its pixels, row by row.
     pub sums: Vec<PixelSum>,
     /// The same of samples that are subtracted; empty where the filter is nowhere negative.
     pub subtracted: Vec<PixelSum>,
-    /// Sums of their layers.
     pub layers: LayerSums,
     /// What photons show in its pixels.
     pub splatted: PhotonTile,
@@ -37,8 +35,7 @@ pub struct Tile {
     pub ahead: u32,
 }
 
-/// What photons show in a tile; empty where none are sent. Where every pass sends some, each counts as much as it takes
-/// samples.
+/// What photons show in a tile; empty without photons. Where every pass sends some, each counts by its samples.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct PhotonTile {
     /// Film values of its pixels.
@@ -87,20 +84,9 @@ impl Tile {
             && (self.ahead as usize) < pixels
     }
 
-    /// Camera samples taken.
     pub fn samples(&self) -> u64 {
         let kept = self.sums.iter().chain(&self.subtracted).map(|sum| u64::from(sum.kept())).sum::<u64>();
         kept + self.stats.non_finite
-    }
-
-    /// What photons show in one of its pixels.
-    pub fn splatted_at(&self, place: usize) -> [f64; 3] {
-        self.splatted.pixels.get(place).copied().unwrap_or_default()
-    }
-
-    /// What they show in the layers of one of its pixels.
-    pub fn splatted_in_layers(&self, layers: &Layers, place: usize) -> &[f64] {
-        self.splatted.layers.get(place * layers.numbers..(place + 1) * layers.numbers).unwrap_or_default()
     }
 
     /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.
@@ -142,7 +128,7 @@ impl Tile {
         // Of samples that are added, and of those that are subtracted.
         let mut sums = [PassSum::default(), PassSum::default()];
         let mut blurs = [PassSum::default(), PassSum::default()];
-        let blurs_are_told = light.tells_blur();
+        let blurs_are_told = light.photons.as_ref().is_some_and(|photons| photons.half.is_some());
         let rate = world.rate(pixel);
         let caught_before = pass.replicate.and_then(|_| self.layers.caught(&world.layers, place));
         for number in rate.of(&pass.numbers) {
@@ -158,7 +144,7 @@ impl Tile {
                 self.stats.non_finite += 1;
                 self.first_non_finite.get_or_insert([pixel[0].into(), pixel[1].into(), number.into()]);
             } else if let Some(layers) = tracer.layers() {
-                let early = pass.is_early(world, among_all);
+                let early = pass.is_of_first_half().unwrap_or(among_all < world.method.samples.div_ceil(2));
                 layers.keep(sample.is_subtracted);
                 self.layers.add(&world.layers, place, early, &sample, &layers.left());
             }
@@ -167,8 +153,7 @@ impl Tile {
             layers.hand_over(self.layers.rows_mut(&world.layers, place));
         }
         if let Some(replicate) = pass.replicate {
-            self.replicates.add(place, replicate, sums.each_ref());
-            self.replicates.add_blur(place, replicate, blurs.each_ref());
+            self.replicates.add(place, replicate, sums.each_ref(), blurs.each_ref());
             let caught = self.layers.caught(&world.layers, place);
             if let (Some(after), Some(before)) = (caught, caught_before) {
                 self.replicates.add_alpha(place, replicate, sums.each_ref(), after.since(before));

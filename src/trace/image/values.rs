@@ -19,15 +19,16 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, counts: Spla
     let (sum, none) = (&tile.sums[place], PixelSum::default());
     let subtracted = tile.subtracted.get(place).unwrap_or(&none);
     let weights = SampleWeights::new(filter, [sum.kept(), subtracted.kept()]);
-    let splatted = tile.splatted_at(place).map(|x| x * counts.image);
+    let splatted = tile.splatted.pixels.get(place).copied().unwrap_or_default().map(|x| x * counts.image);
     let pixel = &mut values.pixels[place];
     *pixel = sum.pixel(subtracted, &weights, splatted);
     if layers.is_empty() {
         return;
     }
-    let (sums, splatted) = (tile.layers.rows(layers, place), tile.splatted_in_layers(layers, place));
+    let (sums, numbers) = (tile.layers.rows(layers, place), place * layers.numbers..(place + 1) * layers.numbers);
+    let splatted = tile.splatted.layers.get(numbers).unwrap_or_default();
     let splatted = &*times(splatted, counts.image);
-    let (covered, rgb) = (tile.layers.covered(), [sum.rgb(), subtracted.rgb()]);
+    let (covered, rgb) = (&tile.layers.covered, [sum.rgb(), subtracted.rgb()]);
     let variance = counts.samples.and_then(|each| tile.replicates.variance(place, filter, each));
     let taken = PixelSums { sums, splatted, counts, variance, rgb, weights, covered, place };
     taken.write(layers, &mut values.layers);

@@ -27,7 +27,6 @@ pub struct Batch {
     pub seed: u64,
 }
 
-/// What became of a batch.
 pub struct SentBatch<T> {
     pub kept: Vec<T>,
     /// Where each photon was sent and whether anything was kept of it.

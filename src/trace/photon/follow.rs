@@ -16,7 +16,7 @@ use crate::trace::walk::{
 const BEYOND: usize = 64;
 /// The branch of what narrow lobes send on by themselves.
 const BY_NARROW: usize = 65;
-/// How often a material draws where a photon goes that meets it at a shading normal of its own, unless it is diffuse.
+/// How often a material draws where a photon goes that hits it at a shading normal of its own, unless it is diffuse.
 const BY_MATERIAL: f64 = 0.5;
 /// Use of the random numbers where a photon leaves a surface, and where it passes one or not.
 const SCATTER: u32 = 4;
@@ -85,8 +85,7 @@ pub enum Surfaces {
 
 /// Follows a photon over surfaces; `land` is told where it lands on those that scatter widely.
 ///
-/// Throughput is followed as if the light were the viewer; flux is what is left of it without the factor of radiance
-/// between media.
+/// Throughput is followed as if the light were the viewer; flux is that without the factor of radiance between media.
 pub fn follow_photon<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     photon: &Photon<N>,
@@ -114,7 +113,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     if path.vertices >= walker.transport.last_vertex() {
         return;
     }
-    let Some(surface_hit) = walker.meet(path, draw) else { return };
+    let Some(surface_hit) = walker.next_hit(path, draw) else { return };
     if let Some(through) = walker.straight(path, draw, &surface_hit)
         && passes(walker, path, photon, &surface_hit.point, &through)
     {
@@ -132,7 +131,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
     let boundary = match walker.boundary(path, &surface_hit) {
         Ok(boundary) => boundary,
-        Err(hidden) => return walker.go_on_past(path, &surface_hit, &hidden),
+        Err(hidden) => return walker.pass_hidden(path, &surface_hit, &hidden),
     };
     path.vertices += 1;
     if world.ends_light_paths(surface_hit.hit.object) {
@@ -168,7 +167,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
 }
 
-/// Lets a photon go straight on, and answers whether it does not meet the surface as well. One that carries little does
+/// Lets a photon pass through, and answers whether it does not hit the surface as well. One that carries little does
 /// one or the other: each of a stack of panes would double the photons that it mirrors.
 #[cold]
 fn passes<const N: usize, P: Polarization<N>>(
@@ -235,7 +234,9 @@ fn scatter<const N: usize, P: Polarization<N>>(
         });
         walker.polarize_forward(path, at);
     }
-    walker.follow(&mut OutgoingPath::new(walker.world, path, at).of_light_path(), sampler);
+    // From the camera, a path has to leave the next surface to get to the first one, by whatever lobe.
+    let all_count = path.surfaces() == 1 && path.hidden == 0;
+    walker.follow(&mut OutgoingPath { all_count, ..OutgoingPath::new(walker.world, path, at) }, sampler);
 }
 
 /// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.

@@ -16,41 +16,26 @@ use std::f64::consts::PI;
 use super::kernel::Kernel;
 use super::photon_map::{JointLanes, PhotonMap, SingleLane, StoredPhoton};
 use crate::light::LightId;
-use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
+use crate::math::{DVec2, DVec3, Frame, Ray, Sampler, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Wavelength};
-use crate::trace::contribution::{Contribution, add};
+use crate::trace::World;
+use crate::trace::contribution::{Contribution, FoundBy, add};
 use crate::trace::received_light::{ReceivedLight, SourceId};
 use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
-use crate::trace::{World, contribution};
 
 /// Surfaces whose normals differ by more than 60 degrees belong to different sides or walls.
 const ALIKE: f64 = 0.5;
-/// How far, in radii, a surface may lie from where it would continue another smoothly: between flat faces that meet at
-/// 30 degrees it is less.
+/// How far, in radii, a surface may lie from where it would continue another: flat faces at 30 degrees lie nearer.
 const STEP: f64 = 0.25;
 /// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a
 /// ball of the same radius shows all that is gathered of it.
 const HIGH: f64 = 4.0;
 /// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
 const MOST: u32 = 1 << 12;
-/// The branch of the random numbers for them, beyond those that a path may take, and that of the photon that is looked
-/// at.
+/// Branches of random numbers, beyond those that a path may take: of these points, and of the photon looked at.
 const POINTS: usize = 128;
 const CHOICE: usize = 129;
-
-/// Where photons are gathered.
-struct GatherSurface<'a> {
-    world: &'a World,
-    position: DVec3,
-    /// The surface's own unit normal on the side of the path.
-    flat: DVec3,
-    /// Whether that is the front.
-    front: bool,
-    /// Whether light crosses the surface: then what lies close beyond it is another.
-    crosses: bool,
-    radius: f64,
-}
 
 /// What was found, and one photon of it, drawn by what it brings.
 struct GatheredSum<const N: usize> {
@@ -125,11 +110,15 @@ impl<const N: usize> Seen<N> {
     }
 }
 
-/// Photons that are looked for around a place.
+/// A search for the photons around a place.
 struct PhotonSearch<'a, const N: usize, P> {
     around: &'a GatherPoint<'a, N, P>,
     kernel: &'a Kernel<N>,
-    place: GatherSurface<'a>,
+    /// Whether the path comes to the front of the surface.
+    front: bool,
+    /// Whether light crosses the surface: then what lies close beyond it is another.
+    crosses: bool,
+    radius: f64,
 }
 
 /// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
@@ -142,25 +131,22 @@ pub fn gather<const N: usize, P: Polarization<N>>(
     apart: bool,
 ) -> Gathered<N> {
     let GatherPoint { world, path, at, .. } = around;
-    let (point, flat) = (at.point, at.flat);
     let [u, whether, ..] = sampler.four_plain(path.key.child(CHOICE), 0);
     let crosses = at.lobes.is_transmissive();
     let has_any = photons.crosses || !crosses;
     let Some(map) = world.method.map().filter(|map| has_any && whether < map.chance) else {
         return Gathered { all: around.all([0.0; 3], 0.0), parts: apart.then(Vec::new) };
     };
-    let radius = kernel.radius * world.scene.camera.pixel_width(path.length);
-    let front = flat.dot(point.normal) > 0.0;
-    let place = GatherSurface { world, position: point.position, flat, front, crosses, radius };
-    let search = PhotonSearch { around, kernel, place };
+    let (position, radius) = (at.point.position, kernel.radius * world.scene.camera.pixel_width(path.length));
+    let search = PhotonSearch { around, kernel, front: at.flat.dot(at.point.normal) > 0.0, crosses, radius };
     let mut found = GatheredSum { sum: [0.0; 3], parts: apart.then(Vec::new), weight: 0.0, drawn: None, u };
-    photons.together.near(point.position, radius, &mut |position, photon| {
+    photons.together.near(position, radius, &mut |position, photon| {
         search.add_together(&mut found, position, photon);
     });
-    photons.alone.near(point.position, radius, &mut |position, photon| {
+    photons.alone.near(position, radius, &mut |position, photon| {
         search.add_alone(&mut found, position, photon);
     });
-    let (rgb, moved) = search.place.seen_of(&mut found, point, sampler, path.key);
+    let (rgb, moved) = search.seen_of(&mut found, sampler);
     let (rgb, moved) = (rgb.map(|x| x / map.chance), moved / map.chance);
     found.parts.iter_mut().flatten().for_each(|part| part.factor /= map.chance);
     Gathered { all: around.all(rgb, moved), parts: found.parts }
@@ -170,36 +156,17 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
     /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least,
     /// as they do wherever the path has left one.
     fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
-        let (first, bounces) = (self.path.first, self.path.bounces + 2);
-        Contribution {
-            light: None,
-            found: contribution::FoundBy::Gathered,
-            rgb,
-            moved,
-            first,
-            bounces,
-            dispersed: false,
-        }
+        let (found, first, bounces) = (FoundBy::Gathered, self.path.first, self.path.bounces + 2);
+        Contribution { light: None, found, rgb, moved, first, bounces, dispersed: false }
     }
 
     /// What one photon brings, but for a factor.
-    fn brought<T>(
-        &self,
-        photon: &StoredPhoton<T, P::Stored>,
-        light: LightId,
-        rgb: [f64; 3],
-        parted: bool,
-    ) -> Contribution {
+    fn brought<T, L>(&self, photon: &StoredPhoton<T, L>, light: LightId, rgb: [f64; 3], parted: bool) -> Contribution {
         let Self { world, path, at, excitation } = self;
-        Contribution {
-            light: Some(light),
-            found: contribution::FoundBy::Gathered,
-            rgb,
-            moved: 0.0,
-            first: path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0),
-            bounces: path.bounces + photon.surfaces,
-            dispersed: parted || excitation.is_some_and(|excitation| excitation.parted),
-        }
+        let (light, found, bounces) = (Some(light), FoundBy::Gathered, path.bounces + photon.surfaces);
+        let first = path.first_lobe(world, at, photon.back, photon.back.dot(at.flat) < 0.0);
+        let dispersed = parted || excitation.is_some_and(|excitation| excitation.parted);
+        Contribution { light, found, rgb, moved: 0.0, first, bounces, dispersed }
     }
 
     /// Whether lanes part on the way of the path and a photon that came from a direction.
@@ -216,9 +183,9 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         position: DVec3,
         photon: &StoredPhoton<JointLanes<N>, P::Stored>,
     ) {
-        let Self { around, kernel, place } = self;
+        let Self { around, kernel, .. } = self;
         let GatherPoint { world, path, at, excitation } = around;
-        let Some(density) = place.density(path, position, photon) else { return };
+        let Some(density) = self.density(position, photon) else { return };
         let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.back) else { return };
         let (draw, parted, carries) = (at.context.draw, around.parted(photon.back), &photon.carries);
         let by_heroes = draw.hero_factor(parted).is_some();
@@ -240,7 +207,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
 
     /// Adds a photon of one wavelength of lanes that have parted.
     fn add_alone(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<SingleLane, P::Stored>) {
-        let Self { around, kernel, place } = self;
+        let Self { around, kernel, .. } = self;
         let GatherPoint { world, path, at, excitation } = around;
         let SingleLane { wavelength, light, weight, color } = &photon.carries;
         let (draw, parted) = (at.context.draw, around.parted(photon.back));
@@ -253,7 +220,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         if by_heroes && read(path.throughput.present()) == 0.0 {
             return;
         }
-        let Some(density) = place.density(path, position, photon) else { return };
+        let Some(density) = self.density(position, photon) else { return };
         let Some((mut bsdf_cos, _)) = shading::evaluate(at.material, &at.context, at.flat, photon.back) else { return };
         let joined = path.polarization.join(at, photon.back, &photon.polarization, &mut bsdf_cos);
         let lanes = path.throughput.of(bsdf_cos);
@@ -274,6 +241,88 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         found.add(world, position, part, || {
             path.polarization.change_of_joined(at, photon.back, &photon.polarization, &joined, lanes)
         });
+    }
+
+    /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
+    fn density<T, L>(&self, position: DVec3, photon: &StoredPhoton<T, L>) -> Option<f64> {
+        let GatherPoint { world, path, at, .. } = self.around;
+        let short = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
+        // Where a path was to find light at light vertices, those bring what surfaces send on.
+        let is_found = path.resampled && photon.is_resampled;
+        if !short || is_found || photon.crosses != self.crosses || !self.continues(position, photon.flat, photon.front)
+        {
+            return None;
+        }
+        let (way, squared_radius) = (position - at.point.position, self.radius * self.radius);
+        let beside = way - at.flat * way.dot(at.flat);
+        // The kernel of Epanechnikov, which integrates to 1 over the disc.
+        let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
+        Some(kernel * photon.flat.dot(at.flat).abs())
+    }
+
+    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached,
+    /// and `front` whether that is the front.
+    fn continues(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
+        let Interaction { point, flat: own, .. } = self.around.at;
+        let cos = flat.dot(*own);
+        // The far face of a thin body, too, is reached from the other side, but from the front.
+        if cos.abs() < ALIKE || (cos < 0.0 && front == self.front) {
+            return false;
+        }
+        // A chord of a ball is at right angles to the sum of the normals at its ends.
+        let normals = *own + flat * cos.signum();
+        0.5 * (position - point.position).dot(normals).abs() <= STEP * self.radius
+    }
+
+    /// What is seen of what was found, over the share of the disc that is seen; how much polarization may change it.
+    fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
+        let GatherPoint { world, path, at, .. } = self.around;
+        let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
+        let Some(chosen) = chosen else { return (sum, 0.0) };
+        let many = weight / chosen.weight;
+        let mut moved = many * chosen.change * world.amount(chosen.rgb);
+        let up = at.point.leave(at.flat);
+        let far = HIGH * self.radius;
+        let free = world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.intersection.t);
+        let (height, from) = (far.min(free), up.at(far.min(free)));
+        if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
+            (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
+            if let Some(parts) = parts {
+                parts[chosen.part].factor *= 1.0 - many;
+            }
+            moved = 0.0;
+        }
+        let frame = Frame::about(at.flat);
+        let further = (height + STEP * self.radius) / height;
+        let mut drawn = 0;
+        while drawn < MOST {
+            let [a, b, c, d] = sampler.four_plain(path.key.child(POINTS), drawn);
+            for u in [[a, b], [c, d]] {
+                drawn += 1;
+                let DVec2 { x, y } = self.radius * by_kernel(u);
+                let to = at.point.position + frame.to_world(DVec3::new(x, y, 0.0));
+                if self.sees(from, to, further) == Some(true) {
+                    let drawn = f64::from(drawn);
+                    parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
+                    return (sum.map(|x| x * drawn), moved * drawn);
+                }
+            }
+        }
+        (sum, moved)
+    }
+
+    /// Whether what a ray to a point, or so many times as far, hits continues the surface; none if it hits nothing.
+    fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
+        let scene = &self.around.world.scene;
+        let way = to - from;
+        let ray = Ray { origin: from, direction: unit(way) };
+        let hit = scene.nearest(&ray, way.length() * further, &|_| true)?;
+        let SurfacePoint { position, normal, .. } =
+            scene.objects[hit.object as usize].shape.point(&ray, &hit.intersection);
+        let front = normal.dot(ray.direction) < 0.0;
+        let flat = if front { normal } else { -normal };
+        let continues = flat.dot(self.around.at.flat) > 0.0 && self.continues(position, flat, front);
+        Some(continues && scene.material_of(hit.object).lobes().is_wide())
     }
 }
 
@@ -298,99 +347,6 @@ impl<const N: usize> GatheredSum<N> {
         } else {
             self.u = (self.u - chance) / (1.0 - chance);
         }
-    }
-}
-
-impl GatherSurface<'_> {
-    /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
-    fn density<const N: usize, P, T, L>(
-        &self,
-        path: &Path<N, P>,
-        position: DVec3,
-        photon: &StoredPhoton<T, L>,
-    ) -> Option<f64> {
-        let short = path.surfaces() + photon.surfaces - 1 <= self.world.method.max_bounces;
-        // Where a path was to find light at light vertices, those bring what surfaces send on.
-        let is_found = path.resampled && photon.is_resampled;
-        if !short || is_found || photon.crosses != self.crosses || !self.goes_on(position, photon.flat, photon.front) {
-            return None;
-        }
-        let (way, squared_radius) = (position - self.position, self.radius * self.radius);
-        let beside = way - self.flat * way.dot(self.flat);
-        // The kernel of Epanechnikov, which integrates to 1 over the disc.
-        let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
-        Some(kernel * photon.flat.dot(self.flat).abs())
-    }
-
-    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached,
-    /// and `front` whether that is the front.
-    fn goes_on(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
-        let cos = flat.dot(self.flat);
-        // The far face of a thin body, too, is reached from the other side, but from the front.
-        if cos.abs() < ALIKE || (cos < 0.0 && front == self.front) {
-            return false;
-        }
-        // A chord of a ball is at right angles to the sum of the normals at its ends.
-        let normals = self.flat + flat * cos.signum();
-        0.5 * (position - self.position).dot(normals).abs() <= STEP * self.radius
-    }
-
-    /// What is seen of what was found, over the share of the disc that is seen, and how much of it polarization may
-    /// change.
-    fn seen_of<const N: usize>(
-        &self,
-        found: &mut GatheredSum<N>,
-        point: &SurfacePoint,
-        sampler: &Sampler,
-        key: BranchKey,
-    ) -> ([f64; 3], f64) {
-        let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
-        let Some(chosen) = chosen else { return (sum, 0.0) };
-        let many = weight / chosen.weight;
-        let mut moved = many * chosen.change * self.world.amount(chosen.rgb);
-        let up = point.leave(self.flat);
-        let far = HIGH * self.radius;
-        let free = self.world.scene.nearest(&up, 2.0 * far, &|_| true).map_or(far, |hit| 0.5 * hit.intersection.t);
-        let (height, from) = (far.min(free), up.at(far.min(free)));
-        if !self.sees(from, chosen.position, 1.0).unwrap_or(true) {
-            (0..3).for_each(|i| sum[i] -= chosen.rgb[i] * many);
-            if let Some(parts) = parts {
-                parts[chosen.part].factor *= 1.0 - many;
-            }
-            moved = 0.0;
-        }
-        let frame = Frame::about(self.flat);
-        let further = (height + STEP * self.radius) / height;
-        let mut drawn = 0;
-        while drawn < MOST {
-            let [a, b, c, d] = sampler.four_plain(key.child(POINTS), drawn);
-            for u in [[a, b], [c, d]] {
-                drawn += 1;
-                let DVec2 { x, y } = self.radius * by_kernel(u);
-                let at = self.position + frame.to_world(DVec3::new(x, y, 0.0));
-                if self.sees(from, at, further) == Some(true) {
-                    let drawn = f64::from(drawn);
-                    parts.iter_mut().flatten().for_each(|part| part.factor *= drawn);
-                    return (sum.map(|x| x * drawn), moved * drawn);
-                }
-            }
-        }
-        (sum, moved)
-    }
-
-    /// Whether what is met on the way to a point, or so many times as far, continues the surface; none if nothing is
-    /// met.
-    fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
-        let scene = &self.world.scene;
-        let way = to - from;
-        let ray = Ray { origin: from, direction: unit(way) };
-        let hit = scene.nearest(&ray, way.length() * further, &|_| true)?;
-        let SurfacePoint { position, normal, .. } =
-            scene.objects[hit.object as usize].shape.point(&ray, &hit.intersection);
-        let front = normal.dot(ray.direction) < 0.0;
-        let flat = if front { normal } else { -normal };
-        let goes_on = flat.dot(self.flat) > 0.0 && self.goes_on(position, flat, front);
-        Some(goes_on && scene.material_of(hit.object).lobes().is_wide())
     }
 }
 

@@ -82,7 +82,7 @@ fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
         return;
     }
     let bounds = Bounds::around(points.iter().map(|point| point.0));
-    let size = bounds.max - bounds.min;
+    let size = bounds.size();
     let axis = (1..3).fold(0, |widest, axis| if size[axis] > size[widest] { axis } else { widest });
     let middle = points.len() / 2;
     let order = |a: &(DVec3, u32), b: &(DVec3, u32)| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1));

@@ -15,7 +15,7 @@ use super::usefulness::{DiffusePlace, is_seen, places, usefulness};
 use crate::film::Layer;
 use crate::light::{LeSample, Light, LightId};
 use crate::material::Material;
-use crate::math::{BranchKey, DVec3, Distribution, Sampler, seed_of};
+use crate::math::{BranchKey, DVec3, Distribution, Sampler, median, seed_of};
 use crate::shape::SurfacePoint;
 use crate::spectrum::Draw;
 use crate::trace::parallel::in_parallel;
@@ -27,8 +27,7 @@ use crate::trace::{Transport, World};
 
 /// Samples of each pixel that share light paths.
 pub const SHARED: u32 = 16;
-/// Camera samples for each light path, and the fewest and most light paths: what samples share does not average out
-/// over pixels.
+/// Camera samples for each light path, fewest and most light paths: noise that pixels share does not average out.
 const PER_PATH: u64 = 32;
 const FEWEST: u64 = 256;
 const MOST: u64 = 16_384;
@@ -67,8 +66,7 @@ const FAINT: f64 = 0.25;
 
 /// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
 ///
-/// Not where wavelengths are drawn anew for each camera sample, nor where light goes straight through surfaces at which
-/// light paths end.
+/// Not where each camera sample draws wavelengths, nor where light passes through surfaces at which light paths end.
 pub fn can_be_followed(world: &World) -> bool {
     let objects = 0..world.scene.objects.len() as u32;
     !world.method.basis.draws_wavelengths()
@@ -92,7 +90,6 @@ pub fn few_vertices<const N: usize>(world: &World) -> Option<LightVertices<N>> {
 /// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
 pub struct LightPaths<'a> {
     world: &'a World,
-    /// Of their random numbers.
     seed: u64,
     by_flux: Distribution,
     /// How likely paths from the camera go on for light that is not theirs; none where all is.
@@ -130,8 +127,7 @@ impl<'a> LightPaths<'a> {
         (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, rest, places, scale: OnceLock::new() })
     }
 
-    /// Whether a layer of lights is asked for whose paths would be so few that it would be too bright or too dark as a
-    /// whole.
+    /// Whether a layer of lights is asked for whose paths are so few that all of it would be too bright or too dark.
     pub fn starve_a_layer(&self) -> bool {
         if self.world.layers.at(Layer::Lights).is_none() {
             return false;
@@ -157,11 +153,6 @@ impl<'a> LightPaths<'a> {
             reaching += in_parallel(BATCH as usize, &reaches).into_iter().filter(|&reaches| reaches).count();
             reaching >= REACHING
         })
-    }
-
-    /// The random numbers of a path of a set.
-    fn sampler(&self, set: u32, number: u32) -> Sampler {
-        Sampler::new(self.seed ^ SEED, [set, 0], number)
     }
 
     /// The light of a path and how the path leaves it, if it does.
@@ -202,16 +193,14 @@ impl<'a> LightPaths<'a> {
         LightVertices::dealt(vertices, center, near, self.rest, stats, |vertices| self.powers(vertices))
     }
 
-    /// The middle of vertices, and D, by light paths of their own: weights by a D that depends on the vertices that
-    /// they are of would be biased.
+    /// The middle of vertices, and D, by light paths of their own: by the same ones, weights would be biased.
     fn scale<const N: usize, P: Polarization<N>>(&self) -> (DVec3, f64) {
         let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
         // Medians: some vertices may lie far outside of all that is seen.
         let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
-        let center = DVec3::new(middle(0), middle(1), middle(2));
+        let center = DVec3::from([0, 1, 2].map(|axis| middle(axis).unwrap_or_default()));
         let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
-        let near = if vertices.is_empty() { 1.0 } else { (NEAR * median(distances)).max(f64::MIN_POSITIVE) };
-        (center, near)
+        (center, median(distances).map_or(1.0, |distance| (NEAR * distance).max(f64::MIN_POSITIVE)))
     }
 
     /// The vertices of some light paths of a set.
@@ -236,7 +225,7 @@ impl<'a> LightPaths<'a> {
         let draw = world.method.basis.draw(0.0);
         let mut vertices = Vec::new();
         for number in paths {
-            let sampler = self.sampler(set, number as u32);
+            let sampler = Sampler::new(self.seed ^ SEED, [set, 0], number as u32);
             let Some((light, emitted)) = self.start(&sampler) else { continue };
             let photon =
                 Photon { emitted: &emitted, light, draw: &draw, sampler: &sampler, over: Surfaces::All, early: true };
@@ -256,12 +245,6 @@ impl<'a> LightPaths<'a> {
         let shares = usefulness(world, &self.places, &positions, &powers);
         powers.iter().zip(shares).map(|(power, share)| (power / most) as f32 * share).collect()
     }
-}
-
-/// The median of some numbers; 0 of none.
-fn median(mut numbers: Vec<f64>) -> f64 {
-    let half = numbers.len() / 2;
-    if numbers.is_empty() { 0.0 } else { *numbers.select_nth_unstable_by(half, f64::total_cmp).1 }
 }
 
 /// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over

@@ -26,7 +26,7 @@ pub struct LightVertex<const N: usize> {
     /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
     pub leaving: Lanes<N>,
     pub light: LightId,
-    /// Surfaces that the light has met, and the diffuse ones of them, this one included.
+    /// Surfaces that the light has hit, and the diffuse ones of them, this one included.
     pub surfaces: u32,
     pub diffuse: u32,
     /// Whether a photon has left it.
@@ -45,7 +45,7 @@ pub struct LightVertices<const N: usize> {
     /// D.
     near: f64,
     /// How likely paths from the camera go on for light that light paths do not find; none where they find all.
-    rest: Option<f64>,
+    pub rest: Option<f64>,
     /// The instructions by which candidates are weighed.
     instructions: Instructions,
     pub stats: Stats,
@@ -67,12 +67,10 @@ struct Candidates {
     power: OfCandidates,
 }
 
-/// A number for each candidate: for each place in a row, the numbers of all rows side by side, so that all rows
-/// are summed at once.
+/// A number for each candidate: for each place in a row, those of all rows side by side, which are summed at once.
 type OfCandidates = [[f32; ROWS]; ROW];
 
-/// Whether light that leaves a surface for another is looked for at light vertices on it: a diffuse one, by its own
-/// normal.
+/// Whether light between surfaces is looked for at light vertices on this one: a diffuse one, by its own normal.
 pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
     matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }
@@ -102,14 +100,9 @@ impl<const N: usize> LightVertices<N> {
         self.near * self.near
     }
 
-    /// Whether the light that comes along a ray from a light is looked for behind the first surface that it meets.
+    /// Whether the light that comes along a ray from a light is looked for behind the first surface that it hits.
     pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
         self.rest.is_none() || world.is_found_by_light_paths(light, ray)
-    }
-
-    /// How likely a path goes on for light that is not looked for; none where all is.
-    pub fn rest(&self) -> Option<f64> {
-        self.rest
     }
 
     /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.
@@ -117,8 +110,7 @@ impl<const N: usize> LightVertices<N> {
         self.near_squared() / (distance_squared + self.near_squared())
     }
 
-    /// A vertex as seen from a point of a surface, for two random numbers, and one over how likely it was; none if none
-    /// is seen.
+    /// A vertex seen from a point of a surface, for two random numbers, and one over how likely it was; none if unseen.
     pub fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
         let count = self.candidates.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);

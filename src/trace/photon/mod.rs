@@ -17,5 +17,5 @@ pub use gather::{GatherPoint, Gathered, PhotonShare, PhotonSpectrum, gather};
 pub use light_paths::{LightPaths, SHARED, can_be_followed, few_vertices, light_paths_reach};
 pub use light_vertices::{LightVertex, LightVertices, holds_vertices};
 pub use pass_light::PassLight;
-pub use photon_map::{PhotonMap, photons, send_stored};
-pub use splat::{Splat, send_splatted, splat_photon};
+pub use photon_map::{PhotonMap, photons, store_photon};
+pub use splat::{Splat, splat_photon};

@@ -15,7 +15,6 @@ pub struct PassLight<const N: usize, P: Polarization<N> = Polarized> {
 }
 
 impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
-    /// For one pass.
     pub fn new(world: &World, pass: &Pass) -> Self {
         let photons = photons::<N, P>(world, pass);
         let numbers = &pass.numbers;
@@ -34,14 +33,8 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
         self.vertices.get((sample / SHARED) as usize)
     }
 
-    /// Photons sent.
     pub fn sent(&self) -> u64 {
         self.photons.as_ref().map_or(0, |photons| photons.sent)
-    }
-
-    /// Whether photons tell by how much they are blurred.
-    pub fn tells_blur(&self) -> bool {
-        self.photons.as_ref().is_some_and(|photons| photons.half.is_some())
     }
 
     /// Adds what was noticed of it.

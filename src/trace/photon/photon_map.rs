@@ -4,7 +4,7 @@
 //! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
 //! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
 
-use super::batch::{Batch, SentBatch, batches_of_pass, send};
+use super::batch::{batches_of_pass, send};
 use super::follow::{Photon, PhotonHit};
 use super::kd_tree::KdTree;
 use super::kernel::Kernel;
@@ -14,9 +14,8 @@ use crate::spectrum::{Lanes, Matching, Wavelength};
 use crate::trace::World;
 use crate::trace::parallel::in_parallel;
 use crate::trace::pass::Pass;
-use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
-use crate::trace::walk::{Interaction, Polarization, Polarized};
+use crate::trace::walk::{Interaction, Polarization, Polarized, Walker};
 
 /// A photon as the map stores it: where it landed, and what it carries.
 #[derive(Clone, Debug)]
@@ -29,7 +28,7 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub front: bool,
     /// Whether light crosses the surface.
     pub crosses: bool,
-    /// Surfaces it met, the last one included.
+    /// Surfaces it hit, the last one included.
     pub surfaces: u32,
     /// Whether light vertices show what surfaces send on of its light.
     pub is_resampled: bool,
@@ -38,7 +37,6 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub carries: T,
 }
 
-/// Lanes that have not parted.
 #[derive(Clone, Debug)]
 pub struct JointLanes<const N: usize> {
     /// Flux, lane by lane, over the cosine under which it arrived.
@@ -57,7 +55,6 @@ pub struct SingleLane {
     pub color: [f64; 3],
 }
 
-/// The photons of one pass.
 pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
     pub together: KdTree<StoredPhoton<JointLanes<N>, P::Stored>>,
     pub alone: KdTree<StoredPhoton<SingleLane, P::Stored>>,
@@ -79,13 +76,13 @@ pub enum PhotonRecord<const N: usize, L = Polarized> {
     SingleLane(StoredPhoton<SingleLane, L>),
 }
 
-/// Sends the photons of one pass.
 pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -> Option<PhotonMap<N, P>> {
     let (targets, kernel) = (world.map_targets.as_ref()?, Kernel::of_pass(world, pass)?);
     let targets = &*pass.targets(world, targets, world.method.map()?.count);
     let (seed, before) = pass.photon_seed();
     let batches = batches_of_pass(targets, before, seed ^ SEED);
-    let done = in_parallel(batches.len(), &|number| send_stored::<N, P>(world, targets, batches[number]));
+    let done =
+        in_parallel(batches.len(), &|number| send(world, targets, batches[number], false, &store_photon::<N, P>));
     let mut stats = Stats::default();
     let (mut together, mut alone) = (Vec::new(), Vec::new());
     for sent in done {
@@ -107,18 +104,9 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     Some(PhotonMap { together, alone, crosses, kernel, half, sent, stats })
 }
 
-/// Sends one batch.
-pub fn send_stored<const N: usize, P: Polarization<N>>(
-    world: &World,
-    targets: &PhotonTargets,
-    batch: Batch,
-) -> SentBatch<(DVec3, PhotonRecord<N, P::Stored>)> {
-    send(world, targets, batch, false, &|_, photon_hit: &PhotonHit<N, P>, kept| keep(world, photon_hit, kept))
-}
-
 /// Keeps a photon where it lands.
-fn keep<const N: usize, P: Polarization<N>>(
-    world: &World,
+pub fn store_photon<const N: usize, P: Polarization<N>>(
+    Walker { world, .. }: &Walker<N, P>,
     photon_hit: &PhotonHit<N, P>,
     kept: &mut Vec<(DVec3, PhotonRecord<N, P::Stored>)>,
 ) {

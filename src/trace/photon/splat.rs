@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::batch::{Batch, SentBatch, send};
 use super::follow::{Photon, PhotonHit};
 use crate::light::LightId;
 use crate::material::ScatterContext;
@@ -11,13 +10,12 @@ use crate::scene::{FilmSettings, RayEnds, Seen, Visibility};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::dyes::Dyes;
 use crate::trace::first_lobe::FirstLobe;
-use crate::trace::photon_targets::PhotonTargets;
+use crate::trace::media;
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::spectrum_sample::Spectrum;
 use crate::trace::walk::{
     DYE, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
 };
-use crate::trace::{World, media};
 
 /// Use of the random numbers where a photon is seen: the point of the lens.
 const LENS: u32 = 3;
@@ -51,11 +49,6 @@ impl Splat {
     /// So many times as bright.
     pub fn times(self, factor: f64) -> Self {
         Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
-    }
-
-    /// The same of a photon of the first half or not, if that is said.
-    pub fn of_half(self, early: Option<bool>) -> Self {
-        Self { early: early.unwrap_or(self.early), ..self }
     }
 }
 
@@ -94,15 +87,6 @@ impl PlacedSplat {
         };
         rows.flat_map(move |y| columns.clone().map(move |x| [x, y])).filter_map(weighed)
     }
-}
-
-/// Sends one batch of photons that are shown.
-pub fn send_splatted<const N: usize, P: Polarization<N>>(
-    world: &World,
-    targets: &PhotonTargets,
-    batch: Batch,
-) -> SentBatch<PlacedSplat> {
-    send(world, targets, batch, false, &splat_photon::<N, P>)
 }
 
 /// The connection of a photon to the camera: how the camera sees the place where it landed.
@@ -185,15 +169,8 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
             false => there,
         };
         let ends = RayEnds { left: path.left, ..RayEnds::default() };
-        let last_occluder = &self.walker.last_occluder;
-        let segment = VisibilityTest {
-            ray: &ray,
-            distance,
-            ends,
-            inside,
-            occluders: Occluders::Seen(self.seen_through),
-            last_occluder,
-        };
+        let (occluders, last_occluder) = (Occluders::Seen(self.seen_through), &self.walker.last_occluder);
+        let segment = VisibilityTest { ray: &ray, distance, ends, inside, occluders, last_occluder };
         let (arriving, polarization) = segment.arriving(world, draw, start, light)?;
         if inside == there {
             return Some((arriving, polarization));

@@ -24,8 +24,7 @@ pub struct DiffusePlace {
 }
 
 /// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
-/// each other are neighbors, and each has the power of what leaves it. The whole image counts, also where only a part
-/// of it is made.
+/// each other are neighbors, and each has the power of what leaves it. The whole image counts, whatever part is made.
 pub fn usefulness(world: &World, places: &[DiffusePlace], vertices: &[DVec3], powers: &[f64]) -> Vec<f32> {
     if places.is_empty() {
         return vec![1.0; vertices.len()];

@@ -9,7 +9,7 @@ use crate::trace::width::in_lanes;
 /// What following all branches takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branching {
-    /// Surfaces that a mean camera sample meets.
+    /// Surfaces that a mean camera sample hits.
     Affordable(f64),
     /// More than was asked for, seen from a pixel.
     Beyond([i32; 2]),
@@ -21,7 +21,7 @@ const SIDE: u32 = 16;
 const OBJECTS: usize = 64;
 
 /// Follows all branches in pixels all over the image, and where the camera would see objects of several ways if nothing
-/// were before them, until it is known whether a mean sample meets more than `most` surfaces. A sample that had to go
+/// were before them, until it is known whether a mean sample hits more than `most` surfaces. A sample that had to go
 /// on by chance is beyond that whatever the mean is.
 pub fn branching(world: &World, most: f64) -> Branching {
     in_lanes!(&world.method.basis, N => ask::<N>(world, most))
@@ -50,8 +50,7 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     }
 }
 
-/// Pixels in which the camera would see objects of some materials if nothing were before them: their middles, and
-/// places toward their corners.
+/// Pixels in which the camera would see objects of some materials alone: their middles, and toward their corners.
 pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[i32; 2]> {
     let scene = &world.scene;
     let wanted = |object: &u32| counts(scene.material_of(*object).lobes());
@@ -60,7 +59,7 @@ pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[
     let mut pixels = Vec::new();
     for &object in several.iter().step_by(stride) {
         let Some(bounds) = scene.objects[object as usize].shape.bounds() else { continue };
-        let (middle, half) = (0.5 * (bounds.min + bounds.max), 0.5 * (bounds.max - bounds.min));
+        let (middle, half) = (bounds.center(), 0.5 * bounds.size());
         let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
         let corners =
             (0..8).map(|corner| middle + 0.6 * half * DVec3::new(sign(corner, 0), sign(corner, 1), sign(corner, 2)));

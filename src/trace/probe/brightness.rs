@@ -3,7 +3,7 @@
 use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
 use super::openings::Openings;
-use super::room::Room;
+use super::room::{Room, weight};
 use crate::math::{DVec3, Ray};
 use crate::shape::{Quad, Shape};
 use crate::trace::bright::{BrightPlace, BrightPlaces, MOST};
@@ -43,25 +43,24 @@ pub fn room_light(world: &World) -> RoomLight {
     if world.scene.infinite_lights.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
         return RoomLight::default();
     }
-    in_lanes!(&world.method.basis, N => of_room::<N>(world)).unwrap_or_default()
+    of_room(world).unwrap_or_default()
 }
 
-fn of_room<const N: usize>(world: &World) -> Option<RoomLight> {
+fn of_room(world: &World) -> Option<RoomLight> {
     // A few tell whether there is a room at all.
-    Room::of(world, bounces::<N>(world, FEW), SEED)?;
-    let room = Room::of(world, bounces::<N>(world, SIDE), SEED)?;
+    Room::of(world, bounces(world, FEW), SEED)?;
+    let room = Room::of(world, bounces(world, SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
     let openings = Openings::of(&room, if is_rare { MOST_PIECES } else { 1 });
-    let openings = openings.and_then(|openings| bright_openings::<N>(world, &openings));
+    let openings = openings.and_then(|openings| bright_openings(world, &openings));
     Some(RoomLight { places: learned(&room), openings, is_rare })
 }
 
 /// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
-pub(super) fn bounces<const N: usize>(world: &World, side: u32) -> Vec<Bounce> {
-    let vertices = few_vertices::<N>(world);
-    found_all_over(world, side, SEED, vertices.as_ref(), |finding| match finding {
-        SensorEvent::Bounce(bounce) => Some(bounce),
-        _ => None,
+pub(super) fn bounces(world: &World, side: u32) -> Vec<Bounce> {
+    let bounce = |finding: SensorEvent| if let SensorEvent::Bounce(bounce) = finding { Some(bounce) } else { None };
+    in_lanes!(&world.method.basis, N => {
+        found_all_over(world, side, SEED, few_vertices::<N>(world).as_ref(), bounce)
     })
 }
 
@@ -79,13 +78,13 @@ fn learned(room: &Room) -> Option<BrightPlaces> {
 }
 
 /// Those openings through which most light comes. All within the walls aim at them.
-fn bright_openings<const N: usize>(world: &World, Openings { walls, rectangles }: &Openings) -> Option<BrightPlaces> {
+fn bright_openings(world: &World, Openings { walls, rectangles }: &Openings) -> Option<BrightPlaces> {
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
     let places = rectangles.iter().map(place).collect();
     // What light comes through them, bounces tell that are aimed at them.
     let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, missed: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
-    let room = Room::of(&world, bounces::<N>(&world, SIDE), SEED)?;
+    let room = Room::of(&world, bounces(&world, SIDE), SEED)?;
     Some(BrightPlaces { within: *walls, are_openings: true, ..bright_of(&room, rectangles.iter().copied())? })
 }
 
@@ -111,7 +110,7 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
             missed += if any { 0.0 } else { bounce.light };
         }
     }
-    let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / room.weight();
+    let mean = room.bounces.iter().map(|bounce| bounce.light).sum::<f64>() / weight(&room.bounces);
     let elsewhere = elsewhere.root() + mean;
     let stands_out = |place: &BrightPlace| place.radiance > elsewhere;
     let places: Vec<BrightPlace> = places.into_iter().filter_map(LearnedPlace::bright).filter(stands_out).collect();
@@ -124,7 +123,6 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
     })
 }
 
-/// A place that is being learned.
 struct LearnedPlace {
     shape: Shape,
     rectangle: Rectangle,

@@ -198,8 +198,7 @@ impl PointSpread {
 
     /// Weight times area: how much of what is aimed is aimed in vain.
     ///
-    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes with the square of the
-    /// area.
+    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes as the area squared.
     fn cost(&self) -> f64 {
         if self.weight <= 0.0 {
             return 0.0;

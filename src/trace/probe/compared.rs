@@ -4,7 +4,6 @@ use super::seen_light::{Amount, SIDE, for_each_light, with_fewer_photons};
 use crate::film::Window;
 use crate::trace::World;
 use crate::trace::method::Polarizing;
-use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
 
 /// The relative RMS error of light that is taken for unpolarized at every surface, over small cells of the image, over
@@ -12,19 +11,16 @@ use crate::trace::width::in_lanes_of;
 ///
 /// The same paths are followed with and without: each lane is told what polarization makes of it, and only the
 /// difference is noisy. Two copies of each cell know nothing of each other, so the mean of their product has no part of
-/// that noise, as a square would have; one standard error is added for what they have not met.
+/// that noise, as a square would have; one standard error is added for what they have not hit.
 pub fn polarization_error(world: &World) -> f64 {
     let world = with_fewer_photons(world).with_polarization(Polarizing::Compared);
-    in_lanes_of!(&world, N, P => compare::<N, P>(&world))
-}
-
-fn compare<const N: usize, P: Polarization<N>>(world: &World) -> f64 {
     let mut grids = SIDES.map(|side| Cells::new(world.scene.film.window(), side));
     let mut all = Amount::default();
-    for_each_light::<N, P>(world, 2, &mut |pixel, copy, found| {
+    let mut take = |pixel, copy, found| {
         grids.iter_mut().for_each(|cells| cells.add(pixel, copy, found));
         all += found;
-    });
+    };
+    in_lanes_of!(&world, N, P => for_each_light::<N, P>(&world, 2, &mut take));
     let lit = all.light + all.change;
     let of_all = if lit > 0.0 { all.change.abs() / lit } else { 0.0 };
     grids.iter().map(Cells::error).fold(of_all, f64::max)

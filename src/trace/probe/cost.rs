@@ -4,12 +4,12 @@ use std::cell::Cell;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use crate::math::Sampler;
+use crate::math::{Sampler, median};
 use crate::trace::camera::PathTracer;
 use crate::trace::image::PhotonCost;
 use crate::trace::parallel::{alone, in_parallel};
 use crate::trace::pass::Pass;
-use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send_splatted, send_stored};
+use crate::trace::photon::{Batch, LightPaths, PhotonMap, SHARED, photons, send, splat_photon, store_photon};
 use crate::trace::photon_targets::PhotonTargets;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
@@ -19,8 +19,6 @@ use crate::trace::{MapPasses, RAYS_OF_A_LOOK, World};
 /// What a probe found, per camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
-    /// Camera samples traced.
-    pub samples: u32,
     /// Rays followed, without those to lights.
     pub rays: f64,
     /// Share of the samples whose lanes parted.
@@ -109,7 +107,7 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let rays = batches.iter().map(|batch| batch.rays).sum::<u64>() as f64 / f64::from(samples);
     let time = undisturbed(batches, |number| take(number as u32 * BATCH..(number as u32 + 1) * BATCH));
     let per_sample = 1.0 / f64::from(samples);
-    Probe { samples, rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
+    Probe { rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
 }
 
 /// What some work took.
@@ -123,9 +121,7 @@ struct Timed {
 /// else kept the processor, they are faster.
 fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Duration {
     let per_ray = |batch: &Timed| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
-    let mut all: Vec<f64> = batches.iter().map(per_ray).collect();
-    all.sort_by(f64::total_cmp);
-    let slow = SLOW * all[all.len() / 2];
+    let slow = median(batches.iter().map(per_ray).collect()).map_or(f64::INFINITY, |median| SLOW * median);
     let time = |(number, batch): (usize, &Timed)| match per_ray(batch) > slow {
         true => batch.time.min(again(number).time),
         false => batch.time,
@@ -158,7 +154,6 @@ pub fn photons_within(world: &World, rays: f64) -> u64 {
     (rays * FEW as f64 / splatted.max(stored).max(1) as f64) as u64
 }
 
-/// Follows a batch of photons.
 type Follow<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
 
 /// What is found by the photons of the light pass, and by those of a map, where there are any.
@@ -166,12 +161,12 @@ fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T
     in_lanes!(&world.method.basis, N => {
         let film = world.scene.film;
         let spread = |batch: Batch, to: &PhotonTargets| {
-            let sent = send_splatted::<N, Polarized>(world, to, batch);
+            let sent = send(world, to, batch, false, &splat_photon::<N, Polarized>);
             sent.kept.iter().for_each(|placed| placed.spread(film, &mut |_, _| ()));
             sent.stats
         };
         let splatted = |to: &PhotonTargets| find(to, &|batch| spread(batch, to));
-        let stored = |to: &PhotonTargets| find(to, &|batch| send_stored::<N, Polarized>(world, to, batch).stats);
+        let stored = |to: &PhotonTargets| find(to, &|batch| send(world, to, batch, false, &store_photon::<N, Polarized>).stats);
         [world.photon_targets.as_ref().map(splatted), world.map_targets.as_ref().map(stored)].map(Option::unwrap_or_default)
     })
 }

@@ -31,8 +31,7 @@ const PIXELS: u32 = 2;
 const LOOKS: u32 = 2;
 const SAMPLES: u32 = 4;
 const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
-/// Pixels of a cell at least, and most cells. How many samples an image takes does not count, so that one with more of
-/// them may go on from it.
+/// Fewest pixels of a cell, and most cells: the same for any number of samples, so that an image may go on with more.
 const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
 /// Cells that tell how many rays a cell takes, and as how many other looks all take: with half of it,
@@ -68,8 +67,7 @@ pub fn adaptive(world: &World) -> Option<Adaptive> {
     Some(Adaptive { density: SampleDensity { cells, powers: powers(&of(0..2))? }, gain, rays })
 }
 
-/// What a pixel of a cell showed in the film's channels: the mean of its samples, and the variance of one of them, as
-/// it counts where many are spread evenly.
+/// What a pixel of a cell showed in film channels: the mean of its samples, and the variance of one spread evenly.
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelMoments {
     mean: [f64; 3],
@@ -186,8 +184,7 @@ fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_abs
     (0..columns * rows).map(around).collect()
 }
 
-/// The powers of two that make the error least, of as many rays as so many samples everywhere take; none where there is
-/// no noise.
+/// The powers of two that make the error least for as many rays as even samples take; none without noise.
 fn powers(found: &[CellNoise]) -> Option<Vec<i8>> {
     let wanted: Vec<f64> = found.iter().map(|cell| (cell.variance / cell.rays).sqrt()).collect();
     let most = wanted.iter().copied().fold(0.0, f64::max);
@@ -214,13 +211,11 @@ fn powers(found: &[CellNoise]) -> Option<Vec<i8>> {
     Some(best)
 }
 
-/// The rays of all cells.
 fn rays(found: &[CellNoise], powers: &[i8]) -> f64 {
     found.iter().zip(powers).map(|(cell, &power)| cell.rays * SampleDensity::times(power)).sum()
 }
 
-/// How many times as long an equal error takes with as many samples everywhere, and how many times as many rays are
-/// followed.
+/// How many times as long an equal error takes with even samples, and how many times as many rays are followed.
 fn worth(powers: &[i8], found: &[CellNoise]) -> [f64; 2] {
     let rays = rays(found, powers) / rays(found, &vec![0; found.len()]);
     let before: f64 = found.iter().map(|cell| cell.variance).sum();

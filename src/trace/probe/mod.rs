@@ -29,6 +29,6 @@ pub use pilot::{PhotonWorth, SampleWorth, photons_worth};
 pub use pilot_noise::{Effort, PilotNoise, pilot_noise};
 pub use prepare::{prepare, prepare_unguided};
 pub use reach::reached_places;
-pub use seen_light::{SeenLight, seen_light};
+pub use seen_light::most_changed;
 pub use sent_ahead::{piloted, seen_photons};
 pub use sunlit::with_light_vertices;

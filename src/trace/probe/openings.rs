@@ -25,8 +25,7 @@ const WALLS: usize = EVENLY + 1;
 const BESIDE: [f64; 2] = [-14.0, -3.0];
 /// Nearer places, in squares of the size of the room, weigh no less.
 const LEAST: f64 = 1.0 / (1 << 28) as f64;
-/// An opening is taken to be so many times as large as what was found of it: the rest would be met by chance alone, and
-/// be much too bright.
+/// An opening is taken as so many times as large as was found: the rest, hit by chance alone, would be too bright.
 const MARGIN: f64 = 1.03;
 /// Two parts are one opening if a rectangle about both is no more than so many times as large as theirs.
 const ONE: f64 = 1.3;
@@ -44,7 +43,6 @@ type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 pub struct Openings {
     /// A box around the walls of the room.
     pub walls: Bounds,
-    /// The rectangles that hold the openings.
     pub rectangles: Vec<Rectangle>,
 }
 
@@ -71,7 +69,6 @@ impl Openings {
     }
 }
 
-/// A search for openings.
 struct OpeningSearch<'a> {
     room: &'a Room<'a>,
     walls: Bounds,
@@ -89,10 +86,9 @@ impl OpeningSearch<'_> {
         found
     }
 
-    /// Where rays leave the room that fall beside ways out, weighted by how few fall there: the less densely by the
-    /// square of the distance.
+    /// Where rays leave the room beside ways out, weighted by how few fall there: by the square of the distance.
     fn beside(&self, ways_out: &[DVec3], piece: usize) -> Vec<(DVec3, f64)> {
-        let size = (self.walls.max - self.walls.min).length();
+        let size = self.walls.size().length();
         let toward = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
             let way_out = ways_out[number as usize % ways_out.len()];
             let radius = size * libm::exp2(BESIDE[0] + (BESIDE[1] - BESIDE[0]) * exponent);

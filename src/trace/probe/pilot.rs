@@ -36,8 +36,7 @@ pub(super) struct CellStatistics {
 /// What camera samples bring beside photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleWorth {
-    /// Variance of an image of n camera samples in all, summed over pixels and channels, times n; without the hundredth
-    /// of the pixels that has most of it.
+    /// Variance of an image of n camera samples, summed over pixels and channels but the noisiest hundredth, times n.
     pub variance: f64,
     /// Rays that one follows, without those to lights.
     pub rays: f64,
@@ -118,7 +117,6 @@ fn weigh<const N: usize>(
     brings.iter().any(|&x| x != 0.0).then_some(worth)
 }
 
-/// How many pixels each cell has.
 fn sizes_of_cells(film: FilmSettings) -> Vec<f64> {
     let of_side = |size: u32| {
         // The first pixel of a cell, counted also where a cell has none.

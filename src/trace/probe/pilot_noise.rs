@@ -42,8 +42,7 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
     })
 }
 
-/// What some samples of a pixel are: the mean of X + Y + Z, and the variance of one. The cell of the format in which it
-/// lies.
+/// Of some samples of a pixel, the mean of X + Y + Z, the variance of one, and the pixel's cell of the format.
 struct PixelNoise {
     mean: f64,
     variance: f64,
@@ -99,8 +98,7 @@ pub struct PilotNoise {
     rays: f64,
 }
 
-/// Variances in the mean of the pixels, times the rays that they take: of a camera sample, and of a photon of each
-/// light.
+/// Variances in the mean of the pixels, times the rays they take: of a camera sample, and of a photon of each light.
 struct Work {
     samples: f64,
     photons: Vec<f64>,
@@ -136,8 +134,7 @@ fn weigh<const N: usize>(
 }
 
 impl PilotNoise {
-    /// How many times as long an equal error takes with other samples, both beside as many photons as are best for
-    /// them; none where there is no noise.
+    /// How many times as long an equal error takes with other samples, both with their best photons; none if no noise.
     pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<Effort> {
         let mean = others.mean(photons);
         let least = |noise: &Self| noise.effort(photons, photons.len(), |_| 0.0, mean);
@@ -146,8 +143,7 @@ impl PilotNoise {
     }
 
     /// The least product of time and variance where the first few of some photons are sent, and light of the others is
-    /// left to chance. A camera sample finds little of it, as spikes: of what photons bring, the second moment is so
-    /// many times the mean.
+    /// left to chance. Camera samples find it in spikes: its second moment is so many times the mean photons bring.
     pub fn least_work(&self, photons: &[PhotonWorth], spikes: &[f64], sent: usize) -> Effort {
         let left = || photons.iter().zip(spikes).skip(sent);
         if left().any(|(_, spike)| spike.is_infinite()) {
@@ -160,21 +156,14 @@ impl PilotNoise {
 
     /// The least product of time and variance where the first few of some photons are sent, in an image of such a mean.
     ///
-    /// Of errors of pixels, the hundredth of the pixels in which samples vary most beside photons is left out: no
-    /// photon mends it.
-    fn effort(
-        &self,
-        photons: &[PhotonWorth],
-        sent: usize,
-        by_chance: impl Fn(&PixelNoise) -> f64,
-        mean: f64,
-    ) -> Effort {
+    /// Errors of pixels leave out the hundredth of them in which samples vary most beside photons: no photon mends it.
+    fn effort(&self, photons: &[PhotonWorth], sent: usize, chance: impl Fn(&PixelNoise) -> f64, mean: f64) -> Effort {
         let of_pixel = |pixel: &PixelNoise| pixel.seen(photons).powi(2) + DARK * mean * mean;
         let of_whole = |_: &PixelNoise| mean * mean;
         let photons = &photons[..sent];
         Effort {
-            of_pixels: self.work(photons, &by_chance, of_pixel, self.worst()).least(),
-            of_whole: self.is_whole.then(|| self.work(photons, &by_chance, of_whole, 0).least()),
+            of_pixels: self.work(photons, &chance, of_pixel, self.worst()).least(),
+            of_whole: self.is_whole.then(|| self.work(photons, &chance, of_whole, 0).least()),
         }
     }
 

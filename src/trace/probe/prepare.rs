@@ -6,8 +6,7 @@ use crate::scene::Scene;
 use crate::spectrum::Curve;
 use crate::trace::{Method, World};
 
-/// The scene, tabulated for the method, with rays and photons sent ahead to learn where lamps are visible and where to
-/// send the other photons.
+/// The scene, tabulated for the method, after rays and photons have learned where lamps and caustics are visible.
 pub fn prepare(scene: &Scene<Curve>, method: Method) -> World {
     let mut world = prepare_unguided(scene, method);
     learn_where_to_send(&mut world);

@@ -1,7 +1,7 @@
 //! What the plan asks of a map of photons before it is made.
 
 use super::findings::found_all_over;
-use crate::math::DVec3;
+use crate::math::{DVec3, median};
 use crate::trace::World;
 use crate::trace::camera::SensorEvent;
 use crate::trace::photon::PhotonMap;
@@ -14,8 +14,7 @@ const FEW: usize = 256;
 /// Sets their random numbers apart.
 const LOOKING: u64 = 0x6c6f_6f6b;
 
-/// Places on surfaces that scatter widely to which paths from the camera come by way of others; the same whatever part
-/// of the image is made.
+/// Places on surfaces that scatter widely which camera paths reach by way of others; the same for any part made.
 pub fn reached_places(world: &World) -> Vec<DVec3> {
     let place = |finding: SensorEvent| match finding {
         SensorEvent::Place(place) => Some(place),
@@ -30,8 +29,7 @@ pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons:
     places.iter().any(|&place| photons.count_near(place, coarse * pixel_at(world, place)) > 0)
 }
 
-/// Whether any photon lies as near to such a place as the next place does: some may be reached where paths lead to more
-/// than the camera sees.
+/// Whether any photon lies as near to such a place as the next place: paths may lead to more than the camera sees.
 pub fn lie_among<const N: usize>(places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let apart = apart(places);
     places.iter().any(|&place| photons.count_near(place, apart) > 0)
@@ -43,9 +41,8 @@ fn apart(places: &[DVec3]) -> f64 {
         let others = places.iter().enumerate().filter(|(other, _)| *other != number);
         others.map(|(_, other)| other.distance_squared(place)).fold(f64::INFINITY, f64::min)
     };
-    let mut squares: Vec<f64> = places.iter().enumerate().step_by(places.len() / FEW + 1).map(next).collect();
-    squares.sort_by(f64::total_cmp);
-    squares.get(squares.len() / 2).filter(|square| square.is_finite()).map_or(0.0, |square| square.sqrt())
+    let squares = places.iter().enumerate().step_by(places.len() / FEW + 1).map(next);
+    median(squares.collect()).filter(|square| square.is_finite()).map_or(0.0, f64::sqrt)
 }
 
 /// How many photons are looked through around such a place, on average.

@@ -11,8 +11,7 @@ const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
 /// Share of the bounces' weight inside rooms from which on it is a picture of a room.
 const ENOUGH: f64 = 0.25;
-/// Of a box, how much is added around it; and of the way to where a ray leaves it, how far beyond it must go to have
-/// left.
+/// How much is added around a box; and how many times as far as to its side a ray must go to have left it.
 const MARGIN: f64 = 1e-6;
 const BEYOND: f64 = 1.0 + 1e-6;
 
@@ -43,11 +42,6 @@ impl<'a> Room<'a> {
         Some(Self { world, bounds, bounces })
     }
 
-    /// How much its bounces count.
-    pub fn weight(&self) -> f64 {
-        weight(&self.bounces)
-    }
-
     /// Where a bounce ends, or where it leaves the box.
     pub fn end_of(&self, bounce: &Bounce) -> DVec3 {
         let leaves = distance_out(&self.bounds, bounce.from, bounce.direction);
@@ -70,7 +64,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Where a ray meets a surface that ends it.
+/// Where a ray hits a surface that ends it.
 struct WallHit {
     t: f64,
     position: DVec3,
@@ -90,9 +84,9 @@ impl WallHit {
 
 /// A box around most of some weighted points, and a little more.
 pub fn box_around(points: &[(DVec3, f64)], weight: f64) -> Bounds {
-    let Bounds { min, max } = bounds_of_most(points, weight);
-    let margin = MARGIN * (max - min).length();
-    Bounds { min: min - margin, max: max + margin }
+    let most = bounds_of_most(points, weight);
+    let margin = MARGIN * most.size().length();
+    Bounds { min: most.min - margin, max: most.max + margin }
 }
 
 /// How far it is from a point in a box to its end.
@@ -109,7 +103,7 @@ fn leaving(bounce: &Bounce, direction: DVec3) -> Ray {
     Ray { origin: off(bounce.from, bounce.normal), direction }
 }
 
-fn weight(bounces: &[Bounce]) -> f64 {
+pub fn weight(bounces: &[Bounce]) -> f64 {
     bounces.iter().map(|bounce| bounce.weight).sum()
 }
 

@@ -1,5 +1,4 @@
-//! How much of the light seen polarization may change, learned from some hundred camera samples and some thousand
-//! photons.
+//! How much of the light seen polarization may change, by some hundred camera samples and some thousand photons.
 
 use std::ops::AddAssign;
 
@@ -21,31 +20,15 @@ const PARTS: u32 = 6;
 const MOST: u64 = 2048;
 const FEWEST: u64 = 256;
 
-/// Light that was seen, and by how much polarization may change it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeenLight {
-    /// That of each 36th of the view.
-    parts: [Amount; (PARTS * PARTS) as usize],
-}
-
-impl SeenLight {
-    /// The share of all light by which polarization may change it.
-    pub fn change(&self) -> f64 {
-        let mut all = Amount::default();
-        self.parts.into_iter().for_each(|part| all += part);
-        all.share()
-    }
-
-    /// The share of the light of a 36th of the view by which polarization may change it, where that is largest.
-    pub fn change_of_part(&self) -> f64 {
-        self.parts.into_iter().map(Amount::share).fold(0.0, f64::max)
-    }
-}
-
-/// Looks at the part of the image that is made, with fewer photons than the world's method asks for.
-pub fn seen_light(world: &World) -> SeenLight {
+/// By which share of its light polarization may change a 36th of the view, where that is most: of the part of the image
+/// that is made, with fewer photons than the world's method asks for.
+pub fn most_changed(world: &World) -> f64 {
     let world = with_fewer_photons(world);
-    in_lanes!(&world.method.basis, N => look::<N>(&world))
+    let window = world.scene.film.window();
+    let mut parts = [Amount::default(); (PARTS * PARTS) as usize];
+    let mut take = |pixel, _, found| parts[window.cell_of(PARTS, pixel)] += found;
+    in_lanes!(&world.method.basis, N => for_each_light::<N, Polarized>(&world, 1, &mut take));
+    parts.into_iter().map(Amount::share).fold(0.0, f64::max)
 }
 
 /// The world with fewer photons than its method asks for.
@@ -54,13 +37,6 @@ pub fn with_fewer_photons(world: &World) -> World {
     let of_map = |map: MapPasses| MapPasses { photons: map.photons.min(most), ..map };
     let fewer = |pass: &LightPass| LightPass { photons: pass.photons.min(most), ..pass.with_map(of_map) };
     world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
-}
-
-fn look<const N: usize>(world: &World) -> SeenLight {
-    let window = world.scene.film.window();
-    let mut seen = SeenLight { parts: [Amount::default(); (PARTS * PARTS) as usize] };
-    for_each_light::<N, Polarized>(world, 1, &mut |pixel, _, found| seen.parts[window.cell_of(PARTS, pixel)] += found);
-    seen
 }
 
 /// Light that is seen, X + Y + Z, and by how much polarization changes it.
@@ -89,7 +65,7 @@ impl AddAssign for Amount {
 pub fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
     copies: usize,
-    take: &mut impl FnMut([u32; 2], usize, Amount),
+    take: &mut dyn FnMut([u32; 2], usize, Amount),
 ) {
     let window = world.scene.film.window();
     let photons = photons::<N, P>(world, &Pass::of_photons_alone(world, 0));

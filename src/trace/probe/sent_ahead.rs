@@ -31,7 +31,6 @@ const FIRST: u64 = 256;
 struct Learned {
     /// Of each target, the places and whether the camera saw them.
     found: Vec<Vec<([f64; 2], bool)>>,
-    /// Rays followed.
     rays: u64,
 }
 
@@ -189,8 +188,7 @@ mod tests {
         assert_eq!(photons(&guided::<4>(world.clone())), photons(&world));
     }
 
-    /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that was followed both ways at every one
-    /// came to no end.
+    /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that followed both ways came to no end.
     #[test]
     fn photons_between_many_panes_come_to_an_end() {
         let mut text = String::from(

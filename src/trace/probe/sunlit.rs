@@ -1,5 +1,4 @@
-//! Where paths start from suns, and from what is bright in images of the sky, for light vertices: toward places in that
-//! light that the camera's paths find.
+//! Where paths of suns and bright parts of skies start for light vertices: toward lit places that camera paths find.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -13,7 +12,6 @@ use crate::shape::Ball;
 use crate::trace::camera::Bounce;
 use crate::trace::guide::cell_of;
 use crate::trace::photon::{LightPaths, can_be_followed};
-use crate::trace::width::in_lanes;
 use crate::trace::{SkyOpenings, SunlitPlaces, World};
 
 /// Camera samples along each side of the image.
@@ -38,8 +36,7 @@ pub fn with_light_vertices(world: &World, openings: &SkyOpenings) -> Option<Worl
 }
 
 /// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some, or else
-/// the openings through which it comes. The format counts, also where a part of it or more is made, so that all parts
-/// are made alike.
+/// the openings through which it comes. The format counts, whatever part of it is made, so that all are made alike.
 fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     let lights = &world.scene.lights;
     let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();
@@ -47,7 +44,7 @@ fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     if suns.is_empty() {
         return Vec::new();
     }
-    let bounces = in_lanes!(&world.method.basis, N => bounces::<N>(world, SIDE));
+    let bounces = bounces(world, SIDE);
     // Where they ended, a little before the surface, and what light they found there.
     let has_found = |bounce: &&Bounce| bounce.distance.is_finite() && bounce.light.is_finite() && bounce.light > 0.0;
     let end = |bounce: &Bounce| (bounce.from + bounce.direction * (bounce.distance * (1.0 - OFF)), bounce.light);
@@ -80,14 +77,13 @@ fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<SunlitPla
         return None;
     }
     let all: f64 = lit.iter().map(|place| place.1).sum();
-    let bounds = bounds_of_most(&lit, all);
-    let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length());
-    let beam = light.beam(&Ball { center, radius })?;
+    let ball = Ball::of_box(&bounds_of_most(&lit, all));
+    let beam = light.beam(&ball)?;
     let mut cells = BTreeMap::new();
     for ((origin, found), direction) in lit.into_iter().zip(directions) {
         if let Some(place) = beam.place_in_disc(origin, direction) {
             *cells.entry(cell_of(place) as u32).or_insert(0.0) += (found / all) as f32;
         }
     }
-    Some(SunlitPlaces { light: id, center, radius, cells: cells.into_iter().collect() })
+    Some(SunlitPlaces { light: id, center: ball.center, radius: ball.radius, cells: cells.into_iter().collect() })
 }

@@ -11,7 +11,7 @@ use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 64;
-/// Lights met that tell enough.
+/// Lights hit that tell enough.
 const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
@@ -36,8 +36,7 @@ pub fn learn_visible_caps(world: &mut World) {
     }
 }
 
-/// The lights that paths hit by chance, in directions that were drawn where lights were sampled as well, with the unit
-/// normals there.
+/// The lights that paths hit by chance, in directions drawn where lights were sampled as well, and their unit normals.
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
     let met = RefCell::new(Vec::new());

@@ -1,7 +1,7 @@
 //! The energy audit of splitting: whether all of the weight that left the camera has come to an end somewhere.
 //!
 //! A camera sample starts with weight 1 in each lane, or what a filter before the camera leaves of it. Surfaces split
-//! it into branches, media and surfaces absorb some, and the rest ends where it meets a light, or nothing. What
+//! it into branches, media and surfaces absorb some, and the rest ends where it hits a light, or nothing. What
 //! chance adds or takes, where branches are chosen and paths ended, is 0 on the average. What is left when all paths
 //! have ended was lost: to a limit of bounces, or to a mistake.
 //!
@@ -40,14 +40,8 @@ impl<'a, const N: usize> Audit<'a, N> {
         self.open = [path.throughput.of(Lanes::ONE).0.map(f64::from), [0.0; N]];
     }
 
-    /// A path has come to its end.
-    pub fn end<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
-        let ended = self.weight(path, path.throughput, draw);
-        self.close(path.parted, &ended);
-    }
-
-    /// A path has come to its end, but for what goes straight on.
-    pub fn end_beside<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
+    /// A path has come to its end, but for what passes through the surface, if any does.
+    pub fn end<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
         let share = through.map_or(Lanes::ZERO, |through| through.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
@@ -61,7 +55,7 @@ impl<'a, const N: usize> Audit<'a, N> {
         }
     }
 
-    /// A surface has split a path into branches and what goes straight on.
+    /// A surface has split a path into branches and what passes through.
     ///
     /// A clear surface absorbs nothing: what its branches lack, or have too much, stays open. Any other absorbs what
     /// they lack, for no formula of its own says how much that is.

@@ -15,8 +15,7 @@ use crate::trace::received_light::{ReceivedLight, SourceId};
 pub struct Excitation<const N: usize, P> {
     /// The dye whose light reaches the sensor.
     pub source: SourceId,
-    /// The lanes by which it arrives, for a brightness of 1; what they stand for, whether they parted, and how the path
-    /// was polarized.
+    /// The lanes by which it arrives, for a brightness of 1; their meaning, whether they parted, and the polarization.
     pub lanes: Lanes<N>,
     pub seen_by: Draw<N>,
     pub parted: bool,

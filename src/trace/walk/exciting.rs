@@ -1,4 +1,4 @@
-//! Where a path meets dyes: besides what the surface scatters, it may go on with what excites each of them.
+//! Where a path hits dyes: besides what the surface scatters, it may go on with what excites each of them.
 
 use super::excitation::Excitation;
 use super::interaction::Interaction;

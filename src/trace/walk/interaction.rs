@@ -1,4 +1,4 @@
-//! A ray meets a surface.
+//! A ray hits a surface.
 
 use super::shading;
 use crate::material::{Lobes, Material, ScatterContext};
@@ -25,14 +25,12 @@ impl SurfaceHit {
 /// A ray that arrives at a surface.
 pub struct IncidentRay<'a, const N: usize> {
     pub ray: &'a Ray,
-    /// The lanes on it.
     pub present: Lanes<N>,
     /// Whether lanes have parted on the way.
     pub parted: bool,
 }
 
-/// Where a path meets a surface, and what the surface may know of it: made here, for the camera's paths, photons and
-/// probes.
+/// Where a path hits a surface, and what that may know of it: for the camera's paths, photons and probes.
 pub struct Interaction<'a, const N: usize> {
     pub object: u32,
     pub point: &'a SurfacePoint,
@@ -43,12 +41,11 @@ pub struct Interaction<'a, const N: usize> {
     /// The media on both sides.
     pub boundary: Boundary,
     pub context: ScatterContext<'a, N>,
-    /// Whether lanes that cross the surface part.
     pub parts: bool,
 }
 
 impl<'a, const N: usize> Interaction<'a, N> {
-    /// Where a ray arrives at a surface that it has met, at a boundary of media.
+    /// Where a ray arrives at a surface that it has hit, at a boundary of media.
     #[inline(always)]
     pub fn new(
         world: &'a World,
@@ -115,7 +112,7 @@ pub fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, context: 
 }
 
 /// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to
-/// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is met.
+/// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is hit.
 #[inline(always)]
 pub fn context<'a, const N: usize>(
     world: &'a World,

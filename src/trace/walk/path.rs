@@ -14,7 +14,7 @@ use crate::trace::{World, media};
 #[derive(Clone, Copy, Debug)]
 pub struct Path<const N: usize, P = Polarized> {
     pub ray: Ray,
-    /// The surface that it met last, which its ray leaves.
+    /// The surface that it hit last, which its ray leaves.
     pub left: Option<Primitive>,
     pub throughput: Throughput<N>,
     /// The factor of radiance between the medium at the path's end and the camera's, times what densities of
@@ -28,7 +28,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub parted: bool,
     /// Which random numbers belong to the path's next vertex.
     pub key: BranchKey,
-    /// Surfaces met so far.
+    /// Surfaces hit so far.
     pub vertices: u32,
     /// How many of them were those of bodies that are hidden inside others.
     pub hidden: u32,
@@ -49,12 +49,11 @@ pub struct Path<const N: usize, P = Polarized> {
     pub polarization: P,
     /// How often surfaces have scattered, mirrored or refracted it.
     pub bounces: u32,
-    /// Whether only smooth surfaces have: what it meets next is seen.
+    /// Whether only smooth surfaces have: what it hits next is seen.
     pub is_seen: bool,
     /// Which objects there are for it.
     pub among: Among,
-    /// Whether light was looked for at light vertices before: what they carry does not count any more. Of a photon,
-    /// whether they carry its light.
+    /// Whether light was looked for at light vertices before, which count no more; of a photon, whether they carry it.
     pub resampled: bool,
     /// Whether all of its light is found otherwise, and it goes on to be accounted for alone.
     pub unlit: bool,
@@ -67,7 +66,6 @@ pub struct Path<const N: usize, P = Polarized> {
 /// Which objects there are for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
-    /// All.
     All,
     /// Those that are in the plate or light it.
     Plate,
@@ -78,8 +76,7 @@ pub enum Among {
 pub enum PathKind {
     /// Straight from the camera.
     Camera,
-    /// Straight from the camera, through surfaces of bodies that are hidden inside others: photons that are shown to
-    /// the camera are not seen through these.
+    /// Straight from the camera, through surfaces of hidden bodies: splatted photons are not seen through these.
     PastHidden,
     /// Scattered widely by a surface from which photons are shown to the camera or gathered.
     Wide,
@@ -90,7 +87,7 @@ pub enum PathKind {
 }
 
 impl PathKind {
-    /// Whether the camera sees what it meets next.
+    /// Whether the camera sees what it hits next.
     pub fn is_from_camera(self) -> bool {
         matches!(self, Self::Camera | Self::PastHidden)
     }
@@ -110,8 +107,7 @@ impl PathKind {
     }
 
     /// After one more surface; `wide` says whether light left it by a density of directions, and `followed` whether it
-    /// can be followed forward the same way. Photons are shown from the first surface alone, and gathered from all
-    /// others if they are at all.
+    /// can be followed forward the same way. Photons are splatted from the first surface, and gathered from others.
     pub fn then(self, gathers: bool, wide: bool, followed: impl Fn() -> bool) -> Self {
         match (self, wide) {
             (Self::Camera, true) => Self::Wide,
@@ -135,7 +131,7 @@ pub struct ScatterSample {
     pub chance: f64,
     /// Whether every light was sampled there, or one.
     pub all_lights: bool,
-    /// Whether the path has gone straight on through surfaces since.
+    /// Whether the path has passed through surfaces since.
     pub passed: bool,
     /// Whether a vertex of a light path was looked at from there.
     pub resampled: bool,
@@ -149,41 +145,33 @@ impl ScatterSample {
 }
 
 impl<const N: usize, P> Path<N, P> {
-    /// Surfaces met so far that are there for light: `max_bounces` limits them.
+    /// Surfaces hit so far that are there for light: `max_bounces` limits them.
     pub fn surfaces(&self) -> u32 {
         self.vertices - self.hidden
     }
 }
 
 impl<const N: usize, P: Polarization<N>> Path<N, P> {
-    /// The path of a camera ray.
     pub fn from_camera(world: &World, draw: &Draw<N>, ray: Ray) -> Self {
-        let throughput = Throughput::starting(draw.start()).scaled(world.scene.camera.transmittance());
         let (media, polarization) = (world.media_at_camera(&ray), P::of_camera(world, &ray));
-        let length = world.scene.camera.way_to_start(ray.direction);
-        Self { length, ..Self::starting(world, PathKind::Camera, throughput, ray, media, polarization) }
+        let path = Self::starting(world, draw, PathKind::Camera, ray, media, polarization);
+        let camera = &world.scene.camera;
+        let (throughput, length) = (path.throughput.scaled(camera.transmittance()), camera.way_to_start(ray.direction));
+        Self { throughput, length, ..path }
     }
 
     /// The path of a ray that leaves a light.
     pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, light: LightId) -> Self {
-        let throughput = Throughput::starting(draw.start());
         let (media, polarization) = (world.media_at_light(light, &ray), P::of_light(world, &ray));
-        Self::starting(world, PathKind::Other, throughput, ray, media, polarization)
+        Self::starting(world, draw, PathKind::Other, ray, media, polarization)
     }
 
     #[inline(always)]
-    fn starting(
-        world: &World,
-        kind: PathKind,
-        throughput: Throughput<N>,
-        ray: Ray,
-        media: Media,
-        polarization: P,
-    ) -> Self {
+    fn starting(world: &World, draw: &Draw<N>, kind: PathKind, ray: Ray, media: Media, polarization: P) -> Self {
         Self {
             ray,
             left: None,
-            throughput,
+            throughput: Throughput::starting(draw.start()),
             eta_scale: 1.0,
             aimed: 1.0,
             media,
@@ -208,17 +196,15 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         }
     }
 
-    /// The path beyond a surface that it goes straight through as if nothing were there.
+    /// The path beyond a surface that it passes through as if nothing were there.
     ///
-    /// Lights beyond were sampled through the surface, from where its direction was: light that goes straight on makes
-    /// no other kind of path.
+    /// Lights beyond were sampled through the surface: light that passes through makes no other kind of path.
     pub fn passed(&self, point: &SurfacePoint) -> Self {
         let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
         Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
-    /// The path beyond a surface that it has met and goes straight through in part, which is not counted among its
-    /// surfaces.
+    /// The path beyond a surface that it passes through in part, which is not counted among its surfaces.
     #[cold]
     #[inline(never)]
     pub fn passed_in_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
@@ -230,29 +216,22 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
     /// The lobe by which the first surface sends light to the camera that the path finds at a surface, in a direction
     /// that may lead beyond it; none if layers do not tell that apart.
     #[inline]
-    pub fn first_lobe(
-        &self,
-        world: &World,
-        Interaction { material, lobes, context, .. }: &Interaction<N>,
-        wi: DVec3,
-        crosses: bool,
-    ) -> Option<FirstLobe> {
+    pub fn first_lobe(&self, world: &World, at: &Interaction<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
         if self.bounces > 0 || !world.layers.lobes_apart {
             return self.first;
         }
+        let Interaction { material, lobes, context, .. } = at;
         Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, context, wi, crosses))
     }
 
-    /// Whether photons bring what a narrow lobe of a surface sends on to it of the light that lights which send photons
-    /// shine there straight.
+    /// Whether photons bring what a narrow lobe sends the path of direct light, from lights that send photons.
     #[inline]
     pub fn leaves_narrow_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
         let has_landed = self.kind.is_of_photons() && !self.is_narrow && self.among == Among::All;
         has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
     }
 
-    /// Whether photons bring all light that a surface scatters, for it does so by narrow lobes alone: they go on from
-    /// it as from smooth ones.
+    /// Whether photons bring all light that a surface scatters: from narrow lobes alone they go on as from smooth ones.
     #[inline]
     pub fn leaves_all_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
         at.lobes.is_narrow() && self.leaves_narrow_to_photons(world, at)

@@ -12,16 +12,14 @@ use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
 use crate::trace::received_light::ReceivedLight;
 
-/// What of a path's light goes straight on where it meets a surface.
+/// What of a path's light passes through where it hits a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct PassThrough<const N: usize, P> {
-    /// The share of each lane.
     pub straight: Straight<N>,
     /// How the path's light is polarized beyond.
     pub polarization: P,
 }
 
-/// Light that a path has found.
 pub struct FoundLight<'a, const N: usize, P> {
     pub world: &'a World,
     pub received: &'a ReceivedLight<'a, N>,
@@ -71,13 +69,8 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// Of a path that starts at a light, which shines unpolarized.
     fn of_light(world: &World, ray: &Ray) -> Self;
 
-    /// After a surface that lets some light go straight on; makes that the share that does.
-    fn after_straight(
-        self,
-        material: &Material<Table>,
-        context: &ScatterContext<N>,
-        straight: &mut Straight<N>,
-    ) -> Self;
+    /// After a surface that lets some light pass through; makes that the share that does.
+    fn through(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
 
     /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
     /// of them into `ways`. Nothing is put there where that can wait until one is chosen.
@@ -87,21 +80,19 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// lights, and none has of those that `forward` follows.
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::RowTransfer>);
 
-    /// On the way from a surface along the unit vector `wi` to a light, where it meets panes next; makes `bsdf_cos`
-    /// that of the path's light.
+    /// On the way from a surface along the unit vector `wi` to a light or panes; makes `bsdf_cos` that of the path.
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// How much of light that arrives along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y
-    /// + Z.
+    /// How much of light along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y + Z.
     fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
-    /// The same of light that the path has met.
+    /// The same of light that the path has hit.
     fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64;
 
     /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
     fn exciting(&self) -> Self;
 
-    /// Where the path meets polarized light that comes from the unit vector `wi`; makes `shone`, what the light would
+    /// Where the path hits polarized light that comes from the unit vector `wi`; makes `shone`, what the light would
     /// be that is not, what the path takes of it. None where the light is not polarized.
     fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
 
@@ -123,12 +114,10 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// What is kept of it where a photon has landed.
     fn landed(&self, at: &Interaction<N>) -> Self::Stored;
 
-    /// Brings a path from the camera, at a surface, together with a photon that has landed near and came along `wi`;
-    /// makes `bsdf_cos` that of their light.
+    /// Joins a camera path at a surface with a photon that landed near, along `wi`; makes `bsdf_cos` that of both.
     fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// By what share polarization may change the light of a photon, which came along a unit vector, that `join` has
-    /// brought together with a path in lanes.
+    /// By what share polarization may change the light of a photon, along a unit vector, that `join` joined with lanes.
     fn change_of_joined(
         &self,
         at: &Interaction<N>,
@@ -141,6 +130,6 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
     /// What is kept with a photon, its lanes read as others.
     fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored;
 
-    /// S1, S2 and S3 of unpolarized light that the path has met, each as a factor on S0, if they are asked for.
+    /// S1, S2 and S3 of unpolarized light that the path has hit, each as a factor on S0, if they are asked for.
     fn stokes(&self) -> Option<[Lanes<N>; 3]>;
 }

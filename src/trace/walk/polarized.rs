@@ -87,7 +87,7 @@ impl<const N: usize> Polarization<N> for Polarized {
     }
 
     #[inline]
-    fn after_straight(self, _: &Material<Table>, _: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
+    fn through(self, _: &Material<Table>, _: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
         self.after(straight.polarization)
     }
 

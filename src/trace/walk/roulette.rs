@@ -1,7 +1,6 @@
 //! Which paths end by chance.
 
-/// Surfaces after which one way on is followed where a path has several, and roulette ends even one that loses nothing,
-/// one time in a thousand.
+/// Surfaces after which a path follows one of its ways, and roulette ends even one without loss, 1 in 1000 times.
 pub const LONG: u32 = 64;
 /// How certain it is then that a path goes on: nearer to 1 than light caught in a clear body needs to find its way out,
 /// so that none comes out much brighter than it went in.

@@ -28,14 +28,11 @@ use crate::trace::received_light::ReceivedLight;
 /// Paths are copied, and one row is all that most images need.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<const N: usize, const K: usize> {
-    /// The x of the frame whose z is the direction of the light, back along the ray: of any length, across z but for
-    /// rounding.
+    /// The x of the frame whose z is the light's direction, back along the ray; of any length, across z up to rounding.
     x: DVec3,
-    /// Each over the throughput, the first begins with 1: the weights of a lane side by side, since a lane is often
-    /// alone.
+    /// Each over the throughput, so that the first begins with 1; those of a lane side by side, for one is often alone.
     weights: [Weights<K>; N],
-    /// Whether the throughput is that of a path whose light is taken for unpolarized at every surface, which is
-    /// compared.
+    /// Whether the throughput is that of light taken for unpolarized at every surface, which is compared.
     compares: bool,
 }
 
@@ -59,7 +56,7 @@ fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
 }
 
 impl<const N: usize, const K: usize> Rows<N, K> {
-    /// Where light meets no surface before it reaches the sensor, which has image right at `x`.
+    /// Where light hits no surface before it reaches the sensor, which has image right at `x`.
     fn starting(x: DVec3, compares: bool) -> Self {
         let identity = from_fn(|part| from_fn(|row| if row == part { 1.0 } else { 0.0 }));
         Self { x, weights: [identity; N], compares }
@@ -245,8 +242,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         self.take_in(&other, z, &folded_light.lights);
     }
 
-    /// After a surface, along a direction, which shading normals may have folded; makes `bsdf_cos` that of the path's
-    /// light.
+    /// After a surface, along a direction that shading normals may have folded; makes `bsdf_cos` that of the path.
     fn after(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
         let mut after = *self;
         if let Material::Diffuse(_) = at.material {
@@ -350,12 +346,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
         Self::starting(x, world.method.polarization == Polarizing::Compared)
     }
 
-    fn after_straight(
-        mut self,
-        material: &Material<Table>,
-        context: &ScatterContext<N>,
-        straight: &mut Straight<N>,
-    ) -> Self {
+    fn through(mut self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self {
         let (mut mueller, mut share) = (Mueller::NONE, straight.share());
         material.mueller_of_straight(context, &mut mueller);
         let exitant = Exitant { value: share, lanes: context.present.not_zero(), z: [context.wo; 2] };

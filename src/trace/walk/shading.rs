@@ -33,8 +33,7 @@ pub fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
     plain_normals(point, wo)[1]
 }
 
-/// Whether light goes from `wi` to the viewer at `wo` by the shading normal as it is, so that it can be followed either
-/// way.
+/// Whether light goes from `wi` to the viewer at `wo` by the plain shading normal, and so can be followed either way.
 pub fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
     if point.shading == point.normal {
         return true;

@@ -5,7 +5,6 @@
 #[derive(Debug)]
 pub struct Slots<T> {
     entries: Vec<Box<T>>,
-    /// Entries that are gone.
     spare: Vec<Box<T>>,
 }
 

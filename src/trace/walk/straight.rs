@@ -1,4 +1,4 @@
-//! Light that goes straight on through the holes of masks and through panes that bend nothing.
+//! Light that passes through the holes of masks and through panes that bend nothing.
 
 use std::cell::Cell;
 
@@ -13,10 +13,10 @@ use crate::scene::{MaterialId, RayEnds, Visibility};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
 
-/// Use of the random numbers of a ray from the camera that meets a surface with holes.
+/// Use of the random numbers of a ray from the camera that hits a surface with holes.
 const COVER: u32 = 4;
 
-/// What of a path's light goes straight on where it meets a surface that lets light straight on; none if nothing does.
+/// What of a path's light passes through where it hits a surface that lets light pass through; none if nothing does.
 #[cold]
 #[inline(never)]
 pub fn straight_on<const N: usize, P: Polarization<N>>(
@@ -31,7 +31,7 @@ pub fn straight_on<const N: usize, P: Polarization<N>>(
     (!(pass_through.straight.share() * present).is_zero()).then_some(pass_through)
 }
 
-/// The share of each lane that goes through the holes of a surface, which a ray inside of a medium has met.
+/// The share of each lane that goes through the holes of a surface, which a ray inside of a medium has hit.
 pub fn holes<const N: usize>(
     world: &World,
     draw: &Draw<N>,
@@ -47,18 +47,18 @@ pub fn holes<const N: usize>(
         .map_or(Lanes::ZERO, |pass_through| pass_through.straight.holes)
 }
 
-/// Whether a ray from the camera meets a surface that may be cut out: a pane is met, a hole is not.
+/// Whether a ray from the camera hits a surface that may be cut out: a pane is hit, a hole is not.
 pub struct Cutout {
-    pub is_met: bool,
+    pub is_hit: bool,
     /// How likely that was.
     pub chance: f64,
-    /// The part of the path's weight that is of a path to what is met. Beyond a surface, one that goes through its
+    /// The part of the path's weight that is of a path to what is hit. Beyond a surface, one that goes through its
     /// holes goes through its panes as well.
     pub weight: f64,
 }
 
-/// Whether a ray from the camera counts as having met a surface.
-pub fn met<const N: usize, P: Polarization<N>>(
+/// Whether a ray from the camera counts as having hit a surface.
+pub fn hit<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
     sampler: &Sampler,
@@ -67,7 +67,7 @@ pub fn met<const N: usize, P: Polarization<N>>(
 ) -> Cutout {
     let straight = pass_through.map(|pass_through| &pass_through.straight);
     let Some(straight) = straight.filter(|straight| !straight.holes.is_zero()) else {
-        return Cutout { is_met: true, chance: 1.0, weight: 1.0 };
+        return Cutout { is_hit: true, chance: 1.0, weight: 1.0 };
     };
     let u = match world.method.transport {
         Transport::Deterministic { .. } => 0.5,
@@ -77,8 +77,8 @@ pub fn met<const N: usize, P: Polarization<N>>(
     let part = |of: Lanes<N>| path.throughput.through(of).weight(shares) / path.throughput.weight(shares);
     let holes = part(straight.holes);
     match holes <= u {
-        true => Cutout { is_met: true, chance: 1.0 - holes, weight: 1.0 - holes },
-        false => Cutout { is_met: false, chance: holes, weight: part(straight.share()) },
+        true => Cutout { is_hit: true, chance: 1.0 - holes, weight: 1.0 - holes },
+        false => Cutout { is_hit: false, chance: holes, weight: part(straight.share()) },
     }
 }
 
@@ -133,8 +133,7 @@ impl Occluders {
 
 impl VisibilityTest<'_> {
     /// What arrives of light through holes, panes and the medium, and how it is polarized beyond them; none if
-    /// something occludes it. `polarization` is that of the path at the place; it and `light` are asked only if nothing
-    /// does.
+    /// something occludes it. `polarization` of the path at the place and `light` are asked only if nothing does.
     #[inline]
     pub fn arriving<const N: usize, P: Polarization<N>>(
         &self,
@@ -163,8 +162,7 @@ impl VisibilityTest<'_> {
         Some((arriving, after))
     }
 
-    /// The share of each lane that goes straight on through all surfaces before the light, and how it is polarized
-    /// beyond them; none if no light does.
+    /// The share of each lane that passes through all surfaces before the light, and its polarization; none if none.
     #[cold]
     #[inline(never)]
     fn transmittance<const N: usize, P: Polarization<N>>(
@@ -208,17 +206,16 @@ impl VisibilityTest<'_> {
     }
 }
 
-/// A ray that meets a surface which may let some of its light straight on.
+/// A ray that hits a surface which may let some of its light pass through.
 struct StraightRay<'a, const N: usize> {
     ray: &'a Ray,
     surface_hit: &'a SurfaceHit,
-    /// The lanes on it.
     present: Lanes<N>,
     /// The medium around it.
     inside: Option<MaterialId>,
 }
 
-/// What a material lets straight on where a ray meets it: what every ray asks.
+/// What a material lets pass through where a ray hits it: what every ray asks.
 fn straight_at<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
@@ -231,6 +228,6 @@ fn straight_at<const N: usize, P: Polarization<N>>(
     let context = context(world, draw, wo, normal, uv, present, [inside; 2]);
     let material = world.scene.material_of(hit.object);
     let mut straight = material.straight(&context)?;
-    let polarization = polarization.after_straight(material, &context, &mut straight);
+    let polarization = polarization.through(material, &context, &mut straight);
     Some(PassThrough { straight, polarization })
 }

@@ -43,8 +43,7 @@ const CHOICE: u32 = 2;
 /// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to an equal error.
 const SOONER: f64 = 5.0;
 
-/// How a sample goes on that has met too many surfaces: what is left is mostly faint, and all branches are still
-/// followed that are not.
+/// How a sample goes on that has hit too many surfaces: by all bright branches, and by one of the faint ones.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
 impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
@@ -64,7 +63,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
     #[inline(always)]
-    pub fn meet(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
+    pub fn next_hit(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
         self.stats.rays += 1;
         let is_past_hidden = self.world.hides_objects && path.kind.is_from_camera() && path.among == Among::All;
         let hit = match path.among {
@@ -89,14 +88,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         Some(SurfaceHit::new(self.world, &path.ray, hit))
     }
 
-    /// What goes straight on through the surface that a path has met; none if nothing does.
+    /// What passes through the surface that a path has hit; none if nothing does.
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, surface_hit: &SurfaceHit) -> Option<PassThrough<N, P>> {
         let lets_through = self.world.is_see_through(surface_hit.hit.object);
         if lets_through { straight::straight_on(self.world, draw, path, surface_hit) } else { None }
     }
 
-    /// The media at the surface that a path has met.
+    /// The media at the surface that a path has hit.
     ///
     /// # Errors
     /// [`Hidden`] where the surface is that of a body that is hidden inside another of higher priority.
@@ -112,20 +111,20 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
 
     /// Makes the path pending that goes on through a hidden surface as if nothing were there.
     #[cold]
-    pub fn go_on_past(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
+    pub fn pass_hidden(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
         let kind = path.kind.past_hidden();
         let left_to_photons =
             kind == PathKind::Smooth && self.world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
         let next = self.pending.add(|| *path);
-        // No light was sampled through this surface, so what the path meets beyond counts in full.
+        // No light was sampled through this surface, so what the path hits beyond counts in full.
         let (key, media) = (path.key.child(0), path.media.beyond(boundary));
         *next = Path { scatter: None, key, media, kind, left_to_photons, ..*path };
         next.ray = surface_hit.point.leave(path.ray.direction);
         (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
     }
 
-    /// Makes the path pending that goes straight on through a surface that it has met, if any light does.
-    pub fn go_on_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
+    /// Makes the path pending that passes through a surface that it has hit, if any light does.
+    pub fn pass_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
         if let Some(through) = through {
             *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, through) };
         }
@@ -154,14 +153,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
-    /// Accounts for the branches and what goes straight on, if somebody asks.
+    /// Accounts for the branches and what passes through, if somebody asks.
     pub fn account(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
         if let Some(audit) = &mut self.audit {
             audit.split(path, at, &self.branches, straight);
         }
     }
 
-    /// Decides which of the branches are followed, and of what goes straight on: their paths become pending.
+    /// Decides which of the branches are followed, and of what passes through: their paths become pending.
     pub fn follow(&mut self, departure: &mut OutgoingPath<N, P>, sampler: &Sampler) {
         let path = departure.path;
         if let Some(through) = &departure.through {
@@ -201,7 +200,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Follows one branch, chosen by weight.
     fn choose(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
         let weight = |number: usize| departure.weight(&self.branches[number]);
         let u = sampler.four_plain(departure.path.key, CHOICE);
@@ -239,8 +237,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Which branches are followed by now. Where light has more ways than can be followed, one is chosen, which leaves
-    /// the mean what it is.
+    /// Which branches are followed by now. Where light has too many ways one is chosen, which keeps the mean.
     fn rule(&self) -> Transport {
         match self.transport {
             Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,
@@ -248,7 +245,6 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Surfaces met by this camera sample.
     pub fn surfaces(&self) -> u64 {
         self.stats.rays - self.started
     }
@@ -259,52 +255,27 @@ pub struct Hidden(Boundary);
 
 /// A path that leaves a surface.
 pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
-    world: &'a World,
-    path: &'a Path<N, P>,
-    at: &'a Interaction<'a, N>,
+    pub world: &'a World,
+    pub path: &'a Path<N, P>,
+    pub at: &'a Interaction<'a, N>,
     /// From where lights were sampled, if they were.
-    scatter: Option<&'a ScatterSample>,
-    /// What goes straight on: the last branch.
-    through: Option<&'a PassThrough<N, P>>,
-    /// Whether that is followed for certain.
-    is_awaited: bool,
+    pub scatter: Option<&'a ScatterSample>,
+    /// What passes through the surface: the last branch.
+    pub through: Option<&'a PassThrough<N, P>>,
+    /// Whether that is followed for certain, for it is where the camera ray hits something.
+    pub is_awaited: bool,
     /// Whether the camera sees the surface.
-    is_seen: bool,
+    pub is_seen: bool,
     /// Whether all branches count as leaving a diffuse surface, and not the wide ones alone.
-    all_count: bool,
-    branches: usize,
+    pub all_count: bool,
+    /// How many branches there are, once they are followed.
+    pub branches: usize,
 }
 
 impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
     pub fn new(world: &'a World, path: &'a Path<N, P>, at: &'a Interaction<'a, N>) -> Self {
         let (scatter, through) = (None, None);
         Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
-    }
-
-    /// With lights sampled here, and what goes straight on.
-    pub fn with(self, scatter: Option<&'a ScatterSample>, through: Option<&'a PassThrough<N, P>>) -> Self {
-        Self { scatter, through, ..self }
-    }
-
-    /// Of a path from the camera.
-    pub fn of_camera_path(self) -> Self {
-        Self { is_seen: self.path.is_seen, ..self }
-    }
-
-    /// With what goes straight on followed for certain, for it is where the camera ray meets something.
-    pub fn awaiting(self, is_awaited: bool) -> Self {
-        Self { is_awaited, ..self }
-    }
-
-    /// Where a path from a light leaves the first surface, by whatever lobe: from the camera, it has to leave the next
-    /// one to get there.
-    pub fn of_light_path(self) -> Self {
-        Self { all_count: self.path.surfaces() == 1 && self.path.hidden == 0, ..self }
-    }
-
-    /// Whether a branch is what goes straight on.
-    fn is_onward(&self, number: usize) -> bool {
-        self.through.is_some() && number + 1 == self.branches
     }
 
     /// How many paths together stand for this one.
@@ -320,8 +291,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
-    /// The factor by which densities of aimed bounces change the throughput along a branch: of those that cross no
-    /// surface, nothing else is in `eta_scale`.
+    /// The factor of the densities of aimed bounces on the throughput: `eta_scale` where a branch crosses no surface.
     fn aimed(&self, branch: &Branch<N>) -> f32 {
         if branch.crosses { self.path.aimed } else { self.path.aimed * branch.eta_scale as f32 }
     }
@@ -340,7 +310,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         pending: &mut Slots<Path<N, P>>,
     ) {
         let Self { world, path, at, .. } = self;
-        if let Some(through) = self.through.filter(|_| self.is_onward(number)) {
+        if let Some(through) = self.through.filter(|_| number + 1 == self.branches) {
             let beyond = path.passed_in_part(at.point, through);
             let (throughput, key) = (beyond.throughput.scaled(factor), path.key.child(number));
             *pending.add(|| beyond) = Path { throughput, key, ..beyond };
