@@ -2,14 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use super::efficiency::{PhotonGain, rounded, weigh};
+use super::efficiency::{OfferedPhotons, PhotonGain, rounded};
 use super::words::{as_long, in_number};
 use crate::light::{Light, LightId, Opening};
 use crate::material::Material;
 use crate::math::{DVec2, DVec3, median};
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
-use crate::trace::{Effort, LightPass, Method, PhotonWorth, Smoothness, Transport, World, piloted, seen_photons};
+use crate::trace::{
+    Effort, LightPass, Method, PhotonWorth, PilotNoise, Smoothness, Transport, World, piloted, seen_photons,
+};
 
 /// Solid angle in steradians from which rays hit a lamp so often that photons cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
@@ -27,17 +29,15 @@ const SIDE: u32 = 24;
 
 /// Whether caustics are shown to the camera by photons.
 pub(super) struct CausticChoice {
-    pub(super) caustics: Option<Caustics>,
+    pub(super) caustics: Option<Box<Caustics>>,
     pub(super) why: Vec<String>,
     /// Whether photons are not gathered either, as they do not pay where the camera would see them.
     pub(super) settled: bool,
-    /// A world whose photons have learned where to go.
-    pub(super) guided: Option<World>,
 }
 
 impl CausticChoice {
     fn not(why: Vec<String>, settled: bool) -> Self {
-        Self { caustics: None, why, settled, guided: None }
+        Self { caustics: None, why, settled }
     }
 }
 
@@ -89,63 +89,88 @@ impl Caustics {
     }
 }
 
-/// The caustics of a scene that are worth photons, if any, and why.
-pub(super) fn caustics(scene: &Scene<Curve>, unguided: &World) -> CausticChoice {
-    let Sources { small, mut large, openings } = match sources(scene, unguided) {
-        Ok(sources) => sources,
-        Err(why) => return CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()),
-    };
-    let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
-    let lights = small.iter().map(|light| light.0).collect();
-    let all = Smoothness::ALL.to_vec();
-    let world =
-        piloted(unguided, LightPass { photons: of_all, lights, openings: openings.clone(), to: all, map: None });
-    if let Some(why) = nowhere_to_aim(scene, &world) {
-        return CausticChoice::not(vec![why], true);
+/// Photons that the camera sees, before it is known whether they are worth their time.
+pub(super) struct SeenPhotons<'a> {
+    scene: &'a Scene<Curve>,
+    /// A world that sends them, and in which they have learned where to go.
+    pub(super) guided: World,
+    offered: OfferedPhotons,
+    /// The lights whose photons are seen.
+    seen: Vec<SizedLight>,
+    /// Of each light of the scene the share of its photons that is seen.
+    share: Vec<f64>,
+    /// Lights that rays meet by chance.
+    large: Vec<SizedLight>,
+    openings: Vec<Opening>,
+    /// What they are sent to.
+    to: String,
+    /// Which lights' photons are not seen, as a person is told.
+    unseen: Option<String>,
+}
+
+impl<'a> SeenPhotons<'a> {
+    /// Those of a scene, or why there are none.
+    pub(super) fn new(scene: &'a Scene<Curve>, unguided: &World) -> Result<Self, CausticChoice> {
+        let Sources { small, large, openings } = sources(scene, unguided)
+            .map_err(|why| CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()))?;
+        let of_all = unguided.samples_of_the_format().max(FEWEST).ceil() as u64;
+        let lights = small.iter().map(|light| light.0).collect();
+        let all = Smoothness::ALL.to_vec();
+        let pass = LightPass { photons: of_all, lights, openings: openings.clone(), to: all, map: None };
+        let guided = piloted(unguided, pass);
+        if let Some(why) = nowhere_to_aim(scene, &guided) {
+            return Err(CausticChoice::not(vec![why], true));
+        }
+        let share = seen_photons(&guided);
+        let sizes = small.clone();
+        let size = |light: LightId| sizes.iter().find(|(id, _)| *id == light).map_or(0.0, |&(_, size)| size);
+        let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
+        let to = aim(scene, &Smoothness::ALL);
+        let unseen = (!unseen.is_empty()).then(|| {
+            let from = named(scene, &unseen);
+            format!("no caustic of {from} in sight: none of some thousand photons toward {to} was seen")
+        });
+        if seen.is_empty() {
+            return Err(CausticChoice::not(unseen.into_iter().collect(), false));
+        }
+        let offered = OfferedPhotons::new(scene, &guided, size);
+        Ok(Self { scene, guided, offered, seen, share, large, openings, to, unseen })
     }
-    let share = seen_photons(&world);
-    let sizes = small.clone();
-    let size = |light: LightId| sizes.iter().find(|(id, _)| *id == light).map_or(0.0, |&(_, size)| size);
-    let (seen, unseen): (Vec<_>, Vec<_>) = small.into_iter().partition(|&(id, _)| share[id] > 0.0);
-    let to = aim(scene, &Smoothness::ALL);
-    let mut lines = Vec::new();
-    if !unseen.is_empty() {
-        lines.push(format!(
-            "no caustic of {} in sight: none of some thousand photons toward {to} was seen",
-            named(scene, &unseen)
-        ));
+
+    /// Those that are worth their time beside camera samples of some noise, if any, and why.
+    pub(super) fn choose(&self, noise: &PilotNoise) -> CausticChoice {
+        let Self { scene, to, .. } = self;
+        let PhotonGain { mut photons, gain, of_smooth } = self.offered.weigh(noise);
+        photons.retain(|photons| self.seen.iter().any(|(id, _)| photons.lights.contains(id)));
+        let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
+        let (sending, left): (Vec<_>, Vec<_>) = self.seen.iter().partition(|&light| is_sent(light));
+        let large: Vec<_> = self.large.iter().copied().chain(left).collect();
+        let mut lines: Vec<String> = self.unseen.iter().cloned().collect();
+        if sending.is_empty() {
+            let (from, why) = (named(scene, &large), not_worth(gain));
+            lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
+            return CausticChoice::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
+        }
+        if !large.is_empty() {
+            lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
+        }
+        let seen = sending.iter().map(|&(id, _)| self.share[id]).fold(0.0, f64::max);
+        let smooth: Vec<_> =
+            Smoothness::ALL.into_iter().filter(|smooth| photons.iter().any(|photons| photons.to == *smooth)).collect();
+        let left = Smoothness::ALL.into_iter().filter(|left| !smooth.contains(left));
+        lines.extend(left.filter_map(|left| {
+            let name = &scene.objects[*targets(scene, &[left]).first()?].name;
+            let (how, points) = match left {
+                Smoothness::Whole => ("smooth", missing(scene)),
+                Smoothness::Partial => ("smooth only in part", missing(scene)),
+                Smoothness::Narrow | Smoothness::NarrowPartial => ("nearly smooth", ""),
+            };
+            Some(format!("left to chance: caustics of {name}, which is {how}{points}"))
+        }));
+        let (from, to, openings) = (named(scene, &sending), aim(scene, &smooth), self.openings.clone());
+        let caustics = Box::new(Caustics { photons, openings, smooth, from, to, seen, gain });
+        CausticChoice { caustics: Some(caustics), why: lines, settled: false }
     }
-    if seen.is_empty() {
-        return CausticChoice::not(lines, false);
-    }
-    let PhotonGain { mut photons, gain, of_smooth } = weigh(scene, &world, size);
-    photons.retain(|photons| seen.iter().any(|(id, _)| photons.lights.contains(id)));
-    let is_sent = |&(id, _): &SizedLight| photons.iter().any(|photons| photons.lights.contains(&id));
-    let (sending, left): (Vec<_>, Vec<_>) = seen.into_iter().partition(is_sent);
-    large.extend(left);
-    if sending.is_empty() {
-        let (from, why) = (named(scene, &large), not_worth(gain));
-        lines.push(format!("no photon tracing: photons from {from} toward {to} are seen, but {why}"));
-        return CausticChoice::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
-    }
-    if !large.is_empty() {
-        lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
-    }
-    let seen = sending.iter().map(|&(id, _)| share[id]).fold(0.0, f64::max);
-    let smooth: Vec<_> =
-        Smoothness::ALL.into_iter().filter(|smooth| photons.iter().any(|photons| photons.to == *smooth)).collect();
-    lines.extend(Smoothness::ALL.into_iter().filter(|left| !smooth.contains(left)).filter_map(|left| {
-        let name = &scene.objects[*targets(scene, &[left]).first()?].name;
-        let (how, points) = match left {
-            Smoothness::Whole => ("smooth", missing(scene)),
-            Smoothness::Partial => ("smooth only in part", missing(scene)),
-            Smoothness::Narrow | Smoothness::NarrowPartial => ("nearly smooth", ""),
-        };
-        Some(format!("left to chance: caustics of {name}, which is {how}{points}"))
-    }));
-    let to = aim(scene, &smooth);
-    let caustics = Caustics { photons, openings, smooth, from: named(scene, &sending), to, seen, gain };
-    CausticChoice { caustics: Some(caustics), why: lines, settled: false, guided: Some(world) }
 }
 
 /// What photons are sent to, as a person is told.

@@ -4,10 +4,17 @@ use crate::light::{Light, LightId, Point, Spot};
 use crate::math::DVec3;
 use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Emission, apply};
-use crate::trace::{Effort, PhotonWorth, Smoothness, World, photons_worth, pilot_noise};
+use crate::trace::{Effort, PhotonWorth, PilotNoise, Smoothness, World, photons_worth};
 
 /// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
+
+/// Photons of some lights that may be sent, those first that save most for what they cost.
+pub(super) struct OfferedPhotons {
+    photons: Vec<PhotonWorth>,
+    /// The second moment of what chance finds of the light of each, over its mean.
+    spikes: Vec<f64>,
+}
 
 /// What photons of some lights are worth beside camera samples.
 pub(super) struct PhotonGain {
@@ -19,34 +26,39 @@ pub(super) struct PhotonGain {
     pub(super) of_smooth: bool,
 }
 
-/// Weighs photons of some lights, which the world sends, against chance.
-///
-/// A light that is left to chance adds to the noise of camera samples: one that hits the lamp sees f of its radiance,
-/// and does so as often as makes the mean right, so that its second moment is f times the mean. How many photons there
-/// are is found when all else is decided.
-pub(super) fn weigh(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> PhotonGain {
-    let mut colors = Distinct::default();
-    let mut spike = |photons: &PhotonWorth| {
-        let to = TargetObjects::new(scene, photons.to);
-        let of_light = |light: &LightId| to.shows(*light, size(*light), &mut colors).unwrap_or(f64::INFINITY);
-        LEFT * photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64
-    };
-    let mut known: Vec<_> = photons_worth(world).into_iter().map(|photons| (spike(&photons), photons)).collect();
-    // Those first whose photons save most.
-    let saves = |(spike, photons): &(f64, PhotonWorth)| spike * photons.brings.iter().sum::<f64>().abs();
-    let costs = |photons: &PhotonWorth| photons.variance * photons.rays;
-    known.sort_by(|a, b| (saves(b) * costs(&a.1)).total_cmp(&(saves(a) * costs(&b.1))));
-    let of_smooth = known.iter().any(|(_, photons)| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
-    let (spikes, mut photons): (Vec<f64>, Vec<PhotonWorth>) = known.into_iter().unzip();
-    let noise = pilot_noise(world);
-    let totals: Vec<Effort> = (0..=photons.len()).map(|sent| noise.least_work(&photons, &spikes, sent)).collect();
-    let judged = |sent: usize| totals[sent].judged();
-    let best = (0..totals.len()).min_by(|&a, &b| judged(a).total_cmp(&judged(b))).unwrap_or(0);
-    let best = if totals[0].over(totals[best]).is_clear() { best } else { 0 };
-    let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
-    let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
-    photons.truncate(best);
-    PhotonGain { photons, gain, of_smooth }
+impl OfferedPhotons {
+    /// Those that a world sends, of lights of known solid angles.
+    pub(super) fn new(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> Self {
+        let mut colors = Distinct::default();
+        let mut spike = |photons: &PhotonWorth| {
+            let to = TargetObjects::new(scene, photons.to);
+            let of_light = |light: &LightId| to.shows(*light, size(*light), &mut colors).unwrap_or(f64::INFINITY);
+            LEFT * photons.lights.iter().map(of_light).sum::<f64>() / photons.lights.len() as f64
+        };
+        let mut known: Vec<_> = photons_worth(world).into_iter().map(|photons| (spike(&photons), photons)).collect();
+        let saves = |(spike, photons): &(f64, PhotonWorth)| spike * photons.brings.iter().sum::<f64>().abs();
+        let costs = |photons: &PhotonWorth| photons.variance * photons.rays;
+        known.sort_by(|a, b| (saves(b) * costs(&a.1)).total_cmp(&(saves(a) * costs(&b.1))));
+        let (spikes, photons) = known.into_iter().unzip();
+        Self { photons, spikes }
+    }
+
+    /// Weighs them against chance, beside camera samples of some noise.
+    ///
+    /// A light that is left to chance adds to that noise: a sample that hits the lamp sees f of its radiance, and does
+    /// so as often as makes the mean right, so that its second moment is f times the mean. How many photons there are
+    /// is found when all else is decided.
+    pub(super) fn weigh(&self, noise: &PilotNoise) -> PhotonGain {
+        let Self { photons, spikes } = self;
+        let of_smooth = photons.iter().any(|photons| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
+        let totals: Vec<Effort> = (0..=photons.len()).map(|sent| noise.least_work(photons, spikes, sent)).collect();
+        let judged = |sent: usize| totals[sent].judged();
+        let best = (0..totals.len()).min_by(|&a, &b| judged(a).total_cmp(&judged(b))).unwrap_or(0);
+        let best = if totals[0].over(totals[best]).is_clear() { best } else { 0 };
+        let gain = totals[0].over(totals[if best == 0 { photons.len() } else { best }]);
+        let gain = (gain.judged().is_finite() && !photons.is_empty()).then_some(gain);
+        PhotonGain { photons: photons[..best].to_vec(), gain, of_smooth }
+    }
 }
 
 /// The nearest power of the root of 2: the least of time x variance is flat, and rounding must not change an image.

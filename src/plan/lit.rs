@@ -1,12 +1,12 @@
 //! How the light of a scene is found.
 
 use super::between::{IndirectMethod, between};
-use super::caustics::{self, CausticChoice};
+use super::caustics::{self, CausticChoice, SeenPhotons};
 use super::photon_map;
 use crate::light::Light;
 use crate::scene::Scene;
 use crate::spectrum::Curve;
-use crate::trace::{LightPass, Smoothness, World, room_light};
+use crate::trace::{LightPass, Method, RoomLight, Smoothness, World, pilot_noise, room_light};
 
 /// A world with all that finds its light.
 pub(super) struct LitWorld {
@@ -25,7 +25,34 @@ impl LitWorld {
         let openings = light.as_ref().and_then(|light| light.openings.clone());
         let aimed = openings.map(|openings| unlit.with_bright(Some(openings)));
         let seen = aimed.as_ref().unwrap_or(unlit);
-        let CausticChoice { caustics, why, settled, guided } = caustics::caustics(scene, seen);
+        let photons = match SeenPhotons::new(scene, seen) {
+            Ok(photons) => photons,
+            Err(none) => return Self::with_caustics(scene, unlit, seen, light, none),
+        };
+        let choice = photons.choose(&pilot_noise(&photons.guided));
+        let is_chosen = choice.caustics.is_some();
+        let lit = Self::with_caustics(scene, unlit, seen, light, choice);
+        if is_chosen {
+            return Self { guided: Some(photons.guided), ..lit };
+        }
+        let Method { light_vertices: true, light_pass: None, .. } = lit.world.method() else { return lit };
+        // Light vertices take away noise beside which photons did not pay.
+        let beside = lit.world.with_light_pass(photons.guided.method().light_pass.clone());
+        let choice = photons.choose(&pilot_noise(&beside));
+        if choice.caustics.is_none() {
+            return lit;
+        }
+        Self { guided: Some(photons.guided), ..Self::with_caustics(scene, unlit, seen, None, choice) }
+    }
+
+    /// With the caustics that were chosen. `light` is what lights the room, if that is known.
+    fn with_caustics(
+        scene: &Scene<Curve>,
+        unlit: &World,
+        seen: &World,
+        light: Option<RoomLight>,
+        CausticChoice { caustics, why, settled }: CausticChoice,
+    ) -> Self {
         let shown = caustics.as_ref().map(|caustics| caustics.pass(unlit, 0.0));
         let (light_pass, why_gathered) = photon_map::with_map(scene, seen, shown.as_ref(), settled);
         // Why nothing is shown matters only where nothing is gathered either.
@@ -44,6 +71,6 @@ impl LitWorld {
         let reason = caustics.as_ref().and_then(|caustics| caustics.reason(&world));
         let left = caustics::without_end(scene, &world);
         let because = reason.into_iter().chain(left).chain(why).chain(why_gathered).chain(reasons).collect();
-        Self { world, because, guided }
+        Self { world, because, guided: None }
     }
 }
