@@ -5,7 +5,7 @@ use abbe::trace::{LightPass, Smoothness, World, photons_within};
 
 use super::ordinary;
 use super::twenty::{Room, rooms};
-use crate::support::scenes::{GROUND, SPLITTING, body, method, scene, view};
+use crate::support::scenes::{GROUND, SPLITTING, body, environment, method, quad, scene, view};
 
 /// What is right for each was measured: `cargo bench --bench rooms`, the table in `benches/README.md`.
 #[test]
@@ -100,6 +100,43 @@ fn photons_that_light_a_room_are_counted_beside_the_noise_that_all_else_leaves()
     let method = plan(&scene(text)).method;
     let photons = method.light_pass.expect("the lamp is behind glass").photons as f64 / f64::from(128 * 128 * 64);
     assert!(method.light_vertices && (0.7..=4.0).contains(&photons), "{photons} for each camera sample");
+}
+
+/// By a window of a square meter, photons through it do not pay beside bounces alone. Light vertices, which take images
+/// of a million samples, leave so little noise that they do.
+#[test]
+fn photons_are_weighed_beside_light_vertices() {
+    let walls = [
+        quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -1.5]),
+        quad([0.0, 2.6, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 1.5]),
+        quad([0.0, 1.3, -1.5], [2.0, 0.0, 0.0], [0.0, 1.3, 0.0]),
+        quad([0.0, 1.3, 1.5], [2.0, 0.0, 0.0], [0.0, 1.3, 0.0]),
+        quad([-2.0, 1.3, 0.0], [0.0, 1.3, 0.0], [0.0, 0.0, 1.5]),
+        quad([2.0, 0.5, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 1.5]),
+        quad([2.0, 2.3, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, 1.5]),
+        quad([2.0, 1.5, -1.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]),
+        quad([2.0, 1.5, 1.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.5]),
+    ];
+    let with_samples = |samples: u32| {
+        let text = format!(
+            "camera = {{ position = [-1.8, 1.5, 1.2], look_at = [0.3, 0.6, -0.2], vertical_fov = 50 }}\n\
+             film = {{ width = 160, height = 120 }}\nrender = {{ samples = {samples} }}\n"
+        ) + &body("wall", "diffuse = { reflectance = 0.6 }", &walls.each_ref().map(String::as_str))
+            + &body(
+                "table",
+                "diffuse = { reflectance = 0.5 }",
+                &[&quad([0.4, 0.6, 0.0], [0.6, 0.0, 0.0], [0.0, 0.0, 0.5])],
+            )
+            + &body(
+                "glass",
+                "dielectric = { index = 1.5 }",
+                &["sphere = { center = [0.4, 0.85, -0.1], radius = 0.2 }"],
+            )
+            + &environment(1.0);
+        let method = plan(&scene(&text)).method;
+        (method.light_vertices, method.light_pass.is_some())
+    };
+    assert_eq!([with_samples(32), with_samples(64)], [(false, false), (true, true)]);
 }
 
 #[test]
