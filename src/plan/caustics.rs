@@ -99,7 +99,7 @@ pub(super) struct SeenPhotons<'a> {
     seen: Vec<SizedLight>,
     /// Of each light of the scene the share of its photons that is seen.
     share: Vec<f64>,
-    /// Lights that rays meet by chance.
+    /// Lights that rays hit by chance.
     large: Vec<SizedLight>,
     openings: Vec<Opening>,
     /// What they are sent to.

@@ -42,7 +42,11 @@ impl LitWorld {
         if choice.caustics.is_none() {
             return lit;
         }
-        Self { guided: Some(photons.guided), ..Self::with_caustics(scene, unlit, seen, None, choice) }
+        let beside = Self::with_caustics(scene, unlit, seen, None, choice);
+        if !beside.world.method().light_vertices {
+            return lit;
+        }
+        Self { guided: Some(photons.guided), ..beside }
     }
 
     /// With the caustics that were chosen. `light` is what lights the room, if that is known.
