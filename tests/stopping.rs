@@ -12,10 +12,10 @@ use std::time::Duration;
 use abbe::film::{ExrFile, Layer, Shard};
 use abbe::trace::{Method, Stopped};
 use abbe::{Advance, Image, Options, Rendering, Resumed, Scene, render};
-use rayon::prelude::*;
 
 use crate::checkpoints::{CAUSTIC, GLASS, Kind, ROOM, advance, bytes, planned, rendering};
 use crate::support::random::Random;
+use crate::support::renders::many;
 use crate::support::scenes::scene;
 
 fn asks(error: f64, most: u32) -> Options {
@@ -117,7 +117,7 @@ fn truth(scene: &Scene) -> (Vec<[f64; 3]>, f64) {
         assert!(!rendering.plan().method.light_vertices);
         rendering.run(&|_| ()).rgb()
     };
-    let images: Vec<Vec<[f32; 3]>> = (0..RENDERS).into_par_iter().map(one).collect();
+    let images: Vec<Vec<[f32; 3]>> = many(RENDERS, one);
     let mean = |pixel: usize| {
         [0, 1, 2].map(|i| images.iter().map(|image| f64::from(image[pixel][i])).sum::<f64>() / RENDERS as f64)
     };
@@ -141,7 +141,7 @@ fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
             noise.at_most * noise.at_most,
         ]
     };
-    let found: Vec<[f64; 3]> = (0..RENDERS).into_par_iter().map(one).collect();
+    let found: Vec<[f64; 3]> = many(RENDERS, one);
     let apart: Vec<f64> = found.iter().map(|[true_error, told, _]| true_error - told).collect();
     let mean = apart.iter().sum::<f64>() / RENDERS as f64;
     let variance = apart.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (RENDERS - 1) as f64;
@@ -185,7 +185,7 @@ fn an_image_of_one_pixel_does_not_end_before_a_small_lamp_is_found() {
         let image = render(&scene, &Options { seed: Some(seed), ..asks(0.1, 65_536) }).expect("it can be rendered");
         (f64::from(image.rgb()[0][1]) - 2.0).abs() / 2.0
     };
-    let off: Vec<f64> = (0..RENDERS).into_par_iter().map(one).collect();
+    let off: Vec<f64> = many(RENDERS, one);
     // 95 of 100; more than 4 of 20 by chance once in 390 times.
     assert!(off.iter().filter(|&&off| off > 0.1).count() <= 4, "{off:?}");
 }
@@ -218,7 +218,7 @@ fn the_noise_of_alpha_under_a_shadow_catcher_is_the_noise_that_is_there_and_a_re
             let told = error.alpha.expect("there is a shadow catcher");
             [alpha.iter().map(square).sum::<f64>() / alpha.len() as f64, told.expected.powi(2), told.at_most.powi(2)]
         };
-        let found: Vec<[f64; 3]> = (0..RENDERS).into_par_iter().map(one).collect();
+        let found: Vec<[f64; 3]> = many(RENDERS, one);
         let mean = |i: usize| found.iter().map(|numbers| numbers[i]).sum::<f64>() / RENDERS as f64;
         assert!((mean(0) / mean(1) - 1.0).abs() < 0.1, "{filter}: {:e} is told as {:e}", mean(0), mean(1));
         let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
@@ -302,7 +302,7 @@ material = "lamp"
             assert!(image.rgb_at(x, y)[0] > 1.3 * image.rgb_at((x + 8) % 64, y)[0], "{error:?}");
         })
     };
-    let found: Vec<_> = (0..12).into_par_iter().map(told).collect();
+    let found: Vec<_> = many(12, told);
     let outliers: Vec<_> = found.iter().flatten().collect();
     assert!(outliers.len() >= 4, "{} of 12 renders met it", outliers.len());
 }

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use abbe::film::Film;
 use abbe::trace::{Estimate, LightPass, MapPasses, Method, Report, Smoothness, Stop, Stopped, prepare, render};
-use rayon::prelude::*;
 
 use super::agreement::{glass, seen_by, with_method};
 use super::gathered::mirror;
+use crate::support::renders::many;
 use crate::support::scenes::{SPLITTING, moments, object};
 
 /// Pixels along each side of the images.
@@ -56,7 +56,7 @@ fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) ->
     });
     let asked = Method { samples, transport: SPLITTING, stop: Some(stop.clone()), light_pass, ..method };
     let one = |seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ());
-    (0..count).into_par_iter().map(one).collect()
+    many(count, one)
 }
 
 const MAP: MapPasses = MapPasses { count: 8, photons: 32_768, radius: 4.0, chance: 1.0 };

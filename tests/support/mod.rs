@@ -11,6 +11,7 @@ pub mod fresnel;
 pub mod larger;
 pub mod pictures;
 pub mod random;
+pub mod renders;
 pub mod run;
 pub mod scenes;
 pub mod texts;
