@@ -127,7 +127,8 @@ static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
     std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
 });
 
-/// The same for the digits of 65,536 and more, of the first two sets.
+/// Of the first two sets of four dimensions, the points of the hexadecimal digits in the upper half of an index, bits
+/// reversed; [`SOBOL`] has those of the lower half.
 static BEYOND: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
     let directions: Vec<[u32; 32]> = (0..8).map(directions).collect();
     let point = |set: usize, i: usize, digit: usize| {

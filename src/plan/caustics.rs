@@ -109,7 +109,7 @@ pub(super) struct SeenPhotons<'a> {
 }
 
 impl<'a> SeenPhotons<'a> {
-    /// Those of a scene, or why there are none.
+    /// The photons of a scene that the camera sees, or why there are none.
     pub(super) fn new(scene: &'a Scene<Curve>, unguided: &World) -> Result<Self, CausticChoice> {
         let Sources { small, large, openings } = sources(scene, unguided)
             .map_err(|why| CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()))?;
@@ -137,7 +137,7 @@ impl<'a> SeenPhotons<'a> {
         Ok(Self { scene, guided, offered, seen, share, large, openings, to, unseen })
     }
 
-    /// Those that are worth their time beside camera samples of some noise, if any, and why.
+    /// The photons that are worth their time beside camera samples of some noise, if any, and why.
     pub(super) fn choose(&self, noise: &PilotNoise) -> CausticChoice {
         let Self { scene, to, .. } = self;
         let PhotonGain { mut photons, gain, of_smooth } = self.offered.weigh(noise);

@@ -27,7 +27,7 @@ pub(super) struct PhotonGain {
 }
 
 impl OfferedPhotons {
-    /// Those that a world sends, of lights of known solid angles.
+    /// Photons that a world sends, from lights of known solid angles in steradians.
     pub(super) fn new(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> Self {
         let mut colors = Distinct::default();
         let mut spike = |photons: &PhotonWorth| {
@@ -43,7 +43,7 @@ impl OfferedPhotons {
         Self { photons, spikes }
     }
 
-    /// Weighs them against chance, beside camera samples of some noise.
+    /// Weighs photons against chance, beside camera samples of some noise.
     ///
     /// A light that is left to chance adds to that noise: a sample that hits the lamp sees f of its radiance, and does
     /// so as often as makes the mean right, so that its second moment is f times the mean. How many photons there are
