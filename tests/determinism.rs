@@ -4,7 +4,9 @@
 //! cargo test --test all determinism::
 //! ```
 
+use abbe::{Options, Scene};
 use exr::prelude::{AttributeValue, LayerAttributes, Text, read_first_flat_layer_from_file};
+use rayon::prelude::*;
 
 use crate::support::run::{Folder, render};
 
@@ -108,4 +110,28 @@ fn only_a_stamp_says_when_and_how_an_image_was_made() {
     // All else is the same.
     let rest = |header: &LayerAttributes| header.other.len();
     assert_eq!(rest(&plain) + 2, rest(&stamped));
+}
+
+#[test]
+fn renders_that_a_program_starts_in_parallel_neither_overflow_its_stacks_nor_disturb_each_other() {
+    let text = r#"
+    camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
+    film = { width = 8, height = 8 }
+    render.samples = 1
+    material.glass.dielectric.index = 1.5
+    object = [{ shape.sphere = { center = [0, 0, 0], radius = 1 }, material = "glass" }]
+    light = [{ environment.radiance = 1 }]
+    "#;
+    let scene = Scene::parse(text, "").expect("it is a scene");
+    let render = |seed: u64| {
+        let options = Options { seed: Some(seed % 3), threads: Some(1), ..Options::default() };
+        abbe::render(&scene, &options).expect("it renders").rgb()
+    };
+    // 200 renders on the stack of one of two threads would overflow it.
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads can be started");
+    let images: Vec<_> = threads.install(|| (0..200).into_par_iter().map(render).collect());
+    assert!(images[0] != images[1], "seeds differ");
+    for (seed, image) in images.iter().enumerate() {
+        assert!(*image == images[seed % 3], "render {seed}");
+    }
 }

@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::film::{CameraView, Fact, Film, Format, Provenance, Shard};
 use crate::plan::{Plan, plan};
 use crate::scene::{Projection, RenderText, Scene};
-use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare};
+use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare, run_on};
 
 /// Renders a scene.
 ///
@@ -98,10 +98,10 @@ impl Rendering {
         let threads = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         let plan = match &options.plan {
             Some(path) => read_plan(path, &scene)?,
-            None => threads.install(|| plan(&scene)),
+            None => run_on(&threads, || plan(&scene)),
         };
         has_memory(&scene, &plan.method, options.shard)?;
-        let (world, photon_cost) = (prepare(&scene, plan.method.clone()), plan.photon_cost);
+        let (world, photon_cost) = (run_on(&threads, || prepare(&scene, plan.method.clone())), plan.photon_cost);
         let camera = &scene.camera;
         let view = CameraView {
             world_to_camera: camera.world_to_camera(),
@@ -182,7 +182,7 @@ impl Rendering {
     /// # Ok::<(), abbe::Error>(())
     /// ```
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
-        self.threads.install(|| self.passes.advance(progress))
+        run_on(&self.threads, || self.passes.advance(progress))
     }
 
     /// The same, but stops before the next pixels once `is_due` says so. It is asked again and again, from any thread.
@@ -211,7 +211,7 @@ impl Rendering {
     /// # Ok::<(), abbe::Error>(())
     /// ```
     pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
-        self.threads.install(|| self.passes.advance_until(progress, is_due))
+        run_on(&self.threads, || self.passes.advance_until(progress, is_due))
     }
 
     /// How much of the [`work`](Self::work) is done.
@@ -292,13 +292,13 @@ impl Rendering {
     pub fn error(&self) -> Option<ImageError> {
         let &Measured { noise, blur, alpha } = self.passes.measured()?;
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
-        let rare_light = self.threads.install(|| stopped_by.and_then(|_| self.passes.rare_light()));
+        let rare_light = run_on(&self.threads, || stopped_by.and_then(|_| self.passes.rare_light()));
         Some(ImageError { asked: self.render.error, noise, blur, alpha, rare_light, model, stopped_by })
     }
 
     /// The image of all samples so far.
     pub fn image(&self) -> Image {
-        self.image_of(self.threads.install(|| self.passes.film()))
+        self.image_of(run_on(&self.threads, || self.passes.film()))
     }
 
     /// All that is known of the image so far, without its pixels and the values of its layers: it takes little memory.

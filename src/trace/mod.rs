@@ -68,6 +68,7 @@ pub use image::{
 pub use look::RAYS_OF_A_LOOK;
 pub use media::MOST_MEDIA;
 pub use method::{LightPass, MapPasses, Method, Polarizing, Stop, Transport};
+pub use parallel::run_on;
 pub use path_start::{SkyOpenings, SunlitPlaces};
 pub use photon::light_paths_reach;
 pub use photon_focus::Smoothness;

@@ -4,13 +4,30 @@
 //! Pieces are dealt out one by one. Rayon's own choice for two threads is a quarter of them at a time, so that one
 //! waits for the other at the end.
 
-use rayon::ThreadPoolBuilder;
-use rayon::prelude::*;
+use std::panic::resume_unwind;
+use std::thread;
 
-/// Does work on one processor alone: how long it takes is then the time of a processor.
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Runs work on the threads of a pool, and sleeps until it is done.
+///
+/// A thread of another pool does not sleep in [`ThreadPool::install`] but takes up further work of its own pool. Where
+/// a program starts many renders in parallel, that is the next render, and hundreds of them overflow its stack.
+pub fn run_on<T: Send>(threads: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
+    if rayon::current_thread_index().is_none() || threads.current_thread_index().is_some() {
+        return threads.install(work);
+    }
+    thread::scope(|scope| match scope.spawn(|| threads.install(work)).join() {
+        Ok(result) => result,
+        Err(panic) => resume_unwind(panic),
+    })
+}
+
+/// Runs work on a single thread, so that the time it takes is that of one processor.
 pub(super) fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     match ThreadPoolBuilder::new().num_threads(1).build() {
-        Ok(one) => one.install(work),
+        Ok(one) => run_on(&one, work),
         Err(_) => work(),
     }
 }

@@ -132,7 +132,11 @@ fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
     }
     let inside = view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16) + &white("cube = { center = [0, 0, 0], size = 40 }");
     assert_warns(&(inside.clone() + &environment(1.0)), &["the camera is inside object 1, which is opaque"]);
-    assert_warns(&(inside + light), &[]);
+    assert_warns(&(inside.clone() + light), &[]);
+    // Around the camera is glass, and what is opaque is around the glass.
+    let bead = body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0, 2, 8], radius = 1 }"]);
+    let warnings = scene(&(inside + &bead + &environment(1.0))).warnings;
+    assert!(warnings.len() == 1 && !warnings[0].contains("which is opaque"), "{warnings:?}");
 }
 
 #[test]

@@ -69,7 +69,8 @@ fn empty_view(view: &View) -> Option<String> {
 fn around_the_camera(view: &View) -> Option<String> {
     let mut met = view.first_met();
     let (object, _) = met.next()??;
-    let is_inside = met.all(|met| met == Some((object, true)));
+    let is_opaque = !view.scene.is_clear(object) && !view.scene.material_of(object).is_see_through();
+    let is_inside = is_opaque && met.all(|met| met == Some((object, true)));
     is_inside.then(|| view.scene.objects[object as usize].name.clone())
 }
 
