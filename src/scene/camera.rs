@@ -396,7 +396,7 @@ impl Camera {
         let along = self.forward + in_world(slope);
         let length = along.length();
         let pixels = self.size.x * self.size.y / (4.0 * self.half.x * self.half.y);
-        // // A unit of area that faces the ray fills `length` of the window of parallel rays. Of a window one unit in
+        // A unit of area that faces the ray fills `length` of the window of parallel rays. Of a window one unit in
         // front of the camera it fills length / depth^2, since its solid angle is 1 / (length depth)^2 and the window's
         // cosine is 1 / length.
         let importance = if parallel { pixels * length } else { pixels * length / (depth * depth) };
@@ -429,7 +429,7 @@ impl Camera {
         let DVec2 { x: width, y: height } = self.size;
         let turns = |size: f64| (reach / size).ceil() as i32 + 1;
         let mut places = Vec::new();
-        // // Beyond a pole, the film continues on the opposite side, upside down.
+        // Beyond a pole, the film continues on the opposite side, upside down.
         for start in [film, DVec2::new(film.x + 0.5 * width, -film.y)] {
             for (i, j) in
                 (-turns(width)..=turns(width)).flat_map(|i| (-turns(height)..=turns(height)).map(move |j| (i, j)))

@@ -81,7 +81,7 @@ impl Index {
         counts: impl Fn(u32) -> bool,
     ) -> bool {
         let RayEnds { left, light, part } = ends;
-        // // An object listed after the light's own does not hide it at an equal distance.
+        // An object listed after the light's own does not hide it at an equal distance.
         let hides_at = |[object, other]: [u32; 2], t: f64| match light {
             Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
             _ if !counts(object) => false,

@@ -45,7 +45,7 @@ impl NormalPerturbation {
         let Some(tangents) = self.coordinates.tangents(shape, intersection, point) else { return n };
         let [along_u, along_v] = tangents.map(|tangent| tangent - n * tangent.dot(n));
         let uv = self.coordinates.at(shape, intersection, point.position);
-        // // Where an image is mirrored on the surface, u and v have the opposite orientation.
+        // Where an image is mirrored on the surface, u and v have the opposite orientation.
         let side = 1f64.copysign(along_u.cross(along_v).dot(n));
         let bent = match self.kind {
             PerturbationKind::Directions { strength } => {
@@ -66,7 +66,7 @@ impl NormalPerturbation {
             }
         };
         let Some(bent) = bent.try_normalize() else { return n };
-        // // A normal must not point into the surface: one that would is reflected at the tangent plane.
+        // A normal must not point into the surface: one that would is reflected at the tangent plane.
         let inward = bent.dot(point.normal).min(0.0);
         (bent - point.normal * (2.0 * inward)).try_normalize().unwrap_or(n)
     }

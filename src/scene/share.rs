@@ -1,7 +1,7 @@
 /// Parses a share written in percent, such as `5 %`. Returns none if it is not one.
 pub fn share(text: &str) -> Option<f64> {
     let percent: f64 = text.strip_suffix('%')?.trim().parse().ok()?;
-    // // A division by 100 would round a second time.
+    // A division by 100 would round a second time.
     format!("{percent}e-2").parse().ok()
 }
 

@@ -44,7 +44,7 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
 
 /// Returns the object in whose surface a place lies, if there is one.
 fn surface_at(scene: &Scene<Curve>, place: DVec3, size: f64) -> Option<u32> {
-    // // At least one of the three axes leads through the surface, whatever its normal.
+    // At least one of the three axes leads through the surface, whatever its normal.
     DVec3::AXES.into_iter().find_map(|direction| {
         let hit = scene.intersect(&Ray { origin: place - direction * (STEP * size), direction })?;
         ((hit.intersection.t - STEP * size).abs() <= NEAR * size).then_some(hit.object)

@@ -28,7 +28,7 @@ const TOLD: usize = 4;
 /// Returns a warning about each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut view = View::new(scene);
-    // // A light that is switched off gets no warning.
+    // A light that is switched off gets no warning.
     let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
     let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
     view.look(|view, places| {
@@ -113,7 +113,7 @@ fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
         let above = sample.ray.direction.dot(place.normal) > 0.0;
         Some(above && !view.is_occluded(&sample.ray, sample.distance, sample.object))
     };
-    // // Nearly all samples of a sky image may go toward its sun.
+    // Nearly all samples of a sky image may go toward its sun.
     let sees_sky = || {
         let direction = cosine_about(place.normal, [u, v]);
         let shines = matches!(light, Light::Environment(sky) if sky.shines_toward(direction));

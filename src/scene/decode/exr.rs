@@ -35,7 +35,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
         has_alpha: alpha,
         is_lossy: is_lossy(&header, &chosen),
         to_rec709: to_rec709(&header),
-        // // Black and transparent.
+        // Black and transparent.
         numbers: vec![0.0; channels * size.width() * size.height()],
     };
     let chunks = reader

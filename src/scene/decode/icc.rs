@@ -21,7 +21,7 @@ pub(super) fn not_srgb(profile: &[u8]) -> Option<String> {
 /// Returns the XYZ of a primary from its tag: section 10.31 of the standard.
 fn primary(profile: &[u8], tag: &[u8; 4]) -> Option<[f64; 3]> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
-    // // The header of 128 bytes is followed by the number of tags, then by the name, offset and size of each tag.
+    // The header of 128 bytes is followed by the number of tags, then by the name, offset and size of each tag.
     let mut tags = (0..number(128)?.min(MOST_TAGS) as usize).map(|tag| 132 + 12 * tag);
     let entry = tags.find(|&entry| profile.get(entry..entry + 4) == Some(tag))?;
     let data = number(entry + 4)? as usize;

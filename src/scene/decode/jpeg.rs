@@ -38,11 +38,10 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
 /// with stray bytes between segments.
 fn is_complete(bytes: &[u8]) -> bool {
     const END: u8 = 0xd9;
-    // // These markers have no segment: the start of the image, restarts within a scan, and a private marker.
+    // These markers have no segment: the start of the image, restarts within a scan, and a private marker.
     let stands_alone = |marker: u8| matches!(marker, 0x01 | 0xd0..=0xd8);
     let mut rest = bytes;
-    // // Data outside of segments, above all that of scans, contains no marker: each of its bytes 255 is followed by a
-    // 0.
+    // Data outside of segments, above all that of scans, contains no marker: each of its bytes 255 is followed by a 0.
     while let Some(at) = rest.windows(2).position(|pair| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff)) {
         let marker = rest[at + 1];
         if marker == END {

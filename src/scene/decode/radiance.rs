@@ -22,7 +22,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
     let Header { size: [width, height], factors, to_rec709 } = reader.header()?;
     let length = 12_u64.saturating_mul(width as u64).saturating_mul(height as u64);
     fits(width, height, length, bytes)?;
-    // // Colors are integer multiples of 2^(exponent - 136); an exponent of 0 is black.
+    // Colors are integer multiples of 2^(exponent - 136); an exponent of 0 is black.
     let unit = |exponent: usize| if exponent == 0 { 0.0 } else { libm::ldexp(1.0, exponent as i32 - 136) };
     let units: [f64; 256] = std::array::from_fn(unit);
     let mut texels = vec![[0; 4]; width];
