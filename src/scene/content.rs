@@ -18,6 +18,7 @@ use crate::spectrum::{Curve, Quantity};
 /// A world in which every name has been resolved and every number checked.
 #[derive(Clone, Debug)]
 pub struct Scene<S = Curve> {
+    /// The camera.
     pub camera: Camera,
     /// Size and meaning of the image.
     pub film: FilmSettings,
@@ -55,6 +56,7 @@ pub struct Scene<S = Curve> {
 pub struct NamedMaterial<S> {
     /// Its name in the scene file.
     pub name: String,
+    /// The material.
     pub material: Material<S>,
 }
 

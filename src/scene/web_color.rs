@@ -2,9 +2,9 @@
 
 use crate::spectrum::decode_srgb;
 
-/// Converts a color as paint programs and the web write it (`#ff8800`, `#f80`, `0xff8800`, `rgb(255, 136, 0)` or `255,
-/// 136, 0`) to linear red, green and blue, as a text that can be pasted into a scene. Returns none if the text is no
-/// such color.
+/// Converts a color as paint programs and the web write it (`#ff8800`, `#f80`, `0xff8800`, `rgb(255, 136, 0)` or
+/// `255, 136, 0`) to linear red, green and blue, as a text that can be pasted into a scene. Returns none if the text is
+/// no such color.
 pub fn web_color(text: &str) -> Option<String> {
     let text = text.trim().to_lowercase();
     match text.strip_prefix('#').or_else(|| text.strip_prefix("0x")) {

@@ -12,7 +12,8 @@ pub(in crate::scene) fn ray_into(bounds: &Bounds, place: DVec3, on_ball: [f64; 2
     Some(Ray { origin: target - direction * (2.0 * size), direction })
 }
 
-/// Returns the point of a bounded shape that a ray of `ray_into` its box meets first, and the direction of the ray.
+/// Returns the first point of a bounded shape that a ray from `ray_into` through its box hits, and the direction of
+/// that ray.
 pub(in crate::scene) fn met_from_outside(
     shape: &Shape,
     place: DVec3,

@@ -65,7 +65,8 @@ fn empty_view(view: &View) -> Option<String> {
         .then(|| "the camera sees no object: none of 576 rays meets one; `look_at` is a point that it looks at".into())
 }
 
-/// Returns the name of the opaque object that the camera is inside of, if it sees nothing but the inside of one object.
+/// Returns the name of the object that the camera is inside of, if it sees nothing but the inside of one object. That
+/// object is assumed to be opaque.
 fn around_the_camera(view: &View) -> Option<String> {
     let mut met = view.first_met();
     let (object, _) = met.next()??;

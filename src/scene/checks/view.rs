@@ -1,4 +1,4 @@
-//! What the camera sees, directly or via other surfaces, found roughly with a few thousand rays.
+//! What the camera sees, directly or via other surfaces, estimated roughly with a few thousand rays.
 //!
 //! Rays pass straight through clear bodies, panes and cutouts.
 

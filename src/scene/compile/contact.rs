@@ -59,8 +59,8 @@ fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Returns the pairs of an object that counts and a plane that cuts its box or lies beside it. Two planes always make a
-/// pair, since they may be the same.
+/// Returns the pairs of an object marked in `counting` and a plane that cuts its box or lies beside it. Two planes
+/// always make a pair, since they may be the same.
 fn with_planes(objects: &[Object], counting: &[bool]) -> impl Iterator<Item = (usize, usize)> {
     let plane = |number: usize| match &*objects[number].shape {
         Shape::Plane(plane) => Some((number, plane)),

@@ -81,7 +81,8 @@ impl TextureOf<'_> {
         Ok(picked)
     }
 
-    /// Adds warnings to an image: that alpha is ignored, and that the file says that its colors are not sRGB.
+    /// Adds the warnings that apply to an image: that alpha is ignored, and that the file says that its colors are not
+    /// sRGB.
     fn file(&self, image: Image, ignores_alpha: bool, not_srgb: Option<&str>) -> ImageFile {
         let file = self.path.display();
         let alpha = ignores_alpha.then(|| format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));

@@ -18,7 +18,7 @@ use crate::scene::text::{Choice, Fields, Value, exactly, shown};
 use crate::shape::Sides;
 use crate::spectrum::{Curve, Quantity};
 
-/// A material read by itself. If it is made of others, only the places are known where they are named.
+/// A material read by itself. A mix or a mask still holds the values that name its parts.
 pub(super) enum MaterialDraft<'d, S> {
     Whole(Material<S>),
     Mix { parts: [Value<'d>; 2], amount: S },

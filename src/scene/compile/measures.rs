@@ -1,4 +1,4 @@
-//! Points, directions and lengths within the range of numbers, and the units that numbers seem to be in.
+//! Range checks of points, directions and lengths, and guesses of the units that numbers were meant in.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 use crate::math::DVec3;
 use crate::scene::text::{Value, shown};
 
-/// Largest length and coordinate: far within f32, and so are products of a few of them within f64.
+/// Largest length and coordinate. It is far within f32, and products of a few of them are far within f64.
 pub(super) const MAX_LENGTH: f64 = 1e30;
-/// Smallest size, for the same reason.
+/// Smallest size. It is far within f32, and products of a few of them are far within f64.
 pub(super) const MIN_LENGTH: f64 = 1e-30;
 /// Angle in degrees below which radians may be meant.
 const NARROW: f64 = 1.0;

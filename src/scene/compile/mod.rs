@@ -133,7 +133,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     Some(scene)
 }
 
-/// Reports sections that every scene needs, if this one does not even have them misspelled.
+/// Reports required sections that are missing, unless they are misspelled.
 fn needs_camera_and_film(sections: &mut Fields) {
     let needed = ["camera", "film"].into_iter();
     let missing = needed.filter(|key| sections.get(key).is_none() && !sections.is_misspelt(key));

@@ -10,10 +10,10 @@ pub(super) const MOST_PAIRS: usize = 20_000;
 /// Maximum number of grid cells that an object covers. A larger object is compared with all others.
 const MOST_CELLS: usize = 16;
 
-/// Finds pairs of objects whose boxes meet, the first of which counts. Objects are visited in the order in which they
-/// begin along the longest side of the scene. Each is compared with those that have not ended yet (Cohen et al. 1995,
-/// *I-COLLIDE*, sweep and prune) and that share a cell with it in a grid across that side. Objects without a box are in
-/// no pair.
+/// Finds pairs of objects whose boxes meet, the first of which is marked in `counting`. Objects are visited in the
+/// order in which they begin along the longest side of the scene. Each is compared with those that have not ended yet
+/// (Cohen et al. 1995, *I-COLLIDE*, sweep and prune) and that share a cell with it in a grid across that side. Objects
+/// without a box are in no pair.
 pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)> {
     if !counting.contains(&true) {
         return Vec::new();
@@ -23,7 +23,7 @@ pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(us
     let to = |boxed: &Boxed| boxed.bounds.max[grid.along] + reach(&boxed.bounds);
     let mut order: Vec<Boxed> = (0..boxes.len()).filter_map(|object| Boxed::of(boxes, object)).collect();
     order.sort_by(|a, b| from(a).total_cmp(&from(b)));
-    // Most objects of most scenes do not count, and are compared only with the few that do.
+    // Most objects of most scenes are not marked, and are compared only with the few that are.
     let (mut open, mut open_that_count) = (Open::new(&grid), Open::new(&grid));
     let (mut pairs, mut near) = (Vec::new(), Vec::new());
     for (place, boxed) in order.iter().enumerate() {
@@ -57,7 +57,7 @@ impl Boxed {
     }
 }
 
-/// Returns two objects as a pair, the first of which counts, if one does and their boxes meet.
+/// Returns two objects as a pair, the first of which is marked in `counting`, if one is and their boxes meet.
 fn pair(counting: &[bool], one: &Boxed, other: &Boxed) -> Option<(usize, usize)> {
     let (low, high) = if one.object < other.object { (one, other) } else { (other, one) };
     let (first, second) = if counting[low.object] { (low, high) } else { (high, low) };

@@ -33,7 +33,7 @@ pub(super) struct ObjectDraft<'d> {
     pub(super) shape: Spanned<'d, Written<'d>>,
     /// The transform of the shape, and its place in the text.
     pub(super) map: Spanned<'d, Transform>,
-    /// The transforms of the instances of the shape, which replace `map`; one shape if absent.
+    /// The transforms of the instances of the shape, `map` included; one shape if absent.
     pub(super) instances: Option<Vec<Spanned<'d, Transform>>>,
     pub(super) relief: Option<ReliefText<'d>>,
     /// The light group that it belongs to.

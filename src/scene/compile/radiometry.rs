@@ -1,7 +1,7 @@
 //! Light in physical units, for scenes whose film is absolute.
 //!
-//! A number is a luminance in cd/m^2, for an intensity in cd, for an irradiance in lx. It stands for that many times
-//! white light of 1. Measured spectra and lines are radiances in W / (m^2 sr nm) and W / (m^2 sr), or intensities and
+//! A number is a luminance in cd/m^2, an intensity in cd or an irradiance in lx. It stands for that many times white
+//! light of 1. Measured spectra and lines are radiances in W / (m^2 sr nm) and W / (m^2 sr), or intensities and
 //! irradiances in the corresponding units.
 
 use super::context::Context;

@@ -111,7 +111,7 @@ fn cube(value: Value) -> Option<Shape> {
     })
 }
 
-/// Checks that the size and the place of a shape are within the range of numbers. `shape` and `placed` are the shape
+/// Checks that floating-point numbers can hold the size and the place of a shape. `shape` and `placed` are the shape
 /// before and after the map; `whole` is where the shape is written.
 pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };

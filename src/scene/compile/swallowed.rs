@@ -16,8 +16,8 @@ const POINTS: u32 = 64;
 const MOST: usize = 2048;
 
 /// Returns a warning about bodies that lie within another one of higher priority, or of the same priority with a
-/// material that objects use later. Meshes of higher priority are exempt: they may have a cavity, filled by a body that
-/// reaches into the walls.
+/// material that is first used later. Meshes of higher priority are exempt: they may have a cavity, filled by a body
+/// that reaches into the walls.
 pub(super) fn swallowed(placed: &Placed) -> Option<String> {
     let priority = |object: &Object| Some(placed.material(object).material.medium()?.priority);
     let clear = placed.objects.iter().filter_map(|object| Some((object, priority(object)?)));

@@ -4,8 +4,8 @@ use super::measures::{direction, near, point};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at};
 
-/// A step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or `{
-/// matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, which multiplies column vectors.
+/// A step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or
+/// `{ matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, which multiplies column vectors.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
     /// A factor for each axis.

@@ -1,4 +1,4 @@
-//! The orientation of the camera that took a photo (JEITA 2023, *Exif 3.0*, section 4.6.5).
+//! The orientation of a photo's camera (JEITA 2023, *Exif 3.0*, section 4.6.5).
 
 /// Returns whether a photo has to be turned or mirrored to be upright.
 pub(super) fn is_turned(exif: &[u8]) -> bool {

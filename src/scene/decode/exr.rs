@@ -58,8 +58,8 @@ fn unreadable(error: exr::error::Error) -> Unreadable {
     }
 }
 
-/// Returns whether a compression preserves the look of an image rather than its numbers. PXR24 is not such a one: it
-/// only rounds numbers, and changes no sign.
+/// Returns whether a compression preserves the look of an image rather than its numbers. PXR24 does not count: it only
+/// rounds numbers and never changes their sign.
 fn is_lossy(header: &Header, chosen: &Chosen) -> bool {
     let is_half = |channel: &usize| header.channels.list[*channel].sample_type == SampleType::F16;
     match header.compression {

@@ -5,7 +5,7 @@
 use super::texels::{Floats, Unreadable, fits};
 use crate::spectrum::{Matrix, Primaries, matrix_of_file};
 
-/// Signatures of the files of Radiance, and of those of other programs.
+/// Signatures of files from Radiance itself, and from other programs.
 const SIGNATURES: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 const FORMAT: &str = "32-bit_rle_rgbe";
 /// Row lengths, in texels, that the newer packing supports.

@@ -140,7 +140,7 @@ impl<'d> Fields<'d> {
         }
     }
 
-    /// Reports that a key is missing that only some of these tables need, unless it is misspelled.
+    /// Reports that a key is missing, unless it is misspelled. For keys that only some tables of a kind need.
     pub(in crate::scene) fn lack<T>(&mut self, key: &'static str, help: Option<&str>) -> Option<T> {
         self.missing.push((key, help.map(str::to_owned)));
         None

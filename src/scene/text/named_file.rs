@@ -39,7 +39,7 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
         Ok(found) if found.is_file() && found.len() > kind.most_bytes => {
             return refuse(format!("{file} has {} bytes, more than {}", found.len(), kind.most_bytes));
         }
-        // A device never ends.
+        // Reading a device may never end.
         Ok(found) if !found.is_file() && !found.is_dir() => return refuse(format!("{file} is no file but a device")),
         _ => {}
     }

@@ -1,4 +1,5 @@
-/// Rows of numbers that a program gives beside the text of a scene, where text would be slow: a million points.
+/// Rows of numbers that a program passes beside the text of a scene, where a text would be slow, as for a million
+/// points.
 ///
 /// They are the `points`, `faces`, `normals` or `uv` of a mesh, whose value is then their [`mark`](Self::mark).
 #[derive(Clone, Debug, PartialEq)]

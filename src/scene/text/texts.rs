@@ -107,7 +107,7 @@ impl Texts {
         format!("{}:{line}:{column}", found.file.display())
     }
 
-    /// Returns the names of many places, in time proportional to their number and the length of the text.
+    /// Returns the names of many places, in time that grows with their number plus the length of the text.
     pub(in crate::scene) fn named_all(
         &self,
         places: impl Iterator<Item = Range<usize>>,

@@ -202,8 +202,8 @@ impl<'d> Value<'d> {
         })
     }
 
-    /// Returns whether there are so many mistakes already that none of them gets a suggestion of a name any more. A
-    /// suggestion requires a look at all known names.
+    /// Returns whether there are already so many mistakes that further ones get no suggestion of a name, which would
+    /// take a look at all known names.
     pub(in crate::scene) fn is_one_of_many(self) -> bool {
         self.document.told() >= MANY
     }
@@ -225,7 +225,7 @@ impl<'d> Value<'d> {
         Some(entries.iter().map(move |node| Self { is_entry: true, node, list: None, ..self }))
     }
 
-    /// Reads all entries of a list. Returns none if any of them is wrong.
+    /// Reads all entries of a list. Returns none if any of them is wrong. Stops at a wrong one that is not a table.
     pub(in crate::scene) fn list<T>(self, mut read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
         let Some(entries) = self.entries() else { return self.wanted("a list") };
         let (count, mut all) = (entries.len(), Vec::with_capacity(entries.len()));
