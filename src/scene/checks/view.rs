@@ -167,7 +167,7 @@ impl<'a> View<'a> {
     }
 
     /// Returns whether the image may show an object that lies between the rays of the grid: the box of an object
-    /// reaches into the image or lies around the camera, or a ray through a corner of the image hits an unbounded one.
+    /// reaches into the image or lies around the camera, or a ray through a corner of the image hits something.
     pub(super) fn may_miss_an_object(&self) -> bool {
         let Scene { camera, film, objects, .. } = self.scene;
         let size = DVec2::new(film.width.into(), film.height.into());
