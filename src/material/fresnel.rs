@@ -22,9 +22,9 @@ impl Interface {
     /// Makes the boundary from index `n1` to `n2` at an angle of incidence with cosine `c1` in 0..1. Between equal
     /// indices nothing happens at all, even at grazing incidence.
     ///
-    /// Fresnel 1823; Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance has its own formula, 2
-    /// n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which stays precise at grazing angles. The squared
-    /// cosine beyond is (n2^2 - n1^2) / n2^2 + (n1 c1 / n2)^2, which stays precise for nearly equal indices.
+    /// Fresnel 1823; Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance is computed as
+    /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which stays precise at grazing angles. The
+    /// squared cosine beyond is (n2^2 - n1^2) / n2^2 + (n1 c1 / n2)^2, which stays precise for nearly equal indices.
     #[inline(always)]
     pub fn new(n1: f64, n2: f64, c1: f64) -> Self {
         let c1 = c1.clamp(0.0, 1.0);
