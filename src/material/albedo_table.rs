@@ -6,8 +6,8 @@ use crate::math::DVec3;
 /// from the table if no value is negative.
 ///
 /// Its places w in 0..1 are evenly spaced, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z. The energy
-/// missing from facets with slopes of width alpha changes as z log z near 0, most where z is about alpha, and as 1 /
-/// z^2 beyond.
+/// missing from facets with slopes of width alpha changes as z log z near 0, most where z is about alpha, and as
+/// 1 / z^2 beyond.
 #[derive(Clone, Debug)]
 pub(super) struct AlbedoTable {
     alpha: f64,

@@ -23,7 +23,7 @@ pub struct Branch<const N: usize> {
     pub polarization: f32,
 }
 
-/// Where the light arrives from that leaves a surface toward the viewer.
+/// Where light comes from before it leaves a surface toward the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incoming {
     /// Unit vector toward where it comes from.

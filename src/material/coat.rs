@@ -19,7 +19,7 @@ pub struct Coat {
     roughness: Roughness,
     /// What a rough coat reflects once, minus what a smooth one reflects.
     rows: Rows,
-    /// The polarized part of that.
+    /// The polarization, s minus p, of light that a rough coat reflects once, minus that of a smooth one.
     polarized: Rows,
     /// What a film adds to the reflection of a rough coat.
     kernel: Arc<OnceLock<FilmKernel>>,
@@ -51,7 +51,7 @@ pub(super) struct CoatTransmittance {
     pub(super) multiple: f64,
     /// Square of the relative index.
     squared: f64,
-    /// Share of diffuse light from inside that a film absorbs, times that square.
+    /// Share of diffuse light from inside that a film absorbs, times `squared`.
     lost: f64,
 }
 
@@ -71,7 +71,7 @@ impl CoatTransmittance {
         [1.0 - self.from, self.from * self.around * r / self.unabsorbed(r)]
     }
 
-    /// Returns the transmittance under a film, which on a smooth coat lets these shares through from the two
+    /// Returns the transmittance under a film. On a smooth coat, `from` and `to` are what both transmit from the two
     /// directions.
     pub(super) fn under(&self, averages: &FilmAverages, [from, to]: [f64; 2]) -> Self {
         Self { from, to, around: averages.mean[1], lost: self.squared * averages.lost_inside, ..*self }
@@ -163,8 +163,7 @@ impl Coat {
         })
     }
 
-    /// Returns the degree (s - p) / (s + p) to which light is polarized that crosses from a direction with cosine
-    /// `cos`.
+    /// Returns the degree of polarization, (s - p) / (s + p), of light that crosses from a direction with cosine `cos`.
     ///
     /// Unpolarized light from all around leaves unpolarized in total, reflected and transmitted together, as in a
     /// closed room of one temperature. So the light that crosses, a `share` of it all, is polarized as much as the

@@ -104,7 +104,7 @@ thread_local! {
         const { RefCell::new([const { Answers { kept: [const { None }; 2], newest: 0 } }; MAX_LANES]) };
 }
 
-/// Averages of a film over directions, stored so that they are not copied, since they are large.
+/// Averages of a film over directions, borrowed or boxed, since they are too large to copy.
 pub(super) enum Averages<'a> {
     /// Averages that are equal everywhere.
     Known(&'a FilmAverages),

@@ -24,11 +24,11 @@ use crate::spectrum::{LaneSet, Lanes};
 pub struct Block<T> {
     /// Factor on unpolarized light.
     pub a: T,
-    /// Half of what s exceeds p by.
+    /// Half the excess of s over p.
     pub d: T,
     /// Factor on light polarized at 45 degrees.
     pub c: T,
-    /// The part of it that becomes right-handed.
+    /// Part of light polarized at 45 degrees that becomes right-handed.
     pub q: T,
 }
 

@@ -25,7 +25,8 @@ pub(super) struct MissingEnergy<'a> {
 }
 
 impl<'a> MissingEnergy<'a> {
-    /// Computes it between directions of cosines `from` and `to`, the latter beyond the boundary if it `crosses`.
+    /// Computes the missing energy between directions of cosines `from` and `to`, the latter beyond where light
+    /// `crosses`.
     pub(super) fn new(sides: &FacetSides, kernels: [&'a FilmKernel; 2], [from, to]: [f64; 2], crosses: bool) -> Self {
         let (near, far, side) = (&sides.near, &sides.far, usize::from(crosses));
         Self {
@@ -38,8 +39,8 @@ impl<'a> MissingEnergy<'a> {
         }
     }
 
-    /// Returns BSDF times cosine of a lane, times `square` where light crosses. `single` is the share of the lane that
-    /// a facet sends on, and `flow` holds the rest of single scattering.
+    /// Returns BSDF times cosine of a lane, times `square` where light crosses. `single` is the lane's share of the
+    /// light that a facet sends on; `flow` holds the other factors of single scattering.
     pub(super) fn value(&self, averages: &[Averages; 2], flow: &BsdfValue, single: f64, square: f64) -> f64 {
         let Self { side, to, bare, bare_around, hats, hats_around } = self;
         let around = [0, 1].map(|i| (bare_around[i] + averages[i].added(hats_around[i])).max(f64::MIN_POSITIVE));

@@ -123,7 +123,7 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         };
         let [here, beyond] = kind.indices;
         let of_ray = Interface::new(here, beyond, cos);
-        // What crosses less of one lane is reflected more.
+        // If less light of a lane crosses, more is reflected.
         let facet = if crosses { facet } else { -facet };
         Lanes::from_fn(|i| {
             // Radiance changes by the lane's own indices, while `value` contains the change by those of the ray.
@@ -172,8 +172,8 @@ impl<const N: usize> Kind<'_, N> {
 ///
 /// The refracted ray turns by sin t dr / (r cos t) if the ratio of the indices, r, changes by dr, and by
 /// |r cos i - cos t| / cos t times the angle by which a facet turns. Only the lanes that count while they are together
-/// decide: beside heroes the fixed ones. If wavelengths drawn at random decided whether they count, some would count
-/// more often than others.
+/// decide; if there are heroes, these are the fixed lanes. If wavelengths drawn at random decided whether they count,
+/// some would count more often than others.
 pub(super) fn parts<const N: usize>(interface: &RoughInterface, context: &ScatterContext<N>) -> bool {
     if !context.parts() {
         return false;

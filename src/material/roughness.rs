@@ -52,8 +52,8 @@ impl Roughness {
     }
 
     /// Returns the solid angle in steradians into which the surface spreads light that a mirror would send in one
-    /// direction: one over the mean density of directions, weighted by the density itself. That mean is a third of 1 /
-    /// (4 pi alpha^2), the density in the mirror direction.
+    /// direction: one over the mean density of directions, weighted by the density itself. That mean is a third of
+    /// 1 / (4 pi alpha^2), the density in the mirror direction.
     pub fn spread(&self) -> f64 {
         if self.is_smooth() { 0.0 } else { 12.0 * PI * self.alpha() * self.alpha() }
     }

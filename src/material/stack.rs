@@ -14,7 +14,8 @@ pub const MAX_LAYERS: usize = 32;
 /// Optical thickness of a layer in nm beyond which a lane that stands for a band of wavelengths sees no interference.
 /// There the eye hardly sees any, and bands of 32 lanes hold a fringe or more.
 pub const COHERENT_NM: f64 = 6500.0;
-/// Maximum change of phase over a band, in radians, for which the band's own wavelength alone represents a fringe.
+/// Maximum change of phase over a band, in radians, up to which a fringe is evaluated at the band's own wavelength
+/// only.
 pub const PHASE_STEP: f64 = 2.0;
 /// Number of samples over a band, or over a fringe, where a single one is not enough.
 const PLACES: usize = 16;
@@ -35,7 +36,7 @@ impl Layer {
     }
 }
 
-/// The share of light that takes one of two directions, for both polarizations.
+/// Share of the light that is reflected, or that crosses, for both polarizations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PolarizedShare {
     /// Share of light polarized perpendicular to the plane of incidence.
@@ -193,9 +194,9 @@ impl Stack {
     /// Returns the shares of light of one wavelength; `turn` returns what to add to each layer's phase.
     ///
     /// Abeles' matrices (Born & Wolf 1999, *Principles of Optics*, section 1.6.2), with y = q for s and y = q / n^2 for
-    /// p, q = sqrt(n^2 - n1^2 sin^2), Im q <= 0. The amplitudes of p are thus those of the magnetic field, and r_p =
-    /// -r_s at normal incidence. sin(delta) / q serves both off-diagonal terms and is finite at the critical angle of a
-    /// layer. Each matrix is divided by e^|Im delta|, so that nothing overflows, however much is absorbed.
+    /// p, q = sqrt(n^2 - n1^2 sin^2), Im q <= 0. The amplitudes of p are thus those of the magnetic field, and
+    /// r_p = -r_s at normal incidence. sin(delta) / q serves both off-diagonal terms and is finite at the critical
+    /// angle of a layer. Each matrix is divided by e^|Im delta|, so that nothing overflows, however much is absorbed.
     fn coherent(&self, n1: f64, n2: Complex, q1: f64, mut turn: impl FnMut(&Layer, f64) -> f64) -> StackShares {
         let across = |n: Complex| ((n - n1.into()) * (n + n1.into()) + (q1 * q1).into()).decaying_root();
         let q2 = across(n2);
@@ -436,7 +437,7 @@ mod tests {
             near(found.reflected.p, p, 1e-6);
             near(found.reflected.s + found.refracted.s, 1.0, 1e-12);
         }
-        // At the critical angle of the gap, and so thick that nothing is left.
+        // At the critical angle of the gap, with a gap so thick that no light is left, and along the surface.
         let critical = (1.0_f64 / 1.5).asin() / DEGREE;
         for (degrees, gap) in [(critical, 300.0), (60.0, 100_000.0), (90.0, 300.0)] {
             let found = met(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], degrees);
