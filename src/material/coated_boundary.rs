@@ -46,7 +46,7 @@ pub(super) fn scatter<const N: usize>(
     }
 }
 
-/// Returns the shares of a lane at a coated boundary, or a facet of it, met at an angle with cosine `cos`.
+/// Returns the shares of a lane whose ray meets a coated boundary, or a facet of it, at an angle with cosine `cos`.
 pub(super) fn shares_at<const N: usize>(
     local: &LocalCoating<N>,
     context: &ScatterContext<N>,

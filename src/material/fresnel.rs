@@ -139,9 +139,9 @@ impl SharedRay {
 ///
 /// `own` are the indices of each lane on both sides, `direction` those that refract their shared ray, which meets the
 /// boundary at an angle with cosine `cos` in 0..1. A lane keeps the k = n sin i of the ray up to 1, and grazes the
-/// surface where the ray does. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2)
-/// / ((q1 + q2) (k^2 + p))^2 (Fresnel 1823, with Snell's law inserted), in which nothing cancels. Nothing crosses under
-/// total reflection of the ray.
+/// surface where the ray does. With q = n cos of the lane on each side and p = q1 q2,
+/// T = 2 p ((k^2 + p)^2 + (n1 n2)^2) / ((q1 + q2) (k^2 + p))^2 (Fresnel 1823, with Snell's law inserted), in which
+/// nothing cancels. Nothing crosses under total reflection of the ray.
 pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64; 2], cos: f64) -> [f64; N] {
     let ray = SharedRay::new(direction, cos);
     let mut crossing = [0.0; N];
@@ -197,7 +197,7 @@ pub fn conductor_reflectance(n1: f64, n: f64, k: f64, c: f64) -> [f64; 2] {
     let modulus = (t0 * t0 + 4.0 * eta * eta * kappa * kappa).sqrt();
     let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
     let (t1, t2) = (modulus + c2, 2.0 * a * c);
-    // Without branches, several lanes are computed at once.
+    // The code has no branches, so that several lanes can be computed at once.
     let (s, p) = ((t1 - t2) / (t1 + t2), [c2 * modulus + s2 * s2, t2 * s2]);
     let r_s = if t1 + t2 == 0.0 { 1.0 } else { s };
     let ratio = r_s * (p[0] - p[1]) / (p[0] + p[1]);

@@ -3,8 +3,8 @@ use super::last::Last;
 use super::{Block, Branch, Coating, Interface, Mueller, ScatterContext, StackShares, Straight, conductor_reflectance};
 use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 
-/// A sheet that does not bend light. Light is mirrored or passes straight through, also from lights to the surfaces
-/// behind the sheet.
+/// A sheet that does not bend light. Light is mirrored or passes straight through. Lights are sampled through the sheet
+/// as well.
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
