@@ -46,8 +46,8 @@ pub enum Coordinates {
 }
 
 impl Coordinates {
-    /// Creates the coordinates of a shape after the transform `map`; `shape` itself is given before it. Returns `None`
-    /// if the shape has no coordinates.
+    /// Creates the coordinates of a shape after the transform `map`. `shape` itself is not yet transformed. Returns
+    /// `None` if the shape has no coordinates.
     pub fn new(shape: &Shape, map: &Transform) -> Option<Self> {
         let inverse = map.inverse_linear();
         Some(match shape {
@@ -66,7 +66,7 @@ impl Coordinates {
         })
     }
 
-    /// Returns the coordinates at a crossing of the shape, where the point's position in the world is known.
+    /// Returns the coordinates at a crossing of the shape. `position` is the point in the world.
     pub fn at(&self, shape: &Shape, intersection: &Intersection, position: DVec3) -> [f64; 2] {
         let unit = |uv: [f64; 2]| uv.map(|x| 0.5 + 0.5 * x);
         match self {

@@ -6,7 +6,7 @@ use super::Vertices;
 use super::ears::{MOST_CORNERS, ears};
 use crate::math::{DVec2, DVec3};
 
-/// The triangles of faces. Those of a face share its first corner until they are cut.
+/// The triangles of faces. Each face is a fan about its first corner until it is cut.
 #[derive(Debug, Default)]
 pub struct Faces {
     fans: Vec<[u32; 3]>,
@@ -25,10 +25,10 @@ impl Faces {
         }
     }
 
-    /// Returns the triangles. Those that share a corner are right for convex faces. For other faces they would overlap,
-    /// so these faces are cut again. So are faces with corners on their sides, if that leaves fewer triangles without
-    /// area: such triangles are dropped, and with them what their corners carry. Faces whose sides cross stay as they
-    /// are, and so do faces whose corners are not finite vertices.
+    /// Returns the triangles. A fan about one corner is right for a convex face. Fans of other faces would overlap, so
+    /// these faces are cut again. So are faces with corners on their sides, if that leaves fewer triangles without
+    /// area: such triangles are dropped later, and with them what their corners carry. Faces whose sides cross stay as
+    /// they are, and so do faces whose corners are not finite vertices.
     ///
     /// # Errors
     /// A sentence about a face that has too many corners.

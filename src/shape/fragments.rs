@@ -12,12 +12,12 @@ use super::Bvh;
 use super::bvh::GROUP;
 use crate::math::{Bounds, DVec3, gamma};
 
-/// Least gain of a cut, in multiples of half the surface area of a box that the triangle would fill.
+/// Minimum gain of a cut, in multiples of half the surface area of a box that the triangle would fill.
 const LEAST_GAIN: f64 = 8.0;
 /// Maximum number of cuts per triangle, on average over a mesh, unless these are more than `FREE` in all.
 const MOST_CUTS: usize = 8;
 /// Number of cuts that are allowed in any mesh. It is limited because each cut takes some 200 bytes. A mesh of more
-/// triangles than this has at most one cut per triangle.
+/// triangles than this may have one cut per triangle.
 const FREE: usize = 1 << 20;
 
 /// The part of a triangle that lies in a box.

@@ -85,11 +85,11 @@ fn triangles() -> u32 {
 
 /// Prefixes of the names of required extensions that only change appearance.
 const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
-/// Positions, normals and texture coordinates as integers, which are read from every file.
+/// Extension that stores positions, normals and texture coordinates as integers. They are read in every file.
 const QUANTIZED: &str = "KHR_mesh_quantization";
-/// Transforms of the texture coordinates of materials.
+/// Extension that transforms the texture coordinates of materials.
 const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
-/// Many copies of a mesh. If the extension is not required, programs that do not support it place the mesh once.
+/// Extension that places a mesh many times. If it is not required, programs that do not support it place the mesh once.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// Tolerance for the last row of an affine matrix, 0, 0, 0, 1, if the matrix was computed from others in 32 bits.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;

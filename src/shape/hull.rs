@@ -6,7 +6,7 @@
 
 use crate::math::{Bounds, DVec3};
 
-/// Least gain of a further piece, in multiples of half the surface area of a box that the shape would fill. It is
+/// Minimum gain of a further piece, in multiples of half the surface area of a box that the shape would fill. It is
 /// smaller than for triangles, because several of those are tested at once.
 const LEAST_GAIN: f64 = 2.0;
 /// Maximum number of pieces of a shape.

@@ -161,8 +161,8 @@ impl<'a> Builder<'a> {
         low
     }
 
-    /// Splits a range in half along the axis where the centers of the items spread most. Returns the size of the first
-    /// half.
+    /// Splits and reorders a range in halves, along the axis where the centers of the items spread most. Returns the
+    /// size of the first half.
     fn halve(&mut self, range: Range<usize>) -> usize {
         let boxes = self.boxes;
         let items = &mut self.order[range];
@@ -206,7 +206,8 @@ impl<'a> Builder<'a> {
     ///
     /// The scale is a power of two, so that a scene of any size gets the same tree and no area over- or underflows. The
     /// tree builder merges pairs of boxes that are nearest to each other. In a row with equal distances this is a
-    /// single pair, then the next one, which takes quadratic time. Therefore hardly any two distances are left equal.
+    /// single pair, then the next one, which takes quadratic time. So the boxes are changed until hardly any two
+    /// distances are equal.
     fn scaled(&self, range: Range<usize>) -> Vec<Scaled> {
         let all = self.around(range.clone());
         let low = DVec3::from(all.min.map(f64::from));

@@ -8,8 +8,8 @@ pub const STACK: usize = 256;
 
 /// Memory for a stack, not filled in advance: that would take longer than a walk through a small tree.
 ///
-/// It is separate from the stack's height, because a value in which only some bytes are known is copied whole from a
-/// constant.
+/// It is separate from the stack's height. A value of which only some bytes are initialized would be copied whole from
+/// a constant.
 pub struct Room([MaybeUninit<u64>; STACK]);
 
 impl Room {
