@@ -31,7 +31,7 @@ const MOST_CELLS: f64 = (1 << 20) as f64;
 const MOST_TEXELS: f64 = MOST_CELLS;
 /// Maximum number of places at which a lamp is evaluated. Each cell has at least two along each side regardless.
 const MOST_LOOKS: f64 = (1 << 25) as f64;
-/// Ratio of a part's mean squared brightness to its squared mean from which cells save more than they cost.
+/// Ratio of a part's mean squared brightness to its squared mean above which cells save more than they cost.
 const UNEVEN: f64 = 1.3;
 /// Value of `UNEVEN` for a round shape, where cells behind the horizon are drawn as often as those in front of it.
 const UNEVEN_ROUND: f64 = 4.0;
@@ -39,7 +39,7 @@ const UNEVEN_ROUND: f64 = 4.0;
 const OWN: f64 = 0.9;
 
 impl EmissionMap {
-    /// Creates the map of a shape that shows an image or a pattern; `None` if that is even, or the shape is infinite.
+    /// Creates the map of a shape with an image or a pattern; `None` if nothing varies, or if the shape is infinite.
     pub fn new(kind: &CurveKind, surface: TexturedShape) -> Option<Self> {
         let shape = surface.shape;
         let resolution = kind.resolution().filter(|_| shape.is_bounded())?;
@@ -91,7 +91,7 @@ impl EmissionMap {
 struct Grid<F> {
     size: [usize; 2],
     looks: [usize; 2],
-    /// Returns the brightness at a place, and the area that it stands for; `None` beside the shape.
+    /// The brightness at a place, and the area that it stands for; `None` beside the shape.
     look: F,
 }
 

@@ -17,9 +17,9 @@ pub struct LightParts {
 
 #[derive(Debug)]
 struct Shared {
-    /// Draws parts by the light that they send to a point.
+    /// The tree that draws parts by the light that they send to a point.
     tree: LightTree,
-    /// Draws parts by all the light that they send.
+    /// The distribution of parts by all the light that they send.
     flux: Distribution,
 }
 

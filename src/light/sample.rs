@@ -12,7 +12,7 @@ pub struct LightSample {
     pub distance: f64,
     /// The object that is the light, which cannot occlude itself.
     pub object: Option<u32>,
-    /// The triangle of the object, if its other triangles may still occlude it.
+    /// The triangle of the object that is hit, if its other triangles may still occlude it.
     pub part: Option<u32>,
     /// Pdf per steradian of the ray's direction; `None` if no other direction can be drawn.
     pub pdf: Option<f64>,

@@ -2,7 +2,7 @@ use super::{Light, LightBounds, LightId, LightTree};
 use crate::math::{DVec3, Distribution};
 use crate::spectrum::Table;
 
-/// Chooses which of many lights is sampled from a point, by what they may send there.
+/// A sampler that chooses one of many lights for a point, by what they may send there.
 ///
 /// Finite lights are in a tree. The power of a sky depends on the scene's size, so all skies together are chosen as
 /// often as the whole tree, and each in proportion to its irradiance.

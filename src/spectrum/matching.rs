@@ -11,7 +11,7 @@ use super::draw::Hero;
 use super::visible::{self, COUNT};
 use super::{BandResponse, Basis, Draw, Lanes, Response};
 
-/// Connects the lanes of two paths of one basis.
+/// What connects the lanes of two paths of one basis.
 #[derive(Clone, Debug, Default)]
 pub struct Matching<const N: usize> {
     /// Weight of each fixed lane at each entry of the fine grid; empty if no wavelengths are drawn.

@@ -33,7 +33,7 @@ fn sigmoid(x: f64) -> f64 {
     if x.is_infinite() { 0.5 + 0.5 * x.signum() } else { 0.5 + 0.5 * x / (1.0 + x * x).sqrt() }
 }
 
-/// Finds the sigmoid spectra that look like given linear Rec.709 colors under a film's white.
+/// A solver for the sigmoid spectra that look like linear Rec.709 colors under a film's white.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Upsampler {
     /// Rec.709 red, green and blue of a reflectance of 1 within one step of the visible range. Each channel sums to 1.
