@@ -12,7 +12,7 @@ pub enum Error {
     /// The scene cannot be rendered as written. Lists its mistakes in the order of the file.
     #[error("{}", told(.0))]
     Scene(Vec<Diagnostic>),
-    /// The request is impossible, for example on the command line.
+    /// Something impossible was requested, for example on the command line.
     #[error("{message}")]
     Arguments {
         /// What is wrong.
@@ -135,8 +135,7 @@ fn told(mistakes: &[Diagnostic]) -> String {
     mistakes.iter().map(|mistake| mistake.told_by(&mut lines)).collect::<Vec<_>>().join("\n")
 }
 
-/// Finds the line and column of one mistake after another. If these come in the order of the text, the text is scanned
-/// only once.
+/// Finds the line and column of one mistake after another. If they come in text order, the text is scanned only once.
 #[derive(Clone, Debug)]
 pub struct Lines {
     text: Arc<str>,

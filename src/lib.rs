@@ -23,9 +23,9 @@
 //!
 //! [`Scene::read`] reads a scene file, and [`Scene::from_table`] takes a scene that a program has built.
 //! [`scene::Source`] overrides values of a scene, for example for each frame of an animation or each step of a sweep.
-//! [`Rendering`] gives access to the plan and the progress of a render. The modules below are public too: they plan
-//! without rendering ([`plan::plan`]), look up the index of a glass ([`spectrum::data::glass`]) or trace a single ray
-//! ([`Scene::intersect`]).
+//! [`Rendering`] gives access to the plan and the progress of a render. The modules below are public too, for example
+//! to plan without rendering ([`plan::plan`]), to look up the index of a glass ([`spectrum::data::glass`]) or to trace
+//! a single ray ([`Scene::intersect`]).
 //!
 //! ```text
 //! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR

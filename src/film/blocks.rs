@@ -1,5 +1,4 @@
-//! Files made of blocks, each with a checksum. A truncated file, or one that was altered on disk, is detected before it
-//! is used.
+//! Files made of blocks with checksums, so that a truncated or altered file is detected before it is used.
 //!
 //! | bytes | what |
 //! |---|---|

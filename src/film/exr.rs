@@ -22,15 +22,14 @@ use crate::error::Result;
 /// The camera, as the file records it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CameraView {
-    /// The world-to-camera matrix for row vectors, left-handed: +x right, +y up, +z forward (OpenEXR standard
-    /// attributes).
+    /// World to camera for row vectors, left-handed: +x right, +y up, +z forward (OpenEXR standard attributes).
     pub world_to_camera: [[f64; 4]; 4],
-    /// The matrix from world space to normalized device coordinates, for row vectors. x and y are 0 at the top left
-    /// corner of the full image and 1 at the bottom right one. None for a view of the full sphere.
+    /// World to normalized device coordinates for row vectors: x and y are 0 at the top left corner of the full image
+    /// and 1 at the bottom right one. None for a view of the full sphere.
     pub world_to_ndc: Option<[[f64; 4]; 4]>,
     /// The width of the image in the plane one unit in front of the camera.
     pub screen_window_width: f64,
-    /// The center of the image in that plane, measured to the right and up.
+    /// The center of the image in the plane one unit in front of the camera, measured to the right and up.
     pub screen_window_center: [f64; 2],
     /// Whether the image shows all directions by longitude and latitude.
     pub latlong: bool,
@@ -249,8 +248,7 @@ pub(super) fn attributes(heading: Heading) -> LayerAttributes {
         white_luminance: format.white_luminance.map(|luminance| luminance as f32),
         comments: format.comments.as_deref().map(utf8),
         frames_per_second: format.frames_per_second.map(|[frames, seconds]| (frames as i32, seconds)),
-        // Readers map the data window of an environment to the full sphere, which would be wrong for crops and
-        // overscan.
+        // Readers take an environment's data window for the full sphere, which crops and overscan are not.
         environment_map: (view.latlong && film.corner == [0, 0] && film.full == [film.width, film.height])
             .then_some(EnvironmentMap::LatitudeLongitude),
         layer_position: Vec2(film.corner[0], film.corner[1]),

@@ -209,9 +209,9 @@ fn chunk(headers: &[Header], block: UncompressedBlock) -> exr::error::Result<Chu
     Ok(Chunk { layer_index: block.index.layer, compressed_block })
 }
 
-/// Compresses bytes as ZIP of OpenEXR does: separates even and odd bytes, replaces each by its difference from the
-/// previous one plus 128, and applies zlib. Returns the bytes unchanged if that does not make them fewer; readers
-/// recognize this by the length (OpenEXR, *File Layout*; Kainz & Bogart, *Technical Introduction to OpenEXR*, "Data
+/// Compresses bytes like ZIP of OpenEXR: separates even and odd bytes, replaces each by its difference from the
+/// previous one plus 128, and applies zlib. Returns the bytes unchanged if this does not shrink them; readers recognize
+/// that by the length (OpenEXR, *File Layout*; Kainz & Bogart, *Technical Introduction to OpenEXR*, "Data
 /// Compression").
 fn deflated(bytes: Vec<u8>) -> Vec<u8> {
     let mut apart: Vec<u8> = Vec::with_capacity(bytes.len());

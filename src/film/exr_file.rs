@@ -45,9 +45,9 @@ impl ExrFile {
     /// Reads a file with all its parts and channels. Of several resolution levels, reads the largest.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if the file does not exist or is recognizably something else, such as a scene or a PNG;
-    /// [`Error::Decode`] if it is no OpenEXR file, incomplete, or of an unsupported kind; [`Error::Io`] if it cannot be
-    /// read.
+    /// [`Error::Arguments`] if the file does not exist or is clearly something else, such as a scene or a PNG;
+    /// [`Error::Decode`] if it is no OpenEXR file, incomplete, or of an unsupported kind; [`Error::Io`] if reading
+    /// fails.
     pub fn read(path: &Path) -> Result<Self> {
         Self::of_bytes(&bytes(path)?, path)
     }
@@ -194,8 +194,7 @@ impl ExrFile {
         self.band(wanted).ok_or_else(|| self.no_layer(wanted, shown, &[]))
     }
 
-    /// Finds the spectral band that contains a wavelength, such as `550nm`. If no spectrum is named, uses the first
-    /// one.
+    /// Finds the spectral band that contains a wavelength such as `550nm`, in the named spectrum or else the first one.
     fn band(&self, wanted: &str) -> Option<ExrLayer<'_>> {
         let wanted = wanted.strip_suffix("nm")?.trim().replace(',', ".");
         let (spectrum, nm) = match wanted.parse::<f64>() {
@@ -232,7 +231,7 @@ impl ExrFile {
     }
 }
 
-/// Returns our name for a layer that other renderers call `name`.
+/// Returns the name used here for a layer that other renderers call `name`.
 fn called_elsewhere(name: &str) -> Option<&'static str> {
     match name.to_lowercase().as_str() {
         "depth" => Some("Z"),

@@ -76,7 +76,7 @@ pub(super) fn cannot_read(path: &Path, source: io::Error) -> Error {
 /// Checks before a long render whether its image can be written. Creates the folder if it is missing.
 ///
 /// # Errors
-/// If the folder cannot be created or written to, the path is a folder or a circular link, or its file is
+/// If the folder cannot be created or written to, if the path is a folder or a circular link, or if the file is
 /// write-protected.
 pub fn check_writable(path: &Path) -> Result<()> {
     let tried = Target::of(path).and_then(|target| match target {

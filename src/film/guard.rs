@@ -48,9 +48,8 @@ pub(crate) fn too_large(width: usize, height: usize, most: usize) -> Option<Stri
 
 /// The bytes of texels that a file of any length may claim.
 const ALWAYS: u64 = 1 << 27;
-/// The maximum bytes of texels per byte of a file. Deflate compresses at best 1032 bytes into one (RFC 1951: 258 bytes
-/// by 2 bits), and with a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as
-/// dense.
+/// The maximum bytes of texels per byte of a file. Deflate compresses at best 1032 bytes into one (RFC 1951: 258 by 2
+/// bits), and with a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
 const DENSEST: u64 = 1032 * 24;
 
 /// Refuses images without texels, and sizes whose `bytes` would exhaust the memory before the decoder notices that the

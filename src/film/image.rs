@@ -14,7 +14,7 @@ pub const DEPTH_OF_NOTHING: f32 = 1e10;
 /// The result of one camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Linear red, green and blue of the film.
+    /// Linear red, green and blue in the film's color space.
     pub rgb: [f64; 3],
     /// The depth of the surface that the camera ray hit, if any.
     pub depth: Option<f64>,
@@ -25,7 +25,7 @@ pub struct Sample {
 /// A finished pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pixel {
-    /// Linear red, green and blue of the film: the mean of the samples, weighted by the filter.
+    /// Linear red, green and blue in the film's color space: the mean of the samples, weighted by the filter.
     pub rgb: [f32; 3],
     /// The fraction of the camera rays that hit something, weighted by the filter, from 0 to 1.
     pub alpha: f32,

@@ -55,8 +55,7 @@ pub enum Layer {
     HalfA,
     /// The image of the second half of the samples.
     HalfB,
-    /// The energy audit: of the weight 1 that leaves the camera, the part that did not end at a light, in the sky or by
-    /// absorption.
+    /// The energy audit: of the weight 1 that leaves the camera, the part not ended by a light, the sky or absorption.
     Residual,
     /// The fraction of the light on shadow catchers that other objects block.
     Shadow,
@@ -75,8 +74,7 @@ pub enum Layer {
     /// The fourth component of the Stokes vector: how much more of the light is circularly polarized to the right than
     /// to the left, seen toward the scene.
     S3,
-    /// The degree of polarization, the degree of linear polarization, and the angle of the latter: see
-    /// [`polarization`].
+    /// The degrees of polarization and of linear polarization, and the angle of the latter: see [`polarization`].
     Polarization,
 }
 
@@ -151,8 +149,7 @@ impl Layer {
         if unknown.is_empty() { Ok(layers) } else { Err(unknown_layers(&unknown)) }
     }
 
-    /// Returns the name that requests the layer. It is also its name in the file, unless one request makes several
-    /// layers.
+    /// Returns the name that requests the layer. The file uses it too, unless one request makes several layers.
     pub fn name(self) -> &'static str {
         Self::NAMES.into_iter().find(|(_, layer)| *layer == self).map_or("", |(name, _)| name)
     }
@@ -175,8 +172,7 @@ impl Layer {
         !exact && !self.is_matte() && !self.is_of_polarization()
     }
 
-    /// Returns whether the layer is meant for viewing. Data for computation, such as an albedo or a half of the
-    /// samples, is not.
+    /// Returns whether the layer is meant for viewing. Data for computation, such as an albedo or a half image, is not.
     pub fn is_color(self) -> bool {
         self == Self::Shadow || self.is_light() && !Self::STOKES.contains(&self)
     }
@@ -259,8 +255,7 @@ fn unknown_layers(unknown: &[&str]) -> String {
 /// polarization. Takes the luminances S0 to S3 of the Stokes vector. The angle is measured from the image's right
 /// counterclockwise, above -90 to 90 degrees. All three are 0 if there is no light.
 ///
-/// These are sqrt(S1^2 + S2^2 + S3^2) / S0, sqrt(S1^2 + S2^2) / S0 and atan2(S2, S1) / 2 (Hecht 2017, *Optics*, section
-/// 8.13.1).
+/// sqrt(S1^2 + S2^2 + S3^2) / S0, sqrt(S1^2 + S2^2) / S0 and atan2(S2, S1) / 2 (Hecht 2017, *Optics*, section 8.13.1).
 pub fn polarization([s0, s1, s2, s3]: [f64; 4]) -> [f64; 3] {
     if s0 <= 0.0 {
         return [0.0; 3];

@@ -11,9 +11,8 @@ pub const TELL_VARIANCE: u32 = 4;
 /// added samples, minus r times the mean of the subtracted ones. Its expectation is the filtered image: that of r is
 /// the integral of the negative part, and the expected means do not depend on r. A uniform image has no noise, since
 /// the weights sum to 1 for any s. Weights of a and -a would have the same expectation, but s would be visible: for the
-/// plain cubic with 64 samples, as 2 % of noise. Dividing by their sum would hide s, but it would be biased. It would
-/// also be undefined if as many samples are subtracted as are added, which happens in one of eight pixels with 2
-/// samples.
+/// plain cubic with 64 samples, as 2 % of noise. Dividing by their sum would hide s, but be biased, and undefined if as
+/// many samples are subtracted as added, which happens in one of eight pixels with 2 samples.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleWeights {
     counts: [u32; 2],

@@ -9,8 +9,7 @@ pub const TILE: u32 = 16;
 
 /// One of several parts of an image, which can be rendered on different machines. A part consists of every n-th tile.
 ///
-/// Parts have whole pixels, not a share of the samples of each pixel: sums in another order would differ in their last
-/// bits.
+/// Parts have whole pixels, not a share of each pixel's samples: sums in another order would differ in their last bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     number: u32,

@@ -14,8 +14,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Returns the pixel in the middle of a cell, if the window is divided into `side` x `side` cells, counted row by
-    /// row.
+    /// Returns the middle pixel of a cell, if the window is divided into `side` x `side` cells, counted row by row.
     pub fn middle_of_cell(&self, side: u32, cell: u32) -> [i32; 2] {
         let middle = |i: u32, size: u32| ((u64::from(2 * i + 1) * u64::from(size)) / u64::from(2 * side)) as i32;
         [self.left + middle(cell % side, self.width), self.top + middle(cell / side, self.height)]

@@ -9,8 +9,7 @@ use crate::error::{Error, Result};
 use crate::film::{BEAUTY, Channel, ExrFile, ExrLayer, PixelBounds};
 use crate::spectrum::{apply, space_of_file};
 
-/// Added to the square of a value before the square of a difference is divided by it. This bounds the influence of dark
-/// pixels.
+/// Added to the square of a value before it divides the square of a difference, to bound the influence of dark pixels.
 const DARK: f64 = 0.01;
 /// The largest difference between the matrices of two equal color spaces, written as 32-bit floats.
 const SAME_SPACE: f64 = 1e-3;
@@ -28,13 +27,11 @@ pub struct Difference {
     pub is_equal: bool,
     /// The other layers that differ between the files, if the images are entirely equal.
     pub layers_apart: Vec<String>,
-    /// The layers, or channels of common layers, that only the first or only the second file has, if no layer was
-    /// requested.
+    /// The layers, and channels of common layers, that only the first or second file has, if no layer was requested.
     pub only_in: [Vec<String>; 2],
     /// The number of pixels that are left out.
     pub left_out: usize,
-    /// How many of these differ, for example because they are finite in only one image, or infinite with opposite
-    /// signs.
+    /// How many left-out pixels differ, for example finite in only one image, or infinite with opposite signs.
     pub torn: usize,
     /// The mean of (a - b)^2 / (b^2 + 0.01) over all values.
     pub relative_mse: f64,
@@ -63,9 +60,9 @@ pub struct AlphaDifference {
     pub relative_mse: f64,
     /// Pixels that are empty in one image and full in the other.
     pub opposite: usize,
-    /// An upper bound on the mean number of such pixels by chance. None unless both files state their noise and their
-    /// number of samples. If a fraction p of a pixel is covered, n samples all miss it and n others all hit it with the
-    /// probability p^n (1 - p)^n, which is at most 1 / 4^n.
+    /// An upper bound on the mean number of opposite pixels by chance. None unless both files state their noise and
+    /// their number of samples. If a fraction p of a pixel is covered, n samples all miss it and n others all hit it
+    /// with the probability p^n (1 - p)^n, which is at most 1 / 4^n.
     pub opposite_by_chance: Option<f64>,
 }
 
@@ -91,7 +88,7 @@ pub struct WorstPixel {
 }
 
 /// Compares a layer of two files, or the beauty if no layer is named. For mattes, compares the coverage. Mattes are
-/// named as a whole by `CryptoObject` or one of their layers such as `CryptoObject00`, or individually, such as
+/// named as a whole, by `CryptoObject` or one of their layers such as `CryptoObject00`, or individually by
 /// `CryptoObject.ball`. `shown` are the files' names in messages. If one image is cropped or has overscan, compares the
 /// pixels that both have.
 ///
@@ -118,8 +115,7 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     Ok(found)
 }
 
-/// Compares mattes. If there is no such matte either, the error is `missing`, or lists the mattes of a file that lacks
-/// it.
+/// Compares mattes. If there is no such matte, the error is `missing`, or lists the mattes of a file that lacks it.
 fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
     let all = files.map(Mattes::all);
     let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, wanted)) else {
@@ -369,7 +365,7 @@ impl Difference {
     /// squared error must be within the tolerance, if there is one, or else the difference must be within the noise of
     /// both images. Without tolerance and known noise, images that differ do not agree. Without tolerance, they also do
     /// not agree if only alpha differs, as its noise is unknown, or if more pixels are empty in one image and full in
-    /// the other than chance makes.
+    /// the other than chance makes. Images with torn pixels never agree.
     pub fn agrees(&self, tolerance: Option<f64>) -> bool {
         if self.is_equal {
             return tolerance.is_some() || self.layers_apart.is_empty();

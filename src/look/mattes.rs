@@ -62,8 +62,7 @@ impl<'f> Mattes<'f> {
         Self::all(file).iter().find(|mattes| mattes.is_in(layer)).map(Self::name)
     }
 
-    /// Returns a picture of every name in a color of its own, weighted by its coverage. It is black where there is
-    /// nothing.
+    /// Returns a picture of every name in its own color, weighted by its coverage, and black where there is nothing.
     pub fn picture(&self) -> Picture {
         let pixel = |at: usize| {
             self.ranks.iter().fold([0.0; 3], |sum: [f64; 3], [numbers, covered]| {
@@ -77,8 +76,7 @@ impl<'f> Mattes<'f> {
     /// Returns a picture of one name's coverage, black where it is absent and white where nothing else is.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there is no such name. It suggests the closest one. `shown` is the file's name in
-    /// messages.
+    /// [`Error::Arguments`] if there is no such name, suggesting the closest one. `shown` names the file in messages.
     pub fn matte(&self, wanted: &str, shown: &str) -> Result<Picture> {
         let known = match self.names.get(wanted) {
             Some(number) => *number,

@@ -5,8 +5,7 @@ use crate::film::{Channel, ExrFile, ExrLayer, TELL_VARIANCE};
 
 /// The probability of a false alarm: that two images of the same thing are said to differ.
 pub(super) const FAMILY: f64 = 0.01;
-/// The relative difference up to which values are equal but for rounding, whatever their variance, and the same for
-/// half floats.
+/// The relative difference up to which values count as equal, whatever their variance, and the same for half floats.
 const ROUNDING: f64 = 1e-5;
 const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
 
@@ -103,8 +102,7 @@ impl<'f> Noisy<'f> {
         self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0)
     }
 
-    /// Returns the number of independent values, minus one, that the variance is estimated from. Infinite if it is not
-    /// stated.
+    /// Returns how many independent values beyond the first the variance rests on. Infinite if that is not stated.
     fn freedom(&self, pixel: usize) -> f64 {
         let values = self.replicates.or_else(|| self.taken(pixel));
         values.map_or(f64::INFINITY, |values| (values - 1.0).max(1.0))

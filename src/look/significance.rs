@@ -22,9 +22,8 @@ pub(super) fn sidak_threshold(tests: usize, family: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns the normal deviate that is as improbable as a value of Student's distribution. Wallace 1959, *Bounds on
-/// Normal Approximations to Student's and the Chi-Square Distributions*: z = (8 v + 1) / (8 v + 3) sqrt(v ln(1 + t^2 /
-/// v)).
+/// Returns the normal deviate as improbable as a number of Student's distribution. Wallace 1959, *Bounds on Normal
+/// Approximations to Student's and the Chi-Square Distributions*: z = (8 v + 1) / (8 v + 3) sqrt(v ln(1 + t^2 / v)).
 ///
 /// A standard deviation that is estimated from few samples is often too small. This corrects deviations for that.
 pub(super) fn normal_equivalent(t: f64, freedom: f64) -> f64 {

@@ -1,7 +1,7 @@
 /// A tone curve, which maps light to what a screen can show. It is applied to red, green and blue separately.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// Clips light beyond 1, and leaves everything else unchanged.
+    /// Clips light beyond 1, and leaves darker light unchanged.
     #[default]
     Srgb,
     /// A filmic curve: a soft toe, and a shoulder that reaches white at 5.6. Hable 2010, *Uncharted 2: HDR Lighting*,

@@ -93,35 +93,35 @@ pub struct ErrorAccount<'a> {
     pub stopped_by: Option<&'static str>,
     /// The number of camera samples per pixel.
     pub samples_per_pixel: u32,
-    /// The bound that the error stays below in 95 of 100 renders.
+    /// The error is at most this in 95 of 100 renders.
     pub at_most: f64,
     /// The expected noise: the part of the error that is due to chance.
     pub noise: f64,
-    /// The bound that the noise stays below in 95 of 100 renders.
+    /// The noise is at most this in 95 of 100 renders.
     pub noise_at_most: f64,
     /// The expected blur: the part of the error that is due to gathered photons.
     pub blur: f64,
-    /// The bound that the blur stays below in 95 of 100 renders.
+    /// The blur is at most this in 95 of 100 renders.
     pub blur_at_most: f64,
     /// The expected noise of alpha, relative to alpha. None without shadow catchers.
     pub alpha: Option<f64>,
-    /// The bound that the noise of alpha stays below in 95 of 100 renders.
+    /// The noise of alpha is at most this in 95 of 100 renders.
     pub alpha_at_most: Option<f64>,
     /// The part of the error that is due to the color model.
     pub model: f64,
     /// The first column and row of the 16 x 16 pixels with the most noise.
     pub worst_tile: [i64; 2],
-    /// The expected noise of these pixels.
+    /// The expected noise of the worst tile.
     pub worst_tile_noise: f64,
     /// The column and row of a pixel with light that only one of eight renders found.
     pub outlier: Option<[i64; 2]>,
-    /// The share of that pixel in the variance.
+    /// The outlier's share of the variance.
     pub outlier_share: Option<f64>,
-    /// The light that was found in that pixel.
+    /// The light that was found in the outlier.
     pub outlier_light: Option<&'a str>,
-    /// How often that light was scattered, mirrored or refracted on its way.
+    /// How often the outlier's light was scattered, mirrored or refracted on its way.
     pub outlier_bounces: Option<u32>,
-    /// How that light was found.
+    /// How the outlier's light was found.
     pub outlier_found: Option<&'static str>,
 }
 

@@ -1,4 +1,4 @@
-//! The identity of a render, by which files recognize it.
+//! The identity of a render, by which checkpoints, parts and plans are matched to it.
 
 use std::fmt::Write;
 
@@ -64,8 +64,7 @@ impl Identity {
         Self(self.0.iter().filter(|(name, _)| name != "part").cloned().collect())
     }
 
-    /// Returns why the data after the identity in a file cannot be read, if that is so: another version may store other
-    /// data.
+    /// Returns why the rest of a file cannot be read, if so: another version may store other data after the identity.
     pub(super) fn objection(&self) -> Option<String> {
         let made_by = self.0.iter().find_map(|(name, value)| (name == VERSION).then_some(value))?;
         (made_by != env!("CARGO_PKG_VERSION"))

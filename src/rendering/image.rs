@@ -57,8 +57,7 @@ impl Image {
         y as usize * self.film.width as usize + x as usize
     }
 
-    /// Returns all values of a channel by its name in the file, row by row from the top left, or none if there is no
-    /// such channel.
+    /// Returns a channel by its name in the file, row by row from the top left, or none if there is no such channel.
     ///
     /// | name | value |
     /// |---|---|
@@ -101,8 +100,7 @@ impl Image {
         self.error.as_ref()
     }
 
-    /// Returns warnings for viewers of the image: light that is too rare, an error that is not reached, samples left
-    /// out.
+    /// Returns warnings for viewers: light that is too rare, an error that is not reached, samples left out.
     pub fn warnings(&self) -> Vec<String> {
         let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
@@ -116,8 +114,7 @@ impl Image {
         &self.format
     }
 
-    /// Returns how the image was rendered and why, one decision per entry. Empty for an image that was merged from
-    /// parts.
+    /// Returns how the image was rendered and why, one decision per entry. Empty for an image merged from parts.
     pub fn because(&self) -> &[String] {
         &self.because
     }
@@ -136,8 +133,7 @@ impl Image {
         write_exr(self.heading(), &mut &self.film, path.as_ref())
     }
 
-    /// Encodes the file that [`write_exr`](Self::write_exr) writes. Returns its bytes, and how many values became
-    /// 65504.
+    /// Encodes the file of [`write_exr`](Self::write_exr). Returns its bytes, and how many values became 65504.
     ///
     /// # Errors
     /// If the image cannot be encoded.

@@ -12,12 +12,11 @@ pub struct ImageError {
     /// The part that is due to gathered photons, which blur.
     pub blur: Estimate,
     /// The noise of alpha, relative to alpha, if shadow catchers cause any. The larger of this and the total error of
-    /// colors counts.
+    /// the colors counts.
     pub alpha: Option<Estimate>,
     /// The light that makes an outlier of the noise, in a render that has ended.
     pub rare_light: Option<RareLight>,
-    /// The error that the color model may cause, as predicted by the plan, relative to the strongest channel of each
-    /// color.
+    /// The error that the color model may cause, as the plan predicts: relative to the strongest channel of each color.
     pub model: f64,
     /// What ended the render, or none while it is running.
     pub stopped_by: Option<Stopped>,

@@ -26,7 +26,7 @@ pub(super) struct PartHeader {
     pub(super) film: Film,
     pub(super) format: Format,
     pub(super) view: CameraView,
-    /// Counts the non-finite samples of the light that all parts send alike. `non_finite` counts the others.
+    /// Counts only the non-finite samples of the light that all parts send alike. `non_finite` counts the others.
     pub(super) provenance: Provenance,
     pub(super) non_finite: u64,
 }

@@ -143,8 +143,8 @@ impl Rendering {
     }
 
     /// Returns the amount of work: camera samples, and photons, each of which counts as the number of samples that take
-    /// as long. With a stop rule this is an estimate, which improves after each pass. As long as nothing [is
-    /// known](Self::is_work_known), it is the maximum.
+    /// as long. With a stop rule this is an estimate, which improves after each pass. It is the maximum until more [is
+    /// known](Self::is_work_known).
     pub fn work(&self) -> u64 {
         self.passes.work()
     }
@@ -166,8 +166,7 @@ impl Rendering {
     /// Renders the next pass, if one is left, and returns whether another one is left. Passes take more and more
     /// samples, or gather photons of their own.
     ///
-    /// `progress` receives how much of the [`work`](Self::work) was done since its last call. It is called from any
-    /// thread.
+    /// `progress` receives the amount of [`work`](Self::work) done since its last call. Any thread may call it.
     ///
     /// ```
     /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -271,7 +270,7 @@ impl Rendering {
     ///
     /// # Errors
     /// [`Error::Arguments`] if it is a checkpoint of something else, or cannot become this image; [`Error::Decode`] if
-    /// it is damaged. This render must not be used after that.
+    /// it is damaged. In that case this render must not be used any more.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<Resumed> {
         let (resumed, written) = checkpoint::resume(path.as_ref(), &self.identity, &mut self.passes)?;
         (self.written, self.resumed_at) = (written, self.done());
@@ -281,8 +280,7 @@ impl Rendering {
     /// Writes the finished tiles of a part of an image, for [`merge`](super::merge).
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there are samples left to take. If the file cannot be written, an existing one is
-    /// untouched.
+    /// [`Error::Arguments`] if samples are left to take. If the file cannot be written, an existing one is untouched.
     pub fn write_part(&self, path: impl AsRef<Path>) -> Result<()> {
         if !self.passes.is_finished() {
             let message = "a part of an image is written when all its samples are taken".to_owned();
@@ -304,8 +302,7 @@ impl Rendering {
         self.image_of(self.threads.install(|| self.passes.film()))
     }
 
-    /// Returns all that is known about the image so far, except its pixels and the values of its layers. It takes
-    /// little memory.
+    /// Returns all that is known about the image so far, except its pixels and layer values. It takes little memory.
     pub fn summary(&self) -> Image {
         self.image_of(self.passes.frame())
     }

@@ -36,8 +36,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     warnings
 }
 
-/// Returns a warning about an image without any light, or none if that is intended or a warning has already explained
-/// it.
+/// Returns a warning about an image without any light, or none if that is intended or already explained.
 pub(super) fn dark(scene: &Scene) -> Option<String> {
     let limits = [("max_bounces", scene.render.max_bounces), ("diffuse_bounces", scene.render.diffuse_bounces)];
     let limits: Vec<String> = limits.iter().filter_map(|(key, limit)| Some(format!("{key} = {}", (*limit)?))).collect();
@@ -58,8 +57,7 @@ pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     })
 }
 
-/// Warns of light that is too rare to know how much there is, unless an error was requested and is reached all the
-/// same.
+/// Warns of light too rare to know how much there is, unless an error was requested and is reached all the same.
 fn outlier(error: &ImageError) -> Option<String> {
     let outlier = error.noise.outlier.filter(|_| error.asked.is_none() || !error.is_reached())?;
     let ([x, y], share) = (outlier.pixel, percent(outlier.share));
