@@ -72,7 +72,7 @@ pub struct AlphaDifference {
 pub struct ColorDifference {
     /// The mean over all pixels.
     pub mean: f64,
-    /// The largest.
+    /// The largest difference.
     pub worst: f64,
     /// The fraction of pixels with a value that was clipped in either image.
     pub clipped: f64,
