@@ -1,7 +1,7 @@
 use super::filter::Filter;
 
-/// The minimum number of samples of a pixel for estimating its variance. Fewer samples of a pixel on an edge may all be
-/// equal by chance, and others in the next render. Their variance then seems to be 0.
+/// The minimum number of samples of a pixel for estimating its variance. With fewer samples, those of a pixel on an
+/// edge may all be equal by chance, and differ from those of the next render. Their variance then seems to be 0.
 pub const TELL_VARIANCE: u32 = 4;
 
 /// The weights of a pixel's samples in its means.
