@@ -273,9 +273,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         after
     }
 
-    /// Returns the rows of light that is followed forward, beyond a surface that it leaves in one way to the viewer,
-    /// and folded before it arrives or not. Converts `share` from what leaves of unpolarized light to what leaves of
-    /// the path's.
+    /// Returns the rows of light that is followed forward, beyond a surface that it leaves in one way to the viewer. If
+    /// `is_folded`, it is folded before it arrives. Converts `share` from unpolarized light to the path's light.
     fn sent(&self, at: &Interaction<N>, incoming: Incoming, is_folded: bool, share: &mut Lanes<N>) -> Self {
         let (mut after, mut mueller) = (*self, Mueller::NONE);
         if is_folded {
