@@ -26,7 +26,7 @@ const LARGEST: f64 = 0.5;
 /// paths in such a room then have the same weight.
 const FINITE: i32 = 2;
 const EQUAL: i32 = 1;
-/// Weight of light from elsewhere, relative to that of the places, which others may see too. 2 to 6 work alike.
+/// Weight of light from elsewhere relative to that of the places, which others may see too: 2 to 6 work equally well.
 const ELSEWHERE: f64 = 3.0;
 /// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline is uncertain.
 const FLAT: f64 = 1e-3;

@@ -25,12 +25,12 @@ pub struct SampleDensity {
 pub struct Rate(i8);
 
 impl SampleDensity {
-    /// Half as many samples.
+    /// Half as many samples as on average.
     pub const LEAST: i8 = -1;
-    /// Four times as many samples.
+    /// Four times as many samples as on average.
     pub const MOST: i8 = 2;
 
-    /// Returns the number of samples per average sample for a power of two.
+    /// Returns the factor on the average number of samples, given its power of two.
     pub fn times(power: i8) -> f64 {
         f64::from(power).exp2()
     }
@@ -47,7 +47,7 @@ impl SampleDensity {
 }
 
 impl Rate {
-    /// Returns the number of samples per average sample.
+    /// Returns the factor on the average number of samples.
     pub fn times(self) -> f64 {
         SampleDensity::times(self.0)
     }

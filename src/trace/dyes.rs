@@ -9,7 +9,7 @@ use crate::material::{Diffuse, Material};
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Emission, Lanes, Quantity, Response, Table};
 
-/// Smallest probability of a dye, unless there are many, and largest of all dyes. Only the sampling depends on them.
+/// Smallest probability of one dye, unless there are many, and largest of all together: only sampling depends on them.
 const LEAST: f64 = 0.05;
 const MOST: f64 = 0.75;
 
@@ -70,7 +70,7 @@ impl Dyes {
         self.first[material]..self.first[material + 1]
     }
 
-    /// Returns the probabilities with which a path that follows only one way on follows these dyes.
+    /// Returns the probabilities of following each of these dyes, for a path that continues in only one way.
     pub(super) fn chances(&self, dyes: Range<usize>) -> DyeChances<'_> {
         let total: f64 = self.shares[dyes].iter().sum();
         DyeChances { dyes: self, fit: (MOST / total).min(1.0), total }

@@ -227,7 +227,7 @@ impl Layers {
         }
     }
 
-    /// Adds three numbers to those of a layer in a row, if the layer is requested.
+    /// Adds three numbers to a layer's numbers in a row, if the layer is requested.
     #[inline]
     pub(super) fn add_to(&self, layer: Layer, row: &mut [f64], numbers: [f64; 3]) {
         if let Some(at) = self.at(layer) {

@@ -10,7 +10,7 @@ use crate::spectrum::{Draw, Lanes, Table};
 /// Maximum number of different media that may overlap in one place: a lens of varying index is made of many shells.
 pub const MOST_MEDIA: usize = 16;
 
-/// The media around a point, each with the number of its bodies that are there.
+/// The media around a point, each with the number of its bodies around the point.
 ///
 /// If there are several, the medium of highest priority is really there (Schmidt & Budge 2002, *Simple Nested
 /// Dielectrics in Ray Traced Images*). Counting by material lets one body be made of many objects.
@@ -57,7 +57,7 @@ impl Media {
         Self::around_of(scene, start, direction, &|_| true)
     }
 
-    /// Finds the media around a point, of those objects that count. The straight walk starts near `direction`.
+    /// Finds the media around a point, among the objects that count. The straight walk starts near `direction`.
     pub(super) fn around_of(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Self {
         let is_bounded = |object: u32| scene.objects[object as usize].shape.is_bounded() && counts(object);
         let left = Self::left_by(scene, start, aside(direction), &is_bounded);
@@ -84,7 +84,7 @@ impl Media {
         balance
     }
 
-    /// Returns the media after a straight walk from one point to another, through those objects that count.
+    /// Returns the media after a straight walk from one point to another, through the objects that count.
     pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: Counts) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
         medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
@@ -183,7 +183,7 @@ impl Media {
 /// Maximum number of surfaces that a straight walk crosses. A longer walk is taken to be endless.
 const MOST_CROSSINGS: usize = 100_000;
 
-/// Lists the clear bodies that a straight walk to a point or to infinity enters and leaves, of those objects that
+/// Lists the clear bodies that a straight walk to a point or to infinity enters and leaves, among the objects that
 /// count.
 fn medium_changes(
     scene: &Scene<Table>,
@@ -204,7 +204,7 @@ fn medium_changes(
     surfaces.take(MOST_CROSSINGS).filter(is_of_body)
 }
 
-/// Returns how many half spaces of each medium a point lies in, of those planes that count.
+/// Returns how many half spaces of each medium a point lies in, among the planes that count.
 ///
 /// Two planes that face away from each other bound a slab. Every point is behind at least one of them, so that one does
 /// not count. The number of half spaces around a point at infinity is therefore subtracted: the smallest of those
@@ -229,7 +229,7 @@ fn behind_planes(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: C
     planes.into_iter().map(|(material, planes)| (material, count(&planes))).filter(|(_, count)| *count > 0).collect()
 }
 
-/// Returns the one of several media in one place that is really there.
+/// Returns which of several media in one place is really there.
 fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> Option<MaterialId> {
     media.max_by_key(|material| (medium(scene, *material).priority, *material))
 }

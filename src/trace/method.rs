@@ -23,9 +23,9 @@ pub struct Method {
     pub stop: Option<Stop>,
     /// Chooses the set of random numbers.
     pub seed: u64,
-    /// How often a path may leave a diffuse surface. After that, diffuse surfaces are lit by light sampling alone.
+    /// How many times a path may leave a diffuse surface. After that, diffuse surfaces are lit by light sampling alone.
     pub diffuse_bounces: u32,
-    /// How often light may leave any surface. What longer paths would have carried is reported.
+    /// How many times light may leave any surface. What longer paths would have carried is reported.
     pub max_bounces: u32,
     /// Photons for caustics; `None` leaves these to the camera's rays and chance.
     pub light_pass: Option<LightPass>,
@@ -103,9 +103,9 @@ pub struct Stop {
     pub noise: Option<f64>,
     /// Maximum render time.
     pub time: Option<Duration>,
-    /// Fewest camera samples per pixel for which an error is trusted.
+    /// Minimum number of camera samples per pixel for which an error is trusted.
     pub least: u32,
-    /// Most camera samples per pixel, a multiple of eight.
+    /// Maximum number of camera samples per pixel, a multiple of eight.
     pub most: u32,
 }
 
@@ -180,7 +180,7 @@ impl Transport {
     /// Returns the number of surfaces after which a path is stopped and counted as lost: its light is caught in a clear
     /// body for good.
     ///
-    /// Without random choices nothing else ends it. With them, roulette lets one path in 10^32 get that far.
+    /// Without chance nothing else ends it; with chance, roulette lets one path in 10^32 come as far.
     pub(super) fn last_vertex(&self) -> u32 {
         match self {
             Self::Deterministic { .. } => 1_000,

@@ -49,7 +49,7 @@ impl Pass {
     }
 
     /// Returns targets with the photons that this pass sends to them. Without replicates, these are all their photons.
-    /// With replicates, they are the pass's share of the method's samples, of `times` as many.
+    /// With replicates, these are `times` as many, in proportion to the pass's share of the method's samples.
     pub(super) fn targets<'t>(&self, world: &World, targets: &'t PhotonTargets, times: u32) -> Cow<'t, PhotonTargets> {
         let part = self.numbers.len() as f64 / f64::from(world.method.samples);
         match self.replicate {

@@ -11,12 +11,12 @@ use crate::spectrum::Table;
 
 /// Number of camera rays along each side of the image.
 const SIDE: u32 = 24;
-/// Most smooth surfaces that a ray passes, and most lights that are considered.
+/// Maximum number of smooth surfaces that a ray passes, and of lights that are considered.
 const SURFACES: usize = 8;
 const LIGHTS: usize = 4;
 /// A distance beyond all surfaces.
 const FAR: f64 = 1e100;
-/// Fewest places that show where light comes through.
+/// Minimum number of places that show where light comes through.
 const FEWEST: usize = 16;
 /// Places more than this factor farther from the camera than the nearest ones belong to the next part.
 const FARTHER: f64 = 2.5;

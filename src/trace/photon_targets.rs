@@ -44,14 +44,14 @@ pub(super) struct PhotonTargets {
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to, and most targets of all lights. If there are more objects, neighbors
-/// share a ball.
+/// Maximum number of balls of objects that photons are sent to, and of targets of all lights. If there are more
+/// objects, neighbors share a ball.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
-/// Most parts of one ball, and most parts of all balls of all lights unless each ball has only one.
+/// Maximum number of parts of a ball, and of all balls of all lights unless each ball has only one.
 const MOST_PARTS: usize = 6;
 const MOST_TOLD_APART: usize = 12;
-/// Most balls that are compared with each other.
+/// Maximum number of balls that are compared with each other.
 const MANY: usize = 4096;
 /// Share of the photons that is distributed evenly over all targets; the rest is distributed by flux.
 const EVENLY: f64 = 0.1;

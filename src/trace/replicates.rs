@@ -139,8 +139,7 @@ impl Products {
 }
 
 impl Replicates {
-    /// Returns empty sums of some pixels; with subtracted samples, gathered photons and shadow catchers if there are
-    /// any.
+    /// Returns empty sums for some pixels, with subtracted samples, gathered photons and shadow catchers if needed.
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { ReplicateSums::new(pixels, is_signed) } else { ReplicateSums::default() };
         let covered = if catches { vec![[CoverageSums::default(); REPLICATES]; pixels] } else { Vec::new() };

@@ -15,7 +15,7 @@ use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, Scene, Visibility};
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
 
-/// Most groups of lights that are weighed separately. If there are more lights, neighbors in the scene share a group.
+/// Maximum number of groups of lights that are weighed separately. If there are more lights, neighbors share one.
 const LIGHTS: usize = 16;
 
 /// A scene tabulated for the lanes of one method: everything the tracer reads.
@@ -308,7 +308,7 @@ impl World {
 
     /// Returns whether next-event estimation at a vertex of the given weight samples every light, and not only one.
     pub(super) fn samples_all_lights(&self, weight: impl FnOnce() -> f64) -> bool {
-        /// Most lights that may all be sampled from one vertex.
+        /// Maximum number of lights that may all be sampled from one vertex.
         const MANY: usize = 8;
         match self.method.transport {
             Transport::Deterministic { .. } => true,

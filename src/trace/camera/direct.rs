@@ -195,7 +195,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     }
 }
 
-/// Adds digits to a random number: choosing among many lights uses up the 23 bits of those of the sequences.
+/// Adds digits to a random number of the sequences: choosing among many lights uses up its 23 bits.
 fn finer(u: f64, more: f64) -> f64 {
     const STEPS: f64 = (1 << 23) as f64;
     ((u * STEPS).floor() + more) / STEPS

@@ -424,8 +424,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         true
     }
 
-    /// Returns whether a path ends because its light was estimated at light vertices: mostly, but less often the
-    /// nearer. It may continue for light that they do not carry, or unlit, to measure what a bounce limit leaves out.
+    /// Returns whether a path ends because its light was estimated at light vertices: the closer it is, the less
+    /// likely. Even then it may continue for light that they do not carry, or unlit, to measure what bounce limits
+    /// leave out.
     fn ends_at_light_vertices(
         &mut self,
         path: &mut Path<N, P>,

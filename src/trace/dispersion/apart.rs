@@ -10,7 +10,7 @@ use crate::trace::World;
 /// Lengths of the steps to a ray's neighbors, in pixels. With the longer one, the neighbors on both sides of an edge
 /// are as far apart as two colors that are just not seen apart.
 const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
-/// Places along each side of a pixel whose light is examined.
+/// Number of places along each side of a pixel whose light is examined.
 const PLACES: u32 = 6;
 
 /// Returns how many pixels apart two colors show what lies behind; `None` if an edge is too close to tell.
@@ -28,7 +28,7 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
         let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
         let part = || {
-            // After other surfaces, light comes from elsewhere: among such facets, neighbors do not tell anything.
+            // After other surfaces, light comes from elsewhere: among such facets, neighbors carry no information.
             see_something(rays, [first, second]) && first.legs.len() != second.legs.len()
                 || apart_by(rays, STEPS[1], at, [first, second]) >= SEEN_PIXELS
         };

@@ -8,7 +8,8 @@ use crate::trace::media::Media;
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
-/// Surfaces after which a ray is given up. Total reflection keeps one in six rays in a diamond for more than 24.
+/// Number of surfaces after which a ray is given up. Total reflection keeps one in six rays in a diamond for more than
+/// 24.
 const LONGEST: usize = 64;
 /// Share of the light above which a fainter branch counts: half of what glass mirrors.
 const LEAST: f64 = 0.02;

@@ -12,21 +12,22 @@ use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 use crate::trace::photon_targets::ball_around_all;
 
-/// Number of rays in all, and fewest and most of one light toward one target.
+/// Number of rays in all, and minimum and maximum number of rays from one light toward one target.
 const RAYS: usize = 4096;
 const FEWEST: usize = 4;
 const OF_A_PAIR: usize = 1024;
-/// Most lights that send rays: the brightest at a target.
+/// Maximum number of lights that send rays: the brightest at a target.
 const LIGHTS: usize = 16;
 /// Colors that are apart by less than this share of the lamp's own blur look white.
 const CONTRAST: f64 = 0.05;
-/// Light through an object is not seen if it is fainter than this share of the lamp's own: a color may be as wrong.
+/// Light through an object is not seen if it is fainter than this share of the lamp's own: a color may be off by as
+/// much.
 const FAINT: f64 = 0.01;
 /// Distance of a ray's neighbors, in radii of the object: near enough to take the same way.
 const BESIDE: f64 = 1e-3;
 /// Largest angle in radians by which a ray is turned to measure the blur from the lamp's extent.
 const TURN: f64 = 1e-3;
-/// The ways of light that lands somewhere: through bodies, and after an internal reflection, as in a rainbow.
+/// The branches followed to where light lands: through bodies, and after an internal reflection, as in a rainbow.
 const WAYS: [FollowedBranch; 2] = [FollowedBranch::Brighter, FollowedBranch::FainterInside];
 /// Separates these random numbers from others.
 const SEED: u64 = 0x6c69_7420;
@@ -208,8 +209,8 @@ impl Pair<'_> {
         }
     }
 
-    /// Returns the pixels per length where a ray lands, if the camera sees it: directly, through clear objects, or by
-    /// way of other surfaces.
+    /// Returns the pixels per length where a ray lands, if the camera sees it: directly, through clear objects, or
+    /// indirectly.
     fn scale(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
         let left = self.colors.world.method.max_bounces - walk.surfaces;
         let is_near = |place: &&ReachedPlace| (place.position - point.position).length() <= place.of_cell;

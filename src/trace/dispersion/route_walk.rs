@@ -8,13 +8,13 @@ use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
-/// Most surfaces that are hit for one pixel.
+/// Maximum number of surfaces that are hit for one pixel.
 const SURFACES: usize = 256;
 /// Routes that leave less than this share of a pixel's brightest one are not followed.
 const FAINT: f32 = 1e-3;
-/// Most diffuse surfaces of a route.
+/// Maximum number of diffuse surfaces of a route.
 const SCATTERED: u32 = 2;
-/// Most lights that are sampled.
+/// Maximum number of lights that are sampled.
 const LIGHTS: usize = 8;
 
 /// Follows the routes of one pixel, the brightest first.

@@ -7,9 +7,9 @@ use crate::math::{DVec2, Sampler};
 use crate::trace::World;
 use crate::trace::probe::pixels_of_objects;
 
-/// Pixels along each side of the image.
+/// Number of pixels along each side of the image.
 const SIDE: u32 = 24;
-/// Surfaces after which no more pixels are traced, over the image and again on objects.
+/// Number of surfaces after which no more pixels are traced, over the image and again on objects.
 const ALL_SURFACES: usize = 16_384;
 
 /// Returns the routes to a few hundred pixels, grouped by pixel, in a world whose lanes are

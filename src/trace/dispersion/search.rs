@@ -10,17 +10,17 @@ use super::color_walk::{CameraRays, ColorWalk, Colors, FollowedBranch};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
-/// Cells along each side of the view.
+/// Number of cells along each side of the view.
 const SIDE: u32 = 24;
-/// Most cells that are examined besides these.
+/// Maximum number of cells that are examined besides these.
 const MOST: usize = 6000;
-/// Size of a cell, in pixels, from which on it is not divided.
+/// Cells of this size or less, in pixels, are not divided.
 const SMALLEST: f64 = 0.5;
 /// Smallest area of the view that counts, in pixels, or as a share of an image that has few pixels. It changes one
 /// pixel as much as an edge whose colors are just seen apart changes the pixels along it.
 const PIXELS: f64 = SEEN_PIXELS;
 const SHARE: f64 = 0.005;
-/// Pixels that are examined more closely each time.
+/// Number of pixels that are examined more closely each time.
 const CLOSER: usize = 32;
 /// A pixel of which this share is pulled apart changes as much as one at an edge whose colors are just seen apart: over
 /// such an edge, the colors between the outermost two are moved by half as much.
@@ -148,7 +148,7 @@ fn look(
     Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
 }
 
-/// Examines all of a pixel where one ray cannot tell. Between the edges of small gems it hardly ever can. Where it can,
+/// Examines a whole pixel where one ray is not enough. Between the edges of small gems it hardly ever is. Where it is,
 /// it lies in the largest facets, many of which are parallel.
 fn look_closer(colors: &Colors, looks: &mut [Look]) {
     let untold: Vec<&mut Look> =
@@ -158,7 +158,7 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
         let share = share_apart(&look.cell.rays(colors), look.cell.middle());
         look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
         if share >= SEEN_SHARE {
-            // All of a pixel was examined.
+            // The whole pixel was examined.
             (look.dispersive, look.weight) = (look.dispersive.max(1.0), 1.0);
         }
     }

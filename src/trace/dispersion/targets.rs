@@ -7,7 +7,7 @@ use crate::shape::Ball;
 
 /// Dispersion over fewer pixels is not seen.
 pub const SEEN_PIXELS: f64 = 0.2;
-/// Most boxes of either kind. If there are more objects, neighbors share a box.
+/// Maximum number of boxes of either kind. If there are more objects, neighbors share a box.
 const MOST: usize = 48;
 /// How much wider than the rays around it a beam is taken to be: what they enclose may bulge out between them.
 const WIDER: f64 = 1.25;

@@ -86,8 +86,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { context, parts, ..self }
     }
 
-    /// Returns the surface as viewed from another direction, on either side. The media are still those of this
-    /// interaction.
+    /// Returns the surface as viewed from another direction, on either side. The media stay those of this interaction.
     pub fn viewed_from(&self, wo: DVec3) -> Self {
         let [flat, normal] = shading::normals_of(self.lobes, self.point, wo);
         let turned = ScatterContext { wo, normal, ..self.context };

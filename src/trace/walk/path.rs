@@ -41,7 +41,7 @@ pub struct Path<const N: usize, P = Polarized> {
     /// Whether the surface that last scattered it widely did so by narrow lobes alone. Photons do not land there after
     /// a narrow lobe: the camera's rays soon find what one such surface shows of another.
     pub is_narrow: bool,
-    /// How often the path may still leave a diffuse surface.
+    /// How many times the path may still leave a diffuse surface.
     pub diffuse_left: u32,
     /// How the last direction was sampled; `None` after the camera or a smooth surface.
     pub scatter: Option<ScatterSample>,

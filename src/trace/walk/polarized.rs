@@ -36,7 +36,7 @@ impl Polarized {
         Self { degree: ((self.degree + degree) / factor).min(1.0), growth }
     }
 
-    /// Returns the state after a way on which unpolarized light gets the polarization `other`.
+    /// Returns the state after a path segment that polarizes unpolarized light like `other`.
     pub fn joined(self, other: Self) -> Self {
         let growth = (other.growth * self.growth).min(f32::MAX);
         Self { growth, ..self }.after(other.degree)

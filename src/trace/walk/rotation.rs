@@ -20,7 +20,7 @@ impl Rotation {
         (length > 0.0).then_some(Self(((c * c - t * t) * inverse) as f32, (2.0 * c * t * inverse) as f32))
     }
 
-    /// Rotates the linear components 1 and 2.
+    /// Of the linear components, 1 and 2.
     #[inline(always)]
     pub fn of<const K: usize>(self, one: [f32; K], two: [f32; K]) -> [[f32; K]; 2] {
         let Self(c, s) = self;

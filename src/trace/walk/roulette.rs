@@ -9,7 +9,7 @@ pub const LONG: u32 = 64;
 /// proportion to that number. Light that diffuses through angles, as in a dense body that is hardly rough, leaves after
 /// n surfaces with a probability proportional to n^(-3/2). With an exponential factor, its noise would be unbounded.
 const SURE: f64 = 0.999;
-/// Number of surfaces after which light counts as caught, and ends as soon after `LONG`.
+/// Number of surfaces after which light counts as caught, and ends with the same probability as just after `LONG`.
 const CAUGHT: u32 = 30_000;
 /// Smallest survival probability of a faint path, so that none comes back more than ten times brighter.
 const UNLIKELY: f64 = 0.1;

@@ -16,7 +16,7 @@ pub struct Exitant<const N: usize> {
 }
 
 impl<const N: usize> Exitant<N> {
-    /// Returns the way followed forward: the light then comes from the viewer.
+    /// Returns this way, followed forward: the light then comes from the viewer.
     pub fn turned_back(self) -> Self {
         let [to, from] = self.z;
         Self { z: [-from, -to], ..self }

@@ -162,8 +162,8 @@ impl VisibilityTest<'_> {
         Some((arriving, after))
     }
 
-    /// Returns the share of each lane that passes all surfaces before the light, and its polarization; `None` if none
-    /// does.
+    /// Returns the share of each lane that passes all surfaces before the light, and its polarization; `None` if it is
+    /// 0.
     #[cold]
     #[inline(never)]
     fn transmittance<const N: usize, P: Polarization<N>>(

@@ -237,7 +237,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Returns how branches are followed by now. If light has too many ways, one is chosen, which keeps the mean.
+    /// Returns how branches are followed at this point of the sample. If light has too many ways, one is chosen, which
+    /// keeps the mean.
     fn rule(&self) -> Transport {
         match self.transport {
             Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,
