@@ -114,12 +114,12 @@ pub(super) struct DyeChances<'a> {
 }
 
 impl DyeChances<'_> {
-    /// Returns the probability of one of them.
+    /// Returns the probability of one of the dyes.
     pub(super) fn of(&self, dye: usize) -> f64 {
         self.fit * self.dyes.shares[dye]
     }
 
-    /// Returns the probability of all of them together.
+    /// Returns the probability of all dyes together.
     pub(super) fn total(&self) -> f64 {
         self.fit * self.total
     }

@@ -155,7 +155,8 @@ impl Replicates {
             + shows * size_of::<[[f32; 3]; REPLICATES]>()
     }
 
-    /// Returns whether there are as many sums of each kind as in `other`, or none yet of what photons splat.
+    /// Returns whether there are as many sums of each kind as in `other`; those of splatted photons may still be
+    /// missing.
     pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
         self.light.is_shaped_as(&other.light)
             && self.blur.is_shaped_as(&other.blur)

@@ -18,7 +18,7 @@ pub(super) struct Stats {
     pub(super) partings: u64,
     /// All light that was seen, as X + Y + Z.
     pub(super) light: f64,
-    /// The most of it that polarization may have changed.
+    /// The largest amount of the light seen that polarization may have changed.
     pub(super) polarization: f64,
     /// Camera samples of deterministic transport that hit so many surfaces that they continued at random.
     pub(super) by_chance: u64,

@@ -46,7 +46,7 @@ pub struct World {
     pub(super) has_soft_light: bool,
     /// Whether there are objects that the camera does not see, or sees as holes.
     pub(super) hides_objects: bool,
-    /// Whether some of them are holdouts or shadow catchers, for which a sample counts as a whole.
+    /// Whether some objects are holdouts or shadow catchers, for which a sample counts as a whole.
     pub(super) has_mattes: bool,
     /// The lobes of each material.
     pub(super) lobes: Vec<Lobes>,

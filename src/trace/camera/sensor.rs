@@ -38,7 +38,7 @@ pub struct Sensor<'a, const N: usize> {
     pub is_deaf: bool,
     /// What the current sample has received.
     pub rgb: [f64; 3],
-    /// How much of this polarization may change.
+    /// The amount of the received light that polarization may change.
     moved: f64,
     /// How much kernels blur what it has received.
     pub blur: [f64; 3],

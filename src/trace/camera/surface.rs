@@ -46,7 +46,7 @@ impl<const N: usize, P: Polarization<N>> Surface<'_, N, P> {
 pub struct PathContinuation<'m, const N: usize, P> {
     /// What passes through.
     pub through: Option<&'m PassThrough<N, P>>,
-    /// Whether that is always followed, because the camera ray hits something behind the surface's holes.
+    /// Whether what passes through is always followed, because the camera ray hits something behind the holes.
     pub is_awaited: bool,
     /// Whether photons are gathered.
     pub gathers: bool,

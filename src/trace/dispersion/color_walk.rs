@@ -22,9 +22,9 @@ const SURFACE: u32 = 7;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FollowedBranch {
     Brighter,
-    /// The fainter one at the first surface that has one, then the brighter one.
+    /// The fainter branch at the first surface that has one, then the brighter one.
     FainterFirst,
-    /// The fainter one where light would first leave a dispersive body, then the brighter one: as in a rainbow.
+    /// The fainter branch where light would first leave a dispersive body, then the brighter one: as in a rainbow.
     FainterInside,
 }
 

@@ -12,7 +12,7 @@ use crate::math::{DVec2, DVec3, Sampler};
 
 /// Number of cells along each side of the view.
 const SIDE: u32 = 24;
-/// Maximum number of cells that are examined besides these.
+/// Maximum number of cells that are examined after the initial ones.
 const MOST: usize = 6000;
 /// Cells of this size or less, in pixels, are not divided.
 const SMALLEST: f64 = 0.5;
@@ -60,7 +60,7 @@ struct ViewCell {
 /// What was seen in a cell.
 struct Look {
     cell: ViewCell,
-    /// The area, in pixels, of its part on dispersive surfaces, and the share of light that goes this way.
+    /// The area, in pixels, of the cell's part on dispersive surfaces, and the share of light that goes this way.
     dispersive: f64,
     weight: f64,
     /// How many pixels apart colors are; `None` if that cannot be told.

@@ -30,7 +30,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub key: BranchKey,
     /// Number of surfaces hit so far.
     pub vertices: u32,
-    /// Number of these that belong to bodies hidden inside others.
+    /// Number of surfaces hit so far that belong to bodies hidden inside others.
     pub hidden: u32,
     /// Length of the path so far, from the camera itself and not from the near plane.
     pub length: f64,
@@ -49,7 +49,7 @@ pub struct Path<const N: usize, P = Polarized> {
     pub polarization: P,
     /// Number of times that surfaces have scattered, mirrored or refracted it.
     pub bounces: u32,
-    /// Whether only smooth surfaces have done so. The camera then sees what it hits next.
+    /// Whether only smooth surfaces have mirrored or refracted it. The camera then sees what it hits next.
     pub is_seen: bool,
     /// The objects that exist for it.
     pub among: Among,
@@ -67,7 +67,7 @@ pub struct Path<const N: usize, P = Polarized> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
     All,
-    /// Those in the plate, and those that light it.
+    /// Objects in the plate, and those that light it.
     Plate,
 }
 

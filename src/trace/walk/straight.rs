@@ -50,7 +50,7 @@ pub fn holes<const N: usize>(
 /// Whether a camera ray hits a surface that may be cut out: it hits panes, but not holes.
 pub struct Cutout {
     pub is_hit: bool,
-    /// Probability of that outcome.
+    /// Probability of this outcome.
     pub chance: f64,
     /// The part of the path's weight that belongs to a path to what is hit. Beyond a surface, a path that goes through
     /// its holes goes through its panes as well.
@@ -100,9 +100,9 @@ pub struct VisibilityTest<'a> {
 /// The objects that may occlude a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Occluders {
-    /// Those that exist for a path.
+    /// Objects that exist for a path.
     Objects(Among),
-    /// Those that the camera sees, if the segment leads to it.
+    /// Objects that the camera sees, if the segment leads to it.
     Seen(SeenThrough),
 }
 

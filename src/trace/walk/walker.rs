@@ -263,7 +263,7 @@ pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
     pub scatter: Option<&'a ScatterSample>,
     /// What passes through the surface, as the last branch.
     pub through: Option<&'a PassThrough<N, P>>,
-    /// Whether that is always followed, because the camera ray hits something behind the surface.
+    /// Whether what passes through is always followed, because the camera ray hits something behind the surface.
     pub is_awaited: bool,
     /// Whether the camera sees the surface.
     pub is_seen: bool,
