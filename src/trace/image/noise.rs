@@ -62,8 +62,8 @@ pub struct Estimate {
 }
 
 impl Measured {
-    /// Returns a bound on the error that holds in 95 of 100 renders, rather more, since it adds two such bounds. The
-    /// noise of a pixel is independent of its blur, so their squares add up. The larger of the errors of colors and
+    /// Returns a bound on the error that holds in 95 of 100 renders, rather more, since it combines two such bounds.
+    /// The noise of a pixel is independent of its blur, so their squares add up. The larger of the errors of colors and
     /// alpha counts.
     pub fn at_most(&self) -> f64 {
         let alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);

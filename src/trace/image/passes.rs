@@ -25,7 +25,7 @@ pub struct Progress {
     pub passes: u32,
     /// The stage of the replicates, if there are any.
     pub(in crate::trace) stage: Stage,
-    /// What the replicates showed when they last had as many samples each.
+    /// What the replicates showed when they last had the same number of samples each.
     pub measured: Option<Measured>,
     pub sending: LightPassProgress,
     /// Of photons that were gathered, and of paths from the lights.

@@ -70,7 +70,7 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
 }
 
 /// Returns the samples of a replicate's passes, up to `each`, in the stages of the render: the light of a pass depends
-/// on its length. Those after a stage that was cut short by the time may differ.
+/// on its length. Samples after a stage that ran out of time may differ.
 fn numbers_of_passes(world: &World, each: u32) -> Vec<Range<u32>> {
     let (mut passes, mut before, most) = (Vec::new(), 0, most_at_once(world));
     while before < each {

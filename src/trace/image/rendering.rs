@@ -31,7 +31,7 @@ use crate::trace::{World, media};
 /// Tiles whose values are computed before they are put into the image.
 const TILES_AT_A_TIME: usize = 256;
 
-/// What rendering noticed, as programs read it, without what only messages tell.
+/// What rendering noticed, as it is serialized for programs: without what only messages use.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
     /// Camera samples taken.
@@ -81,7 +81,7 @@ pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) 
     (rendering.film(), rendering.report())
 }
 
-/// How far a render in progress came.
+/// How far a render in progress has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advance {
     /// All samples are taken.
@@ -176,7 +176,7 @@ impl<'a> Rendering<'a> {
         samples + splatted * photons(&world.photon_targets) + stored * passes * photons(&world.map_targets)
     }
 
-    /// Returns how many camera samples the image takes, where photons count as those that take as long. With a stop
+    /// Returns the work of the image in camera samples, where photons count as those that take as long. With a stop
     /// rule, this is an estimate that improves with each pass: the most samples allowed, as long as nothing [is
     /// known](Self::is_work_known).
     pub fn work(&self) -> u64 {
@@ -237,7 +237,7 @@ impl<'a> Rendering<'a> {
         self.world().method.stop.is_some() || !self.is_finished()
     }
 
-    /// Measures the replicates, if they have as many samples each.
+    /// Measures the replicates, if they have the same number of samples each.
     fn look(&mut self) {
         let (stage, film) = (self.progress.stage, self.world().scene.film);
         if stage.size == 0 && stage.before > 0 && self.world().method.stop.is_some() {
@@ -338,7 +338,7 @@ impl<'a> Rendering<'a> {
         rare_light(self.world(), &noise.outlier?, noise.samples / REPLICATES as u32)
     }
 
-    /// Returns how much was left out of the light of photons and light paths, which all parts of an image send alike.
+    /// Returns how many values of photons and light paths, which all parts of an image trace alike, were not finite.
     pub fn non_finite_in_all_parts(&self) -> u64 {
         self.shared_stats().non_finite
     }

@@ -274,7 +274,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         0.5 * (position - point.position).dot(normals).abs() <= STEP * self.radius
     }
 
-    /// Returns the visible part of the sum over the visible share of the disc, and how much polarization may change it.
+    /// Returns the visible part of the sum divided by the visible share of the disc, and how polarization may change
+    /// it.
     fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
         let GatherPoint { world, path, at, .. } = self.around;
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;

@@ -248,8 +248,8 @@ impl<'a> LightPaths<'a> {
     }
 }
 
-/// Returns the vertex where a light path, or a photon aimed at smooth surfaces, lands, if it is one. Light that paths
-/// bring over smooth surfaces, from lights that send photons, is left to photons.
+/// Returns the vertex where a light path, or a photon aimed at smooth surfaces, lands, if it is one. Light that comes
+/// over smooth surfaces from lights that send photons is left to photons.
 fn kept<const N: usize, P>(world: &World, photon_hit: &PhotonHit<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
     let PhotonHit { path, at, photon } = photon_hit;
     let Material::Diffuse(diffuse) = at.material else { return None };

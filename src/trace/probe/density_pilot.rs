@@ -88,7 +88,7 @@ struct CellNoise {
     rays: f64,
 }
 
-/// Looks at a few cells first, then at as many as the ray budget allows. `cells` returns a grid of at most so many.
+/// Looks at a few cells first, then at as many as the ray budget allows. `cells` returns the grid for a maximum number.
 fn look<const N: usize, P: Polarization<N>>(
     world: &World,
     cells: &dyn Fn(f64) -> [u32; 2],
