@@ -5,7 +5,8 @@ use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Adaptive, FIRST_LOOK, SampleDensity, Transport, World, adaptive};
 
-/// Least gain in the time to an equal error: a pilot is not more precise.
+/// Least gain: how many times as long an equal error must take without adaptive sampling. A pilot is no more precise
+/// than this.
 const CLEARLY: f64 = 1.15;
 /// Fewest camera samples of an image: with fewer, a pilot would take more than a few hundredths of the time.
 const LARGE: f64 = 4e6;

@@ -19,7 +19,7 @@ pub(super) struct IndirectMethod<'a> {
     pub(super) world: World,
     /// The explanations for the user.
     pub(super) reasons: Vec<String>,
-    /// The photons of each light that show caustics besides.
+    /// The photons of each light that show caustics, in addition to that light.
     photons: &'a [PhotonWorth],
     noise: OnceCell<PilotNoise>,
     /// How many times as long bounces alone, as surfaces scatter them, take to the same error.

@@ -13,7 +13,7 @@ use crate::trace::{
     Effort, LightPass, Method, PhotonWorth, PilotNoise, Smoothness, Transport, World, piloted, seen_photons,
 };
 
-/// Solid angle in steradians at which rays hit a lamp so often that photons cost the same (`benches/rooms.rs`).
+/// Solid angle in steradians of a lamp that rays hit so often that photons cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
 /// Fewest photons of a light pass: with fewer, it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;

@@ -48,7 +48,8 @@ pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
 }
 
 impl Film<'_> {
-    /// Returns what is left of light for each wavelength in nm and relative band width; `read` reads a curve at all.
+    /// Returns what is left of light at some wavelengths, given in nm with the relative widths of their bands. `read`
+    /// returns the values of a curve at all of them.
     pub(super) fn left(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         let stacks = self.stacks(waves, &read);
         let (n, k) = match self.beyond {

@@ -57,7 +57,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     }
 }
 
-/// Describes what has no meaning without polarization, if the scene has it.
+/// Describes what in a scene has no meaning without polarization, if anything.
 fn asking(scene: &Scene<Curve>) -> Option<String> {
     if scene.camera.filter().is_some() {
         return Some("there is a filter before the camera".into());

@@ -197,7 +197,8 @@ impl<'a> Survey<'a> {
         self.judged.iter().map(|&light| &self.lights[light])
     }
 
-    /// Returns what shines on surfaces, the lights by which models are judged and the dyes; and the dyes alone.
+    /// Returns what shines on surfaces, that is, the lights by which models are judged and the dyes; and the dyes
+    /// alone.
     pub(super) fn shining(&self) -> (Vec<Emission>, Vec<Dye>) {
         let lights = self.judged().map(|(_, light)| light.clone());
         let dyes = self.dyes.iter().map(|(dye, _)| dye);
@@ -270,7 +271,7 @@ const ULTRAVIOLET_NM: f64 = 390.0;
 /// Most films and plates by which models are judged; each film counts as it reflects and as it transmits.
 const FILMS: usize = 4;
 
-/// Returns the smallest side of the bounds of a body, of that body of a material for which it is largest.
+/// Returns how thick the thickest body of a material is, measured by the smallest side of a body's bounds.
 fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
     let bodies = scene.objects.iter().filter(|object| object.material == material);
     let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| bounds.size().min_element());
@@ -322,7 +323,8 @@ impl Tint<'_> {
         self.combine(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
-    /// Returns what is left of light for each wavelength in nm and relative band width; `read` reads a curve at all.
+    /// Returns what is left of light at some wavelengths, given in nm with the relative widths of their bands. `read`
+    /// returns the values of a curve at all of them.
     fn combine(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),

@@ -6,9 +6,9 @@
 //! same photons around the same places, so that much of their noise is the same.
 //!
 //! Every replicate has such an estimate d_r of all pixels. Their noise is independent, so the mean of d_r . d_s over
-//! all pairs is the square of the blur, without noise (Hoeffding 1948, *A Class of Statistics with Asymptotically
-//! Normal Distribution*). Its variance is estimated by leaving out one replicate at a time (Arvesen 1969, *Jackknifing
-//! U-Statistics*).
+//! all pairs estimates the square of the blur without a bias from noise (Hoeffding 1948, *A Class of Statistics with
+//! Asymptotically Normal Distribution*). Its variance is estimated by leaving out one replicate at a time (Arvesen
+//! 1969, *Jackknifing U-Statistics*).
 //!
 //! Where light changes within a disc, higher orders count. The Epanechnikov kernel multiplies the amplitude at the
 //! frequency w by k(r w) with k(x) = 8 J_2(x) / x^2. For a power spectrum of w^-a, the square of the blur is the

@@ -207,7 +207,8 @@ impl PixelSums<'_> {
     }
 
     /// Returns the mean of a channel over a part of the samples, from the sums and numbers of those added and
-    /// subtracted. It uses their own weights, but so that this mean and that of all others have the mean of all.
+    /// subtracted. It uses the part's own weights, but such that this mean and that of all other samples average to the
+    /// mean of all.
     fn half(&self, sums: [f64; 2], taken: [u32; 2], channel: usize) -> f64 {
         let (weights, all) = (&self.weights, self.rgb.map(|rgb| rgb[channel]));
         let [own, others] = [weights.of_part(taken), weights.of_others(taken)];

@@ -4,7 +4,7 @@
 //! a random number, and the bound has to hold for the one that was drawn. Two things about it are unknown:
 //!
 //! - E is an estimate. Its variance is s^2 / R, from how much the |e_r|^2 differ.
-//! - The error that was drawn differs from E. With independent pixels it hardly does, since there are many; but pixels
+//! - The error that was drawn varies around E. With independent pixels it hardly does, since there are many; but pixels
 //!   share light vertices and photons, so that a whole image may be too bright. For normal errors, R |mean e_r|^2 has
 //!   the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels. The products of two replicates estimate
 //!   that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of which the mean has
@@ -62,8 +62,8 @@ pub struct Estimate {
 }
 
 impl Measured {
-    /// Returns a bound on the error that holds in 95 of 100 renders, rather more, since it combines two such bounds.
-    /// The noise of a pixel is independent of its blur, so their squares add up. The larger of the errors of colors and
+    /// Returns a bound on the error that holds in 95 of 100 renders or more, since it combines two such bounds. The
+    /// noise of a pixel is independent of its blur, so their squares add up. The larger of the errors of colors and
     /// alpha counts.
     pub fn at_most(&self) -> f64 {
         let alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);

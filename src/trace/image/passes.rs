@@ -28,7 +28,7 @@ pub struct Progress {
     /// What the replicates showed when they last had the same number of samples each.
     pub measured: Option<Measured>,
     pub sending: LightPassProgress,
-    /// Of photons that were gathered, and of paths from the lights.
+    /// Statistics of gathered photons, and of paths from the lights.
     pub(in crate::trace) gathered: Stats,
     pub gathered_photons: u64,
 }

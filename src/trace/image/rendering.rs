@@ -31,7 +31,7 @@ use crate::trace::{World, media};
 /// Tiles whose values are computed before they are put into the image.
 const TILES_AT_A_TIME: usize = 256;
 
-/// What rendering noticed, as it is serialized for programs: without what only messages use.
+/// What rendering noticed. Fields that only messages use are not serialized.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
     /// Camera samples taken.
@@ -177,8 +177,8 @@ impl<'a> Rendering<'a> {
     }
 
     /// Returns the work of the image in camera samples, where photons count as those that take as long. With a stop
-    /// rule, this is an estimate that improves with each pass: the most samples allowed, as long as nothing [is
-    /// known](Self::is_work_known).
+    /// rule, this is an estimate that improves with each pass. As long as nothing [is known](Self::is_work_known), it
+    /// is the most that the image may take.
     pub fn work(&self) -> u64 {
         let (world, all) = (self.world(), self.work_of(self.pixels()));
         match &world.method.stop {
@@ -210,7 +210,7 @@ impl<'a> Rendering<'a> {
         self.advance_until(progress, &|| false) == Advance::Passed
     }
 
-    /// Makes the next pass, but stops once `is_due` returns true. It is called before every pixel, from any thread.
+    /// Makes the next pass, but stops once `is_due`, called before every pixel and from any thread, returns true.
     pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
         let stopped = AtomicBool::new(false);
         let stops = || {

@@ -35,7 +35,7 @@ pub enum Restored {
     Continues,
     /// It was finished with this many samples per pixel, more than requested. Nothing else was read.
     HasMore(u32),
-    /// Why this render cannot continue from there, and how many samples per pixel one that can takes.
+    /// Why this render cannot continue from there, and the samples per pixel of one that can.
     Refused(String, u32),
 }
 

@@ -50,7 +50,7 @@ impl Stopped {
     }
 }
 
-/// How fast a render is.
+/// The speed of a render.
 #[derive(Clone, Debug)]
 pub struct Clock {
     began: Instant,

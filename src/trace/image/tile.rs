@@ -89,7 +89,8 @@ impl Tile {
         kept + self.stats.non_finite
     }
 
-    /// Takes samples of all pixels that have not had them, until told to stop. Returns how many pixels have got them.
+    /// Takes the samples of a pass for all pixels that have not had them, until told to stop. Returns how many pixels
+    /// got them.
     pub fn take<const N: usize, P: Polarization<N>>(
         &mut self,
         place: TilePlace,

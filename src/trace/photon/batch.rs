@@ -37,7 +37,7 @@ pub struct SentBatch<T> {
 /// The callback that decides what is kept of a photon that lands.
 type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &PhotonHit<N, P>, &mut Vec<T>) + 'a;
 
-/// Splits all photons of some targets into batches. Their numbers follow those of `before` passes.
+/// Splits all photons to some targets into batches. Their numbers follow those of the first `before` passes.
 pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
     batches(targets, |target| before * target.photons..(before + 1) * target.photons, seed)
 }
@@ -53,7 +53,7 @@ pub fn batches(targets: &PhotonTargets, numbers: impl Fn(&PhotonTarget) -> Range
     targets.targets.iter().enumerate().flat_map(of_target).collect()
 }
 
-/// Traces the photons of one batch; `land` decides what is kept of one that lands. If `learns`, only records of which
+/// Traces the photons of one batch; `land` decides what is kept of each that lands. If `learns`, only records for which
 /// photons something would be kept.
 pub fn send<const N: usize, P: Polarization<N>, T>(
     world: &World,

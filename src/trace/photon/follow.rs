@@ -16,7 +16,8 @@ use crate::trace::walk::{
 const BEYOND: usize = 64;
 /// The branch of what narrow lobes scatter separately.
 const BY_NARROW: usize = 65;
-/// Probability that the material draws the direction of a photon where shading normals differ, unless it is diffuse.
+/// Probability that the material draws the direction of a photon, and not the cosine, where the shading normal is not
+/// the surface's own. Diffuse materials never do.
 const BY_MATERIAL: f64 = 0.5;
 /// Uses of the random numbers: where a photon leaves a surface, and whether it passes through one.
 const SCATTER: u32 = 4;
@@ -41,7 +42,7 @@ impl<const N: usize> Photon<'_, N> {
         world.is_found_by_photons(self.light, &self.toward_light())
     }
 
-    /// Whether light paths for light vertices contribute that light.
+    /// Whether light paths for light vertices contribute the light that starts along its way.
     fn is_found_by_light_paths(&self, world: &World) -> bool {
         world.is_found_by_light_paths(self.light, &self.toward_light())
     }
@@ -167,8 +168,8 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
 }
 
-/// Lets a photon pass through a surface, and returns whether it does not hit the surface as well. A photon that carries
-/// little does one or the other: otherwise, each of a stack of panes would double the photons that it reflects.
+/// Lets a photon pass through a surface. Returns false if the photon hits the surface as well. A photon that carries
+/// little does only one of both: otherwise, each of a stack of panes would double the photons that it reflects.
 #[cold]
 fn passes<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
@@ -194,8 +195,8 @@ fn passes<const N: usize, P: Polarization<N>>(
     false
 }
 
-/// Lets a photon continue from a surface that scatters widely, by the given lobes, with the share that the camera would
-/// see along the reverse path.
+/// Lets a photon continue from a surface that scatters widely, by the given lobes. Its shares are those that the camera
+/// would see along the reverse path.
 fn scatter<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
@@ -213,8 +214,8 @@ fn scatter<const N: usize, P: Polarization<N>>(
         walker.branches.iter_mut().filter(|branch| is_turned(branch)).for_each(|branch| turn_back(at, branch));
         send_forward(context, walker.branches.iter_mut().filter(|branch| !is_turned(branch)));
     } else {
-        // Shading normals that depend on the viewer do not draw every direction from which light may arrive, so the
-        // material draws only a part of the directions.
+        // With shading normals that depend on the viewer, light may arrive from directions that the material never
+        // draws. The material therefore draws only a part of the directions.
         let by_material = if at.lobes.is_diffuse() { 0.0 } else { BY_MATERIAL };
         if u[2] < by_material {
             shading::scatter(material, context, *flat, [u[0], u[1]], &mut walker.branches);

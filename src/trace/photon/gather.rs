@@ -86,7 +86,7 @@ pub struct GatherPoint<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    /// The dye that the photons excite, if the path follows that.
+    /// The dye that the photons excite, if the path follows its light.
     pub excitation: Option<&'a Excitation<N, P>>,
 }
 
@@ -247,7 +247,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
     fn density<T, L>(&self, position: DVec3, photon: &StoredPhoton<T, L>) -> Option<f64> {
         let GatherPoint { world, path, at, .. } = self.around;
         let short = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
-        // Where a path looks for light at light vertices, those contribute what surfaces reflect to each other.
+        // Where a path looks for light at light vertices, those account for what surfaces scatter of the photon's
+        // light.
         let is_found = path.resampled && photon.is_resampled;
         if !short || is_found || photon.crosses != self.crosses || !self.continues(position, photon.flat, photon.front)
         {
@@ -274,8 +275,8 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         0.5 * (position - point.position).dot(normals).abs() <= STEP * self.radius
     }
 
-    /// Returns the visible part of the sum divided by the visible share of the disc, and how polarization may change
-    /// it.
+    /// Returns the visible part of the sum, divided by the visible share of the disc, and how much polarization may
+    /// change it.
     fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
         let GatherPoint { world, path, at, .. } = self.around;
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;

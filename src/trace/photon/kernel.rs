@@ -24,7 +24,7 @@ impl<const N: usize> Kernel<N> {
     /// Returns the kernel of a pass.
     ///
     /// If a stop rule takes more samples than the plan chose the radius for, the radius shrinks as it would for that
-    /// many. Bias and noise then vanish together, and the error becomes small enough (Knaus & Zwicker 2011,
+    /// many. Bias and noise then vanish together, and a small enough error is reached in the end (Knaus & Zwicker 2011,
     /// *Progressive Photon Mapping: A Probabilistic Approach*).
     pub fn of_pass(world: &World, pass: &Pass) -> Option<Self> {
         let radius = world.method.map()?.radius;

@@ -53,7 +53,7 @@ const LIGHT: u32 = 1;
 
 /// If light paths of skies through openings miss only a share of the light, camera paths that look for the rest
 /// continue with the probability sqrt(`SPIKES` * share), but at least `LEAST_ON`. What is found so rarely is about ten
-/// times as noisy as light vertices, and the noise for the time is least for the root of the ratio.
+/// times as noisy as what light vertices contribute, and the noise for the time is least for the root of the ratio.
 const SPIKES: f64 = 10.0;
 const LEAST_ON: f64 = 1.0 / 8.0;
 

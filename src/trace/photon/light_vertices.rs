@@ -58,7 +58,7 @@ const CANDIDATES: usize = ROWS * ROW;
 /// Cells of the Morton curve per D.
 const CELLS: f64 = 25.0;
 
-/// What the choice among some vertices needs of them; absent ones have no power.
+/// The data of some vertices that a choice among them needs; absent vertices have no power.
 #[derive(Clone, Debug)]
 struct Candidates {
     place: [OfCandidates; 3],
@@ -70,7 +70,8 @@ struct Candidates {
 /// A number for each candidate: for each place in a row, those of all rows side by side, which are summed at once.
 type OfCandidates = [[f32; ROWS]; ROW];
 
-/// Whether light between surfaces is looked for at vertices on this one: it is diffuse and shaded by its own normal.
+/// Whether light between surfaces is looked for at vertices on this surface. It must be diffuse and shaded by its own
+/// normal.
 pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
     matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }

@@ -30,7 +30,7 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub crosses: bool,
     /// Number of surfaces it hit, the last one included.
     pub surfaces: u32,
-    /// Whether light vertices contribute what surfaces reflect to each other of its light.
+    /// Whether light vertices account for what surfaces scatter of its light.
     pub is_resampled: bool,
     /// How its light is polarized.
     pub polarization: L,

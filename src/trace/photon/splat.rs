@@ -57,7 +57,7 @@ impl Splat {
 pub struct PlacedSplat {
     /// In pixels of the film.
     place: DVec2,
-    /// For a filter value of 1.
+    /// As weighted by a filter value of 1.
     splat: Splat,
 }
 

@@ -18,7 +18,7 @@ const SIDE: u32 = 48;
 /// Share of the way to a place that a bounce must travel to have reached what is there.
 const NEARLY: f64 = 0.9;
 /// Number of equally bright bounces that tell what lights a room. With fewer, or with nearly all light in as few, more
-/// rays search for openings, in pieces of work.
+/// rays search for openings, in at most `MOST_PIECES` pieces of work.
 const OFTEN: f64 = 32.0;
 const MOST_PIECES: usize = 64;
 /// Sets these random numbers apart from those of the image.

@@ -142,7 +142,8 @@ pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World,
     (world, photons)
 }
 
-/// Estimates how many photons `rays` rays can trace, from a few of them: in a heap of glass balls, each takes hundreds.
+/// Estimates how many photons can be traced with `rays` rays, from a few of them. In a heap of glass balls, each takes
+/// hundreds of rays.
 pub fn photons_within(world: &World, rays: f64) -> u64 {
     let [splatted, stored] = of_both(world, &|targets, follow| {
         let of_photon = |number: usize| {

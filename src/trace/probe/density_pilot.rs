@@ -88,7 +88,8 @@ struct CellNoise {
     rays: f64,
 }
 
-/// Looks at a few cells first, then at as many as the ray budget allows. `cells` returns the grid for a maximum number.
+/// Looks at a few cells first, then at as many as the ray budget allows. `cells` returns the numbers of columns and
+/// rows for at most a given number of cells.
 fn look<const N: usize, P: Polarization<N>>(
     world: &World,
     cells: &dyn Fn(f64) -> [u32; 2],

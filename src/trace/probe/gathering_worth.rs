@@ -67,7 +67,7 @@ impl Moments {
     }
 }
 
-/// A first photon map, and a world whose maps have at most enough photons.
+/// A first photon map, and a world whose maps have no more photons than enough.
 struct FirstMap<const N: usize> {
     enough: f64,
     /// Whether any photon lies within a coarse pixel of where paths lead.

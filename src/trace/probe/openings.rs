@@ -15,15 +15,16 @@ const RAYS: u32 = 1 << 14;
 const ENOUGH: usize = 64;
 /// Rounds of close looks. Each begins at what the one before has found, so that slits are found from end to end.
 const ROUNDS: usize = 4;
-/// How much larger than the rectangles found is the area that is then sampled uniformly.
+/// Factor by which the rectangles found are enlarged before they are sampled uniformly.
 const ABOUT: f64 = 1.5;
 /// Numbers of the first piece that looks closely, of the one that samples uniformly, and of the one that finds walls.
 const CLOSELY: usize = 1 << 16;
 const EVENLY: usize = CLOSELY + ROUNDS;
 const WALLS: usize = EVENLY + 1;
-/// Range of exponents of two, drawn uniformly, for the distance from a way out, in sizes of the room, of close looks.
+/// Close looks aim at a distance from a way out, in sizes of the room, whose exponent of two is drawn uniformly in this
+/// range.
 const BESIDE: [f64; 2] = [-14.0, -3.0];
-/// Squared distance, in squares of the room's size, below which places do not weigh less.
+/// Least weight of a place, in squares of the room's size: places nearer to a way out do not weigh less.
 const LEAST: f64 = 1.0 / (1 << 28) as f64;
 /// Factor by which an opening is enlarged: the part that was not found, hit only by chance, would be too bright.
 const MARGIN: f64 = 1.03;
@@ -86,7 +87,8 @@ impl OpeningSearch<'_> {
         found
     }
 
-    /// Returns where rays beside known ways out leave the room, weighted by squared distance: fewer fall farther away.
+    /// Returns where rays beside known ways out leave the room. They are weighted by the squared distance, since fewer
+    /// rays fall farther away.
     fn beside(&self, ways_out: &[DVec3], piece: usize) -> Vec<(DVec3, f64)> {
         let size = self.walls.size().length();
         let toward = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {

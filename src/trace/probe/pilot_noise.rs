@@ -133,7 +133,8 @@ fn weigh<const N: usize>(
 }
 
 impl PilotNoise {
-    /// Returns how many times as long other samples take to the same error, both with their best photons, if any noise.
+    /// Returns how many times as long other samples take to the same error, both with their best photons. Returns
+    /// `None` without noise.
     pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<Effort> {
         let mean = others.mean(photons);
         let least = |noise: &Self| noise.effort(photons, photons.len(), |_| 0.0, mean);

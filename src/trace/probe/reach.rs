@@ -9,7 +9,7 @@ use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image that find where the camera's paths lead.
 const SIDE: u32 = 24;
-/// Places that tell how far apart all of the places are.
+/// Number of places whose distance to their neighbors is computed.
 const FEW: usize = 256;
 /// Sets these random numbers apart from those of the image.
 const LOOKING: u64 = 0x6c6f_6f6b;
@@ -29,7 +29,7 @@ pub fn reaches_photons<const N: usize>(world: &World, places: &[DVec3], photons:
     places.iter().any(|&place| photons.count_near(place, coarse * pixel_at(world, place)) > 0)
 }
 
-/// Whether any photon lies as near to a place as the next place: paths may lead to more than the camera sees.
+/// Whether any photon lies closer to a place than neighboring places do: paths may lead to more than the camera sees.
 pub fn lie_among<const N: usize>(places: &[DVec3], photons: &PhotonMap<N>) -> bool {
     let apart = apart(places);
     places.iter().any(|&place| photons.count_near(place, apart) > 0)

@@ -1,4 +1,4 @@
-//! A room, known by the bounces that begin inside.
+//! A room, as known from the bounces that begin inside it.
 
 use super::clusters::bounds_of_most;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, cosine_about};
@@ -54,7 +54,8 @@ impl<'a> Room<'a> {
         is_inside(self.world, met.position, met.normal, sampler).then_some(met.position)
     }
 
-    /// Returns where a ray from the start of a bounce leaves a box around the room, if it ends in the sky or outside.
+    /// Returns where a ray from the start of a bounce leaves a box around the room, if it reaches the sky or a place
+    /// beyond the box that is not inside.
     pub fn way_out(&self, walls: &Bounds, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
         let ray = leaving(bounce, direction);
         let leaves = distance_out(walls, ray.origin, direction);

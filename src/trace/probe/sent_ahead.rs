@@ -11,12 +11,14 @@ use crate::trace::{LightPass, RAYS_OF_A_LOOK, World};
 
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6168_6561;
-/// One in `AHEAD` of a target's photons is sent ahead to learn which are seen: at most `ENOUGH`, none below `TOO_FEW`.
+/// One in `AHEAD` of a target's photons is sent ahead to learn which are seen: at most `ENOUGH`, and none if that is
+/// fewer than `TOO_FEW`, which tell too little.
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
-/// Most photons of all targets that the plan sends ahead, whatever the size of the image: to learn where to send the
-/// others, further limited to what the rays of a look trace unless that is too few, and to tell which are seen.
+/// Most photons of all targets that the plan sends ahead, whatever the size of the image. The first number is for
+/// learning where to send the others; it is also limited to what the rays of a look trace, unless that is too few. The
+/// second is for telling which photons are seen.
 const OF_A_PLAN: u64 = 1 << 16;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
 /// Most rays that a plan traces to learn where to send photons, and again to tell which are seen. A photon in a heap of
@@ -34,7 +36,7 @@ struct Learned {
 }
 
 impl Learned {
-    /// Estimates how many photons of each target `rays` rays can trace, from what these took.
+    /// Estimates how many photons of each target can be traced with `rays` rays, from what these took.
     fn each_within(&self, rays: f64) -> u64 {
         let sent = self.found.iter().map(Vec::len).sum::<usize>() as f64;
         (rays * sent / (self.rays as f64 * self.found.len() as f64)) as u64
@@ -95,7 +97,7 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
 }
 
 /// Returns a world with another light pass and photons sent ahead, for a plan. Their number does not grow with the
-/// image, and none are sent if too many rays were needed to learn enough.
+/// image, and none are sent if learning enough would take too many rays.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let world = world.with_light_pass(Some(light_pass));
     in_lanes!(&world.method.basis, N => guided::<N>(world))

@@ -22,7 +22,7 @@ const SUNS: usize = 4;
 const FEWEST: usize = 16;
 /// Points along each side of an opening.
 const POINTS: u32 = 16;
-/// How far before its end the ray to the sun starts, as a share of a bounce's length: it only guides.
+/// How far before the end of a bounce the ray to the sun starts, as a share of its length: it only guides.
 const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7375_6e73;
