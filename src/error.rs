@@ -6,13 +6,13 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A failure, as it is told to the person who ran the command.
+/// A failure, worded for the person who ran the command.
 #[derive(thiserror::Error)]
 pub enum Error {
-    /// The scene does not mean anything that could be rendered: its mistakes, in the order of the file.
+    /// The scene cannot be rendered as written. Lists its mistakes in the order of the file.
     #[error("{}", told(.0))]
     Scene(Vec<Diagnostic>),
-    /// Something impossible is asked for, as on a command line.
+    /// Something impossible was requested, for example on the command line.
     #[error("{message}")]
     Arguments {
         /// What is wrong.
@@ -23,14 +23,14 @@ pub enum Error {
     /// A file could not be read or written.
     #[error("cannot {doing} {}: {source}", .path.display())]
     Io {
-        /// "read", "write" and the like.
+        /// "read", "write" or a similar verb.
         doing: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// A file is not the image that it should be.
+    /// A file is not the image that was expected.
     #[error("cannot read {}: {message}", .path.display())]
     Decode {
         /// The file.
@@ -43,7 +43,7 @@ pub enum Error {
     Encode {
         /// The file.
         path: PathBuf,
-        /// What the encoder said.
+        /// The message of the encoder.
         message: String,
     },
 }
@@ -52,15 +52,15 @@ pub enum Error {
 pub type Result<T> = std::result::Result<T, Error>;
 
 impl Error {
-    /// A refusal of what is asked for, with what to do instead.
+    /// Refuses a request, with advice on what to do instead.
     ///
     /// # Errors
-    /// Always: it is [`Error::Arguments`].
+    /// Always returns [`Error::Arguments`].
     pub fn refuse<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T> {
         Err(Self::Arguments { message: message.into(), help: Some(help.into()) })
     }
 
-    /// The process exit code: 2 for a bad scene or bad arguments, 1 for everything else.
+    /// Returns the exit code of the process: 2 for a bad scene or bad arguments, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Arguments { .. } => 2,
@@ -69,7 +69,7 @@ impl Error {
     }
 }
 
-/// What a program says whose `main` answers it, and a test that takes it for none: the words, and what to do.
+/// What a program prints if its `main` returns this error, or a test that unwraps it: the message and the help.
 impl fmt::Debug for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -85,17 +85,17 @@ impl From<rayon::ThreadPoolBuildError> for Error {
     }
 }
 
-/// A mistake in a scene file, with the place where it stands.
+/// A mistake in a scene file, with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// The scene file as it was named.
+    /// The path of the scene file, as it was given.
     pub file: PathBuf,
-    /// Its text.
+    /// The text of the scene file.
     pub text: Arc<str>,
-    /// The bytes of the text that are wrong.
+    /// The byte range of the text that is wrong.
     pub span: Range<usize>,
-    /// The key that is wrong, as in `object[3].shape.sphere.radius`: of a scene that a program has built, which has no
-    /// lines.
+    /// The key that is wrong, such as `object[3].shape.sphere.radius`, if the scene was built by a program and so has
+    /// no lines.
     pub key: Option<String>,
     /// What is wrong.
     pub message: String,
@@ -104,8 +104,8 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Line and column of the mistake, counted from 1, the column in characters. Those of many mistakes are told by
-    /// [`Lines`].
+    /// Returns the line and column of the mistake, both counted from 1, the column in characters. For many mistakes,
+    /// [`Lines`] is faster.
     pub fn line_and_column(&self) -> (usize, usize) {
         Lines::default().place_of(self)
     }
@@ -129,18 +129,17 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// All mistakes, each in a line.
+/// Joins all mistakes, one per line.
 fn told(mistakes: &[Diagnostic]) -> String {
     let mut lines = Lines::default();
     mistakes.iter().map(|mistake| mistake.told_by(&mut lines)).collect::<Vec<_>>().join("\n")
 }
 
-/// Tells lines and columns of one mistake after another. In the order of their text, that takes the time of reading it
-/// once.
+/// Finds the line and column of one mistake after another. If they come in text order, the text is scanned only once.
 #[derive(Clone, Debug)]
 pub struct Lines {
     text: Arc<str>,
-    /// Bytes that were read, and the place behind them.
+    /// The number of bytes scanned so far, and the line and column behind them.
     read: usize,
     line: usize,
     column: usize,
@@ -153,7 +152,7 @@ impl Default for Lines {
 }
 
 impl Lines {
-    /// Line and column of a mistake, counted from 1, the column in characters.
+    /// Returns the line and column of a mistake, both counted from 1, the column in characters.
     pub fn place_of(&mut self, mistake: &Diagnostic) -> (usize, usize) {
         let at = mistake.span.start.min(mistake.text.len());
         if !Arc::ptr_eq(&self.text, &mistake.text) || at < self.read {
@@ -168,11 +167,12 @@ impl Lines {
     }
 }
 
-/// The candidate that a misspelt word most likely meant, if one is near enough.
+/// Returns the candidate that a misspelled word most likely meant, if one is close enough.
 ///
-/// Near: at most a third of its letters changed, or one where one of both has two letters and the other more, counting
-/// a swap of neighbors as one change; of equally near ones, the one made of the most of the same letters. One that has
-/// the word whole after a hyphen, as `N-BK7` has `BK7`, is nearer than one with a letter changed.
+/// A candidate is close enough if at most a third of its letters differ, where a swap of neighbors counts as one
+/// change. One change is always allowed if one of the two words has at least two letters and the other at least three.
+/// Among equally close candidates, the one that shares the most letters wins. A candidate that contains the whole word
+/// after a hyphen, as `N-BK7` contains `BK7`, is closer than one with a letter changed.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let length = lower.chars().count();
@@ -181,7 +181,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         let whole = length > 1 && candidate.split('-').skip(1).any(|part| part == lower);
         let other = candidate.chars().count();
         let most = (other / 3).max(usize::from(length.min(other) >= 2 && length.max(other) >= 3));
-        // Words of other lengths are that far apart at least.
+        // The edit distance is at least the difference in length.
         if !whole && length.abs_diff(other) > most {
             return None;
         }
@@ -192,14 +192,14 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     near.min_by_key(|(farness, _)| *farness).map(|(_, candidate)| candidate)
 }
 
-/// Whether a file's name ends in one of some ways.
+/// Returns whether the file name has one of the given extensions.
 pub(crate) fn ends_in(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
 }
 
-/// The file beside a missing one that was most likely meant, of those whose names end in one of some ways; of all if
-/// there are none.
+/// Returns the file next to a missing one that was most likely meant, among those with one of the given extensions, or
+/// among all files if no extensions are given.
 pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> {
     let folder = missing.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let ends = |path: &Path| endings.is_empty() || ends_in(path, endings);
@@ -207,7 +207,7 @@ pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> 
     let files = paths.filter(|path| ends(path) && path.is_file());
     let mut names: Vec<String> = files.filter_map(|path| path.file_name()?.to_str().map(str::to_owned)).collect();
     names.sort();
-    // A short name is no nearer to another for an ending that both have.
+    // An extension that both share must not make a short name look closer to another.
     let stem = |name: &str| Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default().to_owned();
     let missing_name = missing.file_name()?.to_str()?;
     let stems: Vec<String> = names.iter().map(|name| stem(name)).collect();
@@ -216,7 +216,7 @@ pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<PathBuf> 
     Some(missing.with_file_name(nearest(missing_name, of_stem()).or_else(|| of_stem().next())?))
 }
 
-/// The letters that only one of two words has.
+/// Counts the letters that only one of two words has.
 fn foreign_letters(a: &str, b: &str) -> usize {
     let mut rest: Vec<char> = b.chars().collect();
     let missing = a.chars().filter(|letter| {

@@ -21,10 +21,11 @@
 //! # Ok::<(), abbe::Error>(())
 //! ```
 //!
-//! [`Scene::read`] takes a scene file, [`Scene::from_table`] what a program has built. [`scene::Source`] puts other
-//! values into a scene, such as those of a frame or of a step of a sweep. [`Rendering`] says its plan and its progress.
-//! The rooms below are open as well: a plan without a render ([`plan::plan`]), a glass's index
-//! ([`spectrum::data::glass`]), one ray ([`Scene::intersect`]).
+//! [`Scene::read`] reads a scene file, and [`Scene::from_table`] takes a scene that a program has built.
+//! [`scene::Source`] overrides values of a scene, for example for each frame of an animation or each step of a sweep.
+//! [`Rendering`] gives access to the plan and the progress of a render. The modules below are public too, for example
+//! to plan without rendering ([`plan::plan`]), to look up the index of a glass ([`spectrum::data::glass`]) or to trace
+//! a single ray ([`Scene::intersect`]).
 //!
 //! ```text
 //! scene.toml -> Document -> Scene<Curve> -> Plan -> World -> PathTracer<N> over tiles, pass by pass -> Film -> EXR
@@ -38,7 +39,7 @@
 //! floor 0   math        points, directions, random numbers  |  error   what went wrong, where, and what to do
 //! ```
 //!
-//! A room uses only rooms on lower floors; `tests/floors.rs` holds it to that.
+//! The modules are called rooms. A room uses only rooms on lower floors; `tests/floors.rs` checks this.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]

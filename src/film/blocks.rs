@@ -1,14 +1,14 @@
-//! Files of blocks, each with a checksum: what is cut short or has changed on a disk is found before it is used.
+//! Files made of blocks with checksums, so that a truncated or altered file is detected before it is used.
 //!
 //! | bytes | what |
 //! |---|---|
-//! | 8 | what kind of file it is |
-//! | 8, 4, n | of each block: its length n, the CRC-32 of length and content, the content; numbers are little-endian |
+//! | 8 | the kind of the file |
+//! | 8, 4, n | per block: its length n, the CRC-32 of length and content, the content; numbers are little-endian |
 //! | 8, 4 | the end: a block of length 0 |
 //!
-//! Numbers in a block are written by `postcard`: those of floating point bit by bit, so that sums go on as they were.
-//! CRC-32 finds every change of up to 32 bits in a row (Koopman 2002, *32-Bit Cyclic Redundancy Codes for Internet
-//! Applications*).
+//! `postcard` encodes the numbers in a block. Floating-point numbers are stored bit by bit, so that sums continue
+//! exactly where they stopped. CRC-32 detects every error burst of up to 32 bits (Koopman 2002, *32-Bit Cyclic
+//! Redundancy Codes for Internet Applications*).
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -20,24 +20,24 @@ use serde::de::DeserializeOwned;
 use super::file::{cannot_read, cannot_write, replace_by};
 use crate::error::{Error, Result};
 
-/// The first bytes of a kind of file.
+/// The first bytes of a file, which identify its kind.
 pub type Kind = [u8; 8];
 
-/// Bytes of a length, and of a length and its checksum.
+/// The bytes of a block's length, and of its length and checksum.
 const LENGTH: usize = 8;
 const HEAD: usize = 12;
 
-/// Writes a file of blocks, one after another.
+/// Writes a file of blocks, one block after another.
 pub struct BlockWriter<'a> {
     to: &'a mut dyn Write,
-    /// The block in the making.
+    /// The block under construction.
     bytes: Vec<u8>,
 }
 
-/// Writes a file of blocks as a whole or not at all.
+/// Writes a file of blocks, either completely or not at all.
 ///
 /// # Errors
-/// If it cannot be written; a file that was there before is then untouched.
+/// If the file cannot be written. An existing file is then untouched.
 pub fn write_blocks(path: &Path, kind: Kind, write: &dyn Fn(&mut BlockWriter) -> io::Result<()>) -> Result<()> {
     let written = |to: &mut dyn Write| {
         to.write_all(&kind)?;
@@ -61,7 +61,7 @@ impl BlockWriter<'_> {
         self.put()
     }
 
-    /// Hands over the block in the making.
+    /// Writes out the block under construction.
     fn put(&mut self) -> io::Result<()> {
         let (head, content) = self.bytes.split_at_mut(HEAD);
         let length = (content.len() as u64).to_le_bytes();
@@ -80,22 +80,22 @@ fn checksum(length: [u8; LENGTH], content: &[u8]) -> u32 {
     hasher.finalize()
 }
 
-/// Reads a file of blocks, one after another.
+/// Reads a file of blocks, one block after another.
 pub struct BlockReader {
     path: PathBuf,
     file: BufReader<File>,
-    /// Bytes of the file that have been read, and those that have not.
+    /// The number of bytes of the file that have been read, and that are left.
     place: u64,
     left: u64,
 }
 
 impl BlockReader {
-    /// Opens a file; none if it is of another kind.
+    /// Opens a file, or returns none if it is of another kind.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// If the file cannot be read.
     pub fn open(path: &Path, kind: Kind) -> Result<Option<Self>> {
-        // To open a pipe would wait for whoever writes to it.
+        // Opening a pipe would block until somebody writes to it.
         let metadata = std::fs::metadata(path).map_err(|source| cannot_read(path, source))?;
         if !metadata.is_file() || metadata.len() < kind.len() as u64 {
             return Ok(None);
@@ -105,10 +105,10 @@ impl BlockReader {
         Ok((found == kind).then_some(blocks))
     }
 
-    /// Opens a file once more, at the [place](Self::place) where another reader left it.
+    /// Opens a file again, at the [place](Self::place) where another reader left it.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// If the file cannot be read.
     pub fn open_at(path: &Path, place: u64) -> Result<Self> {
         let opened = || {
             let mut file = File::open(path)?;
@@ -119,20 +119,20 @@ impl BlockReader {
         opened().map_err(|source| cannot_read(path, source))
     }
 
-    /// How many bytes of the file were read.
+    /// Returns the number of bytes read so far.
     pub fn place(&self) -> u64 {
         self.place
     }
 
-    /// The next block.
+    /// Reads the next block.
     ///
     /// # Errors
-    /// [`Error::Decode`] if it is not what was written, or something else was.
+    /// [`Error::Decode`] if the block is damaged, or holds something other than a `T`.
     pub fn block<T: DeserializeOwned>(&mut self) -> Result<T> {
         let bytes = self.content()?;
         match postcard::take_from_bytes(&bytes) {
             Ok((content, [])) => Ok(content),
-            // Its checksum is right.
+            // The checksum is right, so the content is undamaged.
             _ => {
                 let message = "it was written by another build of the renderer; read it with that one, or make it anew";
                 Err(Error::Decode { path: self.path.clone(), message: message.to_owned() })
@@ -140,10 +140,10 @@ impl BlockReader {
         }
     }
 
-    /// Makes sure that no block is left.
+    /// Checks that no block is left.
     ///
     /// # Errors
-    /// [`Error::Decode`] if one is, or the end is missing.
+    /// [`Error::Decode`] if a block is left, or the end is missing.
     pub fn end(mut self) -> Result<()> {
         if self.content()?.is_empty() && self.left == 0 { Ok(()) } else { Err(self.damaged()) }
     }
@@ -154,7 +154,7 @@ impl BlockReader {
         let length: [u8; LENGTH] = std::array::from_fn(|i| head[i]);
         let sum: [u8; HEAD - LENGTH] = std::array::from_fn(|i| head[LENGTH + i]);
         let bytes = u64::from_le_bytes(length);
-        // A length that was changed must not fill the memory.
+        // A corrupted length must not exhaust the memory.
         if bytes > self.left {
             return Err(self.damaged());
         }
@@ -173,7 +173,7 @@ impl BlockReader {
         self.file.read_exact(bytes).map_err(|source| cannot_read(&self.path, source))
     }
 
-    /// The error of a file that is not as it was written.
+    /// Returns the error for a file that is not as it was written.
     pub fn damaged(&self) -> Error {
         let message = "it is damaged or cut short; delete it and make it anew".to_owned();
         Error::Decode { path: self.path.clone(), message }

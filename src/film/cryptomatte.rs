@@ -1,26 +1,26 @@
-//! Mattes by name: which objects a pixel shows, and how much of each.
+//! Cryptomattes: which objects each pixel shows, and the coverage of each.
 //!
-//! Friedman & Jones 2015, *Fully automatic ID mattes with support for motion blur and transparency*; the layout is that
-//! of the Cryptomatte specification 1.2.0.
+//! Friedman & Jones 2015, *Fully automatic ID mattes with support for motion blur and transparency*. The layout follows
+//! the Cryptomatte specification 1.2.0.
 
 use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-/// Objects of a pixel that are told, two in each layer.
+/// The number of objects stored per pixel, two in each layer.
 pub const RANKS: usize = 6;
 
-/// The names behind the numbers of a matte.
+/// The manifest of a matte: its names and their IDs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// The name of the matte, with which its layers begin.
+    /// The name of the matte, with which the names of its layers begin.
     pub name: Cow<'static, str>,
-    /// Each name once, with its number.
+    /// Each name once, with its ID.
     pub entries: Vec<(String, u32)>,
 }
 
 impl Manifest {
-    /// Of names that may occur several times.
+    /// Creates a manifest from names that may occur several times.
     pub fn new<'a>(name: &'static str, names: impl Iterator<Item = &'a str>) -> Self {
         let mut entries: Vec<_> = names.map(|name| (name.to_owned(), id(name))).collect();
         entries.sort();
@@ -28,22 +28,22 @@ impl Manifest {
         Self { name: name.into(), entries }
     }
 
-    /// Seven hexadecimal digits that stand for the matte among the attributes of a file.
+    /// Returns the seven hexadecimal digits that identify the matte in the attributes of a file.
     pub fn key(&self) -> String {
         format!("{:08x}", hash(&self.name))[..7].to_owned()
     }
 
-    /// Names and numbers as a JSON object.
+    /// Returns the names and IDs as a JSON object.
     pub fn json(&self) -> String {
         let entries = self.entries.iter().map(|(name, id)| (name.clone(), format!("{id:08x}").into()));
         serde_json::Value::Object(entries.collect()).to_string()
     }
 }
 
-/// The number of a name, as the bits of a finite f32 that is not 0.
+/// Returns the ID of a name, whose bits are those of a finite f32 other than 0.
 pub fn id(name: &str) -> u32 {
     let hash = hash(name);
-    // Exponents of all zeros or ones would be denormal, infinite or no numbers.
+    // An exponent of all zeros or all ones would make a denormal, an infinity or a NaN.
     match hash >> 23 & 0xff {
         0 | 0xff => hash ^ 1 << 23,
         _ => hash,
@@ -58,7 +58,7 @@ fn hash(name: &str) -> u32 {
 mod tests {
     use super::*;
 
-    /// The values that the specification gives.
+    /// Checks the values given in the specification.
     #[test]
     fn names_have_the_numbers_of_the_specification() {
         assert_eq!((hash("torus"), id("torus")), (4_053_562_365, 0xf19c_73fd));

@@ -1,4 +1,4 @@
-//! The film as an OpenEXR file of scan lines; the same bytes for the same film.
+//! Writes the film as a scan-line OpenEXR file. The same film always gives the same bytes.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -19,53 +19,53 @@ use super::rows::Rows;
 use super::time::cap_date;
 use crate::error::Result;
 
-/// How the camera saw, as the file records it.
+/// The camera, as the file records it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CameraView {
     /// World to camera for row vectors, left-handed: +x right, +y up, +z forward (OpenEXR standard attributes).
     pub world_to_camera: [[f64; 4]; 4],
-    /// World to normalized device coordinates for row vectors: x and y are 0 at the top left corner of the full image,
-    /// 1 at the bottom right one; none of a view all around.
+    /// World to normalized device coordinates for row vectors: x and y are 0 at the top left corner of the full image
+    /// and 1 at the bottom right one. None for a view of the full sphere.
     pub world_to_ndc: Option<[[f64; 4]; 4]>,
-    /// Width of the image in the plane one unit before the camera.
+    /// The width of the image in the plane one unit in front of the camera.
     pub screen_window_width: f64,
-    /// The middle of the image there, to the right and up.
+    /// The center of the image in the plane one unit in front of the camera, measured to the right and up.
     pub screen_window_center: [f64; 2],
     /// Whether the image shows all directions by longitude and latitude.
     pub latlong: bool,
-    /// The lens and what is behind it.
+    /// The lens and the sensor.
     pub optics: Optics,
 }
 
-/// What a camera of glass and metal would say of itself, as far as the scene knows it (OpenEXR, *Standard Attributes*).
+/// Data that a real camera would record, as far as the scene defines it (OpenEXR, *Standard Attributes*).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Optics {
     /// Distance at which rays start, in scene units.
     pub near: Option<f64>,
     /// Width and height of the sensor, in mm.
     pub sensor: Option<[f64; 2]>,
-    /// Distance from the sensor to the pinhole, or to the middle of the lens, in mm.
+    /// Distance from the sensor to the pinhole, or to the center of the lens, in mm.
     pub pinhole_focal_length: Option<f64>,
     /// Focal length of the lens, in mm.
     pub focal_length: Option<f64>,
-    /// Focal length over the diameter of the opening.
+    /// Focal length divided by the diameter of the aperture.
     pub f_number: Option<f64>,
-    /// Distance from the lens to the plane in focus, in m; may be infinite.
+    /// Distance from the lens to the plane in focus, in m. May be infinite.
     pub focus: Option<f64>,
 }
 
-/// Where the image comes from: everything that another run needs to make the same bytes, and no time of day unless that
-/// is asked for.
+/// The origin of the image: everything that another run needs to reproduce the same bytes. The time of day is recorded
+/// only on request.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
-    /// Key and value of each attribute; keys are written below `render/`.
+    /// Key and value of each attribute. Keys are written with the prefix `render/`.
     pub facts: Vec<(Cow<'static, str>, Fact)>,
-    /// When the image was made.
+    /// The time at which the image was made.
     pub time: Option<SystemTime>,
 }
 
 impl Provenance {
-    /// The count of a key; none if it has none.
+    /// Returns the count stored under a key, or none if there is no such count.
     pub fn count(&self, key: &str) -> Option<u64> {
         self.facts.iter().find_map(|(known, fact)| match fact {
             Fact::Count(count) if known == key => Some(*count),
@@ -73,7 +73,7 @@ impl Provenance {
         })
     }
 
-    /// Sets the count of a key, if it has one.
+    /// Sets the count stored under a key, if the key exists.
     pub fn set_count(&mut self, key: &str, count: u64) {
         self.facts.iter_mut().filter(|(known, _)| known == key).for_each(|(_, fact)| *fact = Fact::Count(count));
     }
@@ -84,7 +84,7 @@ impl Provenance {
 pub enum Fact {
     /// A string attribute.
     Text(String),
-    /// An int attribute; one beyond 2^31 - 1 is written as a double.
+    /// An int attribute. A count beyond 2^31 - 1 is written as a double.
     Count(u64),
     /// A double attribute.
     Number(f64),
@@ -100,43 +100,44 @@ impl fmt::Display for Fact {
     }
 }
 
-/// What a file says of an image beside its pixels.
+/// Everything that a file records about an image besides its pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Heading<'a> {
-    /// The image, for its size, its layers and their names; its pixels are not looked at.
+    /// The image: only its size, its layers and their names are used, not its pixels.
     pub film: &'a Film,
-    /// How it is written.
+    /// The format of the file.
     pub format: &'a Format,
-    /// How the camera saw.
+    /// The camera.
     pub view: &'a CameraView,
-    /// Where it comes from.
+    /// The origin of the image.
     pub provenance: &'a Provenance,
 }
 
-/// Writes a linear image: R, G, B, A and Z, and the layers that it has beside them. Returns how many values were too
-/// large for the precision and became the largest that fits.
+/// Writes a linear image: R, G, B, A and Z, and its layers. Returns how many values exceeded the range of the precision
+/// and were clamped to the largest value that fits.
 ///
-/// What was made is the data window, the format the display window, which is also what the screen window spans:
-/// compositors lay a crop over the format at its place, and overscan around it. It takes as much memory as a few blocks
-/// of rows.
+/// The data window covers the rendered pixels. The display window covers the format, as does the screen window.
+/// Compositors therefore place a crop correctly within the format, and overscan around it. Writing needs memory for
+/// only a few blocks of rows.
 ///
 /// # Errors
-/// If rows cannot be read, or the file cannot be encoded or written; a file that was there before is then untouched.
+/// If rows cannot be read, or the file cannot be encoded or written. An existing file is then untouched.
 pub fn write_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<u64> {
     replace_by(path, |place| exr_blocks::write(&parts(heading), rows, place, path))
 }
 
-/// The bytes of such a file, and how many values were too large; `path` is what it is called in an error.
+/// Encodes the file that [`write_exr`] writes. Returns its bytes and how many values were clamped; `path` names the
+/// file in errors.
 ///
 /// # Errors
-/// If rows cannot be read, or it cannot be encoded.
+/// If rows cannot be read, or the file cannot be encoded.
 pub fn encode_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<(Vec<u8>, u64)> {
     let mut bytes = Cursor::new(Vec::new());
     let clamped = exr_blocks::write(&parts(heading), rows, &mut bytes, path)?;
     Ok((bytes.into_inner(), clamped))
 }
 
-/// The parts of the file: one, or one for the image and each layer if the format sets them apart.
+/// Returns the parts of the file: a single one, or one for the image and one for each layer if the format is multipart.
 fn parts(heading: Heading) -> Vec<ScanLinePart> {
     let Heading { film, format, .. } = heading;
     let half = format.precision == Precision::Half;
@@ -153,11 +154,11 @@ fn parts(heading: Heading) -> Vec<ScanLinePart> {
         }
     }
     if half {
-        // How many there are is known when the pixels are written.
+        // A placeholder: the count is known once the pixels are written.
         attributes.other.insert(Text::from(CLAMPED), AttributeValue::I32(0));
     }
     let mut shared = ImageAttributes::new(display_window(film));
-    // The chromaticities would be those of all parts, also of those that hold no colors.
+    // Chromaticities would apply to all parts, including those without colors.
     shared.chromaticities = (!format.multipart).then(|| chromaticities(film));
     let part = |(number, group): (usize, Group)| {
         let own = if number == 0 { attributes.clone() } else { of_other_part(film, &attributes, group.has_colors) };
@@ -168,23 +169,23 @@ fn parts(heading: Heading) -> Vec<ScanLinePart> {
     groups(film, format, half).into_iter().enumerate().map(part).collect()
 }
 
-/// Channels that stand in a part.
+/// The channels of one part.
 struct Group<'f> {
     name: &'f str,
-    /// Whether it holds what is no color, apart from the image.
+    /// Whether the part holds data other than colors, separate from the image.
     is_data: bool,
-    /// Whether it holds colors of the film's space.
+    /// Whether the part holds colors in the film's color space.
     has_colors: bool,
     columns: Vec<Column>,
 }
 
-/// The channels of all parts; those of colors have 16 bits if they shall.
+/// Groups the channels by part. Color channels have 16 bits if `half` is set.
 fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
     let mut image = vec![Column::new("A", half, Of::Alpha)];
     image.extend(colors(half));
     let mut groups = vec![Group { name: "image", is_data: false, has_colors: true, columns: image }];
     if format.multipart {
-        // Blender takes a part of R, G, B, A and another channel for none of what they are.
+        // Blender does not recognize R, G, B and A as a color if another channel shares their part.
         groups.push(Group { name: "depth", is_data: true, has_colors: false, columns: Vec::new() });
     }
     groups.last_mut().expect("the image comes first").columns.push(Column::new("Z", false, Of::Depth));
@@ -202,12 +203,12 @@ fn groups<'f>(film: &'f Film, format: &Format, half: bool) -> Vec<Group<'f>> {
     groups
 }
 
-/// Red, green and blue.
+/// Returns the columns of red, green and blue.
 pub(super) fn colors(is_half: bool) -> impl Iterator<Item = Column> {
     ["R", "G", "B"].into_iter().enumerate().map(move |(number, name)| Column::new(name, is_half, Of::Color(number)))
 }
 
-/// The full image.
+/// Returns the bounds of the full image.
 pub(super) fn display_window(film: &Film) -> IntegerBounds {
     IntegerBounds::from_dimensions((film.full[0] as usize, film.full[1] as usize))
 }
@@ -219,13 +220,13 @@ pub(super) fn chromaticities(film: &Film) -> Chromaticities {
     Chromaticities { red, green, blue, white }
 }
 
-/// Text of any language: the type is made for Latin-1, readers take the bytes for UTF-8.
+/// Converts text in any language. The type is meant for Latin-1, but readers interpret its bytes as UTF-8.
 fn utf8(text: &str) -> Text {
     Text::from_slice_unchecked(text.as_bytes())
 }
 
-/// The attributes of another part than the first: where it lies, how it was seen, and what its numbers are. All colors
-/// of a file are of one space.
+/// Returns the attributes of a part other than the first: its position, its view and the meaning of its numbers. All
+/// colors of a file share one color space.
 fn of_other_part(film: &Film, attributes: &LayerAttributes, has_colors: bool) -> LayerAttributes {
     let mut own = LayerAttributes {
         layer_position: attributes.layer_position,
@@ -238,7 +239,7 @@ fn of_other_part(film: &Film, attributes: &LayerAttributes, has_colors: bool) ->
     own
 }
 
-/// The attributes of the first part.
+/// Returns the attributes of the first part.
 pub(super) fn attributes(heading: Heading) -> LayerAttributes {
     let Heading { film, format, view, provenance } = heading;
     let mut attributes = LayerAttributes {
@@ -247,7 +248,7 @@ pub(super) fn attributes(heading: Heading) -> LayerAttributes {
         white_luminance: format.white_luminance.map(|luminance| luminance as f32),
         comments: format.comments.as_deref().map(utf8),
         frames_per_second: format.frames_per_second.map(|[frames, seconds]| (frames as i32, seconds)),
-        // Readers take the data window of an environment for the full sphere, which crops and overscan are not.
+        // Readers take an environment's data window for the full sphere, which crops and overscan are not.
         environment_map: (view.latlong && film.corner == [0, 0] && film.full == [film.width, film.height])
             .then_some(EnvironmentMap::LatitudeLongitude),
         layer_position: Vec2(film.corner[0], film.corner[1]),

@@ -1,4 +1,4 @@
-//! Attributes of OpenEXR files in words.
+//! Attributes of OpenEXR files, converted to text.
 
 use std::collections::HashMap;
 
@@ -7,23 +7,24 @@ use exr::prelude::{LayerAttributes, Text, Vec2};
 
 use crate::spectrum::Primaries;
 
-/// World to camera for row vectors, row by row.
+/// A world-to-camera matrix for row vectors, row by row.
 pub type CameraMatrix = [f32; 16];
 
-/// Bytes as a text: files are meant to hold UTF-8, and older ones hold Latin-1. Nothing in it can steer a terminal.
+/// Decodes text. Files should hold UTF-8, but older ones hold Latin-1. Control characters are replaced, so that the
+/// text cannot send commands to a terminal.
 pub(crate) fn text(text: &Text) -> String {
     let text = std::str::from_utf8(text.bytes()).map_or_else(|_| text.to_string(), str::to_owned);
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
-/// What red, green and blue mean.
+/// Converts chromaticities.
 pub(crate) fn primaries(found: Chromaticities) -> Primaries {
     let pair = |v: Vec2<f32>| [v.x().into(), v.y().into()];
     Primaries { red: pair(found.red), green: pair(found.green), blue: pair(found.blue), white: pair(found.white) }
 }
 
-/// The attributes of a part and those that all parts share, by their names in the file, in order. Those that say how
-/// pixels are stored, and the camera's matrix, are told elsewhere.
+/// Lists the attributes of a part and those shared by all parts, sorted by their names in the file. Omits the
+/// attributes that describe the pixel storage, and the camera matrix: these are reported separately.
 pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, AttributeValue>) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> =
         part.other.iter().chain(shared).map(|(key, value)| (text(key), words(value))).collect();
@@ -68,7 +69,7 @@ pub(super) fn attributes(part: &LayerAttributes, shared: &HashMap<Text, Attribut
         EnvironmentMap::Cube => "the six faces of a cube",
     });
     put("envmap", sphere.map(str::to_owned));
-    // What a file does not say is read as this.
+    // A missing attribute is read as the default value, which is not worth reporting.
     if part.screen_window_width != 1.0 || part.world_to_camera.is_some() {
         put("screenWindowWidth", Some(part.screen_window_width.to_string()));
     }

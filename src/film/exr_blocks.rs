@@ -1,4 +1,4 @@
-//! The pixels of an OpenEXR file, packed block by block on all threads and written as they come.
+//! The pixels of an OpenEXR file, compressed block by block on all threads and written as they come.
 
 use std::ops::Range;
 use std::path::Path;
@@ -21,26 +21,27 @@ use super::image::Film;
 use super::rows::Rows;
 use crate::error::{Error, Result};
 
-/// Level of deflate: the bytes of level 4 of the library for EXR, in half of the time (`benches/README.md`).
+/// The deflate level. Its files are as large as those of level 4 of the EXR library, in half of the time
+/// (`benches/README.md`).
 const LEVEL: i32 = 3;
-/// Blocks that each thread packs before all are written: they are all of the file that is in memory. Of lower blocks,
-/// as many as have the rows of these.
+/// The number of blocks that each thread compresses before all are written. Only these blocks are in memory. If blocks
+/// have fewer than [`BLOCK_ROWS`] rows, there are proportionally more of them.
 const BLOCKS_AT_A_TIME: usize = 4;
 const BLOCK_ROWS: usize = 16;
-/// Bytes of a place in the file.
+/// The bytes of an offset in the file.
 const OFFSET: usize = 8;
 
-/// How many values of 16 bits were too large for them.
+/// The attribute that counts the values that were clamped to the range of 16 bits.
 pub(super) const CLAMPED: &str = "render/clamped";
 
-/// A part of a file of scan lines: its channels by their names, and all it says beside their numbers.
+/// A part of a scan-line file: its channels in the order of their names, and its header.
 pub(super) struct ScanLinePart {
     columns: Vec<Column>,
     header: Header,
 }
 
 impl ScanLinePart {
-    /// With the pixels of a film.
+    /// Creates a part with the pixels of a film.
     pub(super) fn new(
         film: &Film,
         mut columns: Vec<Column>,
@@ -84,25 +85,25 @@ fn packing(compression: Compression) -> Packing {
         Compression::Zip => Packing::ZIP16,
         Compression::Piz => Packing::PIZ,
         Compression::Pxr24 => Packing::PXR24,
-        // The level is that of OpenEXR, 45; the attribute that could say another is deprecated.
+        // This uses OpenEXR's default level, 45. The attribute that could set another one is deprecated.
         Compression::Dwaa => Packing::DWAA(None),
         Compression::Dwab => Packing::DWAB(None),
     }
 }
 
-/// A block of rows of a part.
+/// A block of rows of one part.
 struct Block {
     part: usize,
     rows: Range<u32>,
 }
 
-/// Writes a file of scan lines from its beginning, and returns how many values were too large. Its bytes are the same
-/// for any number of threads, and for any number of rows that come at once.
+/// Writes a complete scan-line file, and returns how many values were clamped. Its bytes do not depend on the number of
+/// threads, nor on the number of rows supplied at a time.
 ///
-/// All parts go down the image side by side, so that no row is needed twice.
+/// All parts advance down the image together, so that each row is requested only once.
 ///
 /// # Errors
-/// If rows cannot be read, or the file cannot be encoded or written; `path` is what it is called then.
+/// If rows cannot be read, or the file cannot be encoded or written; `path` names the file in errors.
 pub(super) fn write(parts: &[ScanLinePart], rows: &mut dyn Rows, place: &mut dyn Place, path: &Path) -> Result<u64> {
     let encode = |error: exr::error::Error| Error::Encode { path: path.to_owned(), message: error.to_string() };
     let failed = |source| cannot_write(path, source);
@@ -140,12 +141,12 @@ pub(super) fn write(parts: &[ScanLinePart], rows: &mut dyn Rows, place: &mut dyn
     Ok(clamped)
 }
 
-/// Rows of the tallest block; those of all packings are powers of two.
+/// Returns the number of rows of the tallest block. For every compression it is a power of two.
 fn tallest_block(parts: &[ScanLinePart]) -> u32 {
     parts.iter().map(ScanLinePart::block_rows).max().unwrap_or(1)
 }
 
-/// Rows that are worked on at once: at most so many, but as many as the tallest block has.
+/// Splits the image into strips of at most `at_once` rows, but at least as many as the tallest block has.
 fn strips(parts: &[ScanLinePart], at_once: Option<u32>) -> impl Iterator<Item = Range<u32>> + use<> {
     let height = parts.iter().map(|part| part.header.layer_size.height() as u32).max().unwrap_or_default();
     let tallest = tallest_block(parts);
@@ -153,7 +154,7 @@ fn strips(parts: &[ScanLinePart], at_once: Option<u32>) -> impl Iterator<Item = 
     (0..height).step_by(each as usize).map(move |first| first..height.min(first.saturating_add(each)))
 }
 
-/// The blocks of some rows, from the top; those that begin together in the order of their parts.
+/// Lists the blocks of a strip from the top. Blocks that start at the same row follow the order of their parts.
 fn blocks(parts: &[ScanLinePart], strip: &Range<u32>) -> Vec<Block> {
     let end = strip.end;
     let of_part = |(number, part): (usize, &ScanLinePart)| {
@@ -166,13 +167,13 @@ fn blocks(parts: &[ScanLinePart], strip: &Range<u32>) -> Vec<Block> {
     blocks
 }
 
-/// A block as it stands in the file, and how many of its values were too large.
+/// A block as it is stored in the file, and how many of its values were clamped.
 struct Packed {
     chunk: Chunk,
     clamped: u64,
 }
 
-/// Packs a block of pixels of a film, the first of which has a number.
+/// Compresses a block of pixels of a film, starting at pixel number `first`.
 fn pack(
     parts: &[ScanLinePart],
     headers: &[Header],
@@ -194,7 +195,8 @@ fn pack(
     Ok(Packed { chunk: chunk(headers, UncompressedBlock { index, data })?, clamped })
 }
 
-/// A block as it stands in the file: the library's own but for deflate, of which its own takes twice as long.
+/// Encodes a block as it is stored in the file. Leaves this to the library except for deflate, where the library takes
+/// twice as long.
 fn chunk(headers: &[Header], block: UncompressedBlock) -> exr::error::Result<Chunk> {
     let header = &headers[block.index.layer];
     let is_deflate = matches!(header.compression, Packing::ZIP1 | Packing::ZIP16);
@@ -207,9 +209,10 @@ fn chunk(headers: &[Header], block: UncompressedBlock) -> exr::error::Result<Chu
     Ok(Chunk { layer_index: block.index.layer, compressed_block })
 }
 
-/// Bytes as ZIP of OpenEXR packs them: every second one apart, each as the difference to the one before plus 128, by
-/// zlib; as they are, if that makes them no fewer, by which readers tell the two apart (OpenEXR, *File Layout*; Kainz &
-/// Bogart, *Technical Introduction to OpenEXR*, "Data Compression").
+/// Compresses bytes like ZIP of OpenEXR: separates even and odd bytes, replaces each by its difference from the
+/// previous one plus 128, and applies zlib. Returns the bytes unchanged if this does not shrink them; readers recognize
+/// that by the length (OpenEXR, *File Layout*; Kainz & Bogart, *Technical Introduction to OpenEXR*, "Data
+/// Compression").
 fn deflated(bytes: Vec<u8>) -> Vec<u8> {
     let mut apart: Vec<u8> = Vec::with_capacity(bytes.len());
     apart.extend(bytes.iter().step_by(2));
@@ -235,7 +238,7 @@ mod tests {
     use super::*;
     use zlib_rs::{InflateConfig, decompress_slice};
 
-    /// The way back, as the file's description has it.
+    /// Decompresses bytes, following the description of the file layout.
     fn inflated(packed: &[u8], length: usize) -> Vec<u8> {
         let mut apart = vec![0; length];
         let (read, code) = decompress_slice(&mut apart, packed, InflateConfig::default());
@@ -255,7 +258,7 @@ mod tests {
             assert!(packed.len() < length || (packed == smooth && length < 20), "{length}");
             assert!(packed == smooth || inflated(&packed, length) == smooth, "{length}");
         }
-        // Nothing packs a hash.
+        // Random bytes cannot be compressed.
         let mut state = 1_u64;
         let mut random = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

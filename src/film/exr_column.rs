@@ -1,30 +1,30 @@
-//! The numbers of each pixel that an OpenEXR file holds.
+//! The values that an OpenEXR file holds for each pixel.
 
 use exr::prelude::{Text, f16};
 
 use super::image::Film;
 
-/// A channel: its name, and which number of a pixel it holds.
+/// A channel: its name, and the value of the pixel that it holds.
 pub(super) struct Column {
     pub(super) name: Text,
-    /// Whether it has 16 bits, not 32.
+    /// Whether the channel has 16 bits instead of 32.
     pub(super) is_half: bool,
     pub(super) of: Of,
 }
 
-/// A number of a pixel.
+/// A value of a pixel.
 #[derive(Clone, Copy)]
 pub(super) enum Of {
     Alpha,
-    /// Red, green or blue, by its number.
+    /// Red, green or blue, by index.
     Color(usize),
     Depth,
-    /// A layer and one of its channels, by their numbers.
+    /// A layer and one of its channels, by index.
     Layer {
         layer: usize,
         channel: usize,
     },
-    /// A Stokes component of a spectral band, by their numbers.
+    /// A Stokes component of a spectral band, by index.
     Band {
         component: usize,
         band: usize,
@@ -36,8 +36,8 @@ impl Column {
         Self { name: Text::new_or_panic(name), is_half, of }
     }
 
-    /// Adds the bytes of `pixels` pixels from number `first` on. Returns how many values were too large for 16 bits and
-    /// became the largest that fits.
+    /// Appends the bytes of `pixels` pixels, starting at number `first`. Returns how many values exceeded the range of
+    /// 16 bits and were clamped.
     pub(super) fn put(&self, film: &Film, first: usize, pixels: usize, bytes: &mut Vec<u8>) -> u64 {
         let all = &film.pixels[first..first + pixels];
         match self.of {
@@ -68,7 +68,7 @@ impl Column {
     }
 }
 
-/// A value in 16 bits; one that does not fit is counted, and becomes the largest that does.
+/// Converts a value to 16 bits. A value out of range is counted, and clamped to the largest finite one.
 fn half(value: f32, clamped: &mut u64) -> f16 {
     let half = f16::from_f32(value);
     if half.is_finite() {

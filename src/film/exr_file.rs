@@ -1,4 +1,4 @@
-//! OpenEXR files of any program, read whole.
+//! Reads complete OpenEXR files, written by any program.
 
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -20,10 +20,10 @@ use super::guard::{MOST_PIXELS, claims_fit, fits, guarded, too_large};
 use crate::error::{Error, Result, ends_in, nearest, nearest_file};
 use crate::spectrum::Primaries;
 
-/// Most bytes of a file: 4 GiB.
+/// The largest file size that is read: 4 GiB.
 const MOST_BYTES: u64 = 1 << 32;
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// How files of pictures begin that are no OpenEXR files.
+/// The signatures of other image formats.
 const PICTURES: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JPEG"), (b"#?", "Radiance picture")];
 
 /// An OpenEXR file, with all its parts.
@@ -31,30 +31,31 @@ const PICTURES: [(&[u8], &str); 3] = [(b"\x89PNG", "PNG"), (b"\xff\xd8\xff", "JP
 pub struct ExrFile {
     /// Size of the file in bytes.
     pub length: usize,
-    /// The display window: the full image, of which a part may hold less or more.
+    /// The display window: the full image. The data window of a part may be smaller or larger.
     pub display: PixelBounds,
     /// Width of a pixel divided by its height.
     pub pixel_aspect: f32,
-    /// What red, green and blue mean, if it says so by numbers.
+    /// The chromaticities of red, green and blue, if the file specifies them numerically.
     pub chromaticities: Option<Primaries>,
-    /// In the order of the file.
+    /// The parts in the order of the file.
     pub parts: Vec<Part>,
 }
 
 impl ExrFile {
-    /// Reads a file with all its parts and channels; of several resolutions the largest.
+    /// Reads a file with all its parts and channels. Of several resolution levels, reads the largest.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there is no such file, [`Error::Decode`] if it is no OpenEXR file, not complete, or of a
-    /// kind that cannot be read.
+    /// [`Error::Arguments`] if the file does not exist or is clearly something else, such as a scene or a PNG;
+    /// [`Error::Decode`] if it is no OpenEXR file, incomplete, or of an unsupported kind; [`Error::Io`] if reading
+    /// fails.
     pub fn read(path: &Path) -> Result<Self> {
         Self::of_bytes(&bytes(path)?, path)
     }
 
-    /// Reads the bytes of a file; `path` is its name in error messages.
+    /// Decodes the bytes of a file; `path` is its name in error messages.
     ///
     /// # Errors
-    /// [`Error::Decode`] as of a file.
+    /// [`Error::Decode`] if they are no OpenEXR file, incomplete, or of an unsupported kind.
     pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Self> {
         match guarded(|| Ok::<_, String>(Self::decode(bytes))) {
             Ok(Ok(file)) => Ok(file),
@@ -90,11 +91,11 @@ impl ExrFile {
         Ok(Self::of_headers(&headers, values, bytes.len()))
     }
 
-    /// All that a file of a kind which is not read says before its pixels, and why they are not: its channels have no
-    /// values. None of any other file.
+    /// Reads the headers of a file of an unsupported kind, and returns them with the reason why its pixels are not
+    /// read. The channels have no values. Returns none for a supported file.
     ///
     /// # Errors
-    /// As of [`read`](Self::read).
+    /// Those of [`read`](Self::read).
     pub fn outline(path: &Path) -> Result<Option<(Self, String)>> {
         let bytes = bytes(path)?;
         let described = guarded(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));
@@ -109,7 +110,7 @@ impl ExrFile {
         Ok(Some((Self::of_headers(&headers, values, bytes.len()), why)))
     }
 
-    /// Of what describes its parts, and the values of all channels of each.
+    /// Assembles a file from the headers of its parts and the values of all their channels.
     fn of_headers(headers: &[Header], values: impl Iterator<Item = Vec<FlatSamples>>, length: usize) -> Self {
         let (shared, mut taken) = (&headers[0].shared_attributes, BTreeSet::new());
         let parts = headers.iter().zip(values).map(|(header, values)| {
@@ -133,12 +134,12 @@ impl ExrFile {
         }
     }
 
-    /// A file with some of its pixels alone, of the parts that have all of these.
+    /// Crops the file to some of its pixels. Keeps only the parts that have all of these.
     pub(crate) fn cut(&self, bounds: PixelBounds) -> Self {
         Self { parts: self.parts.iter().filter_map(|part| part.cut(bounds)).collect(), ..*self }
     }
 
-    /// Its layers, the beauty of a part before the others.
+    /// Lists the layers. The beauty of a part comes before its other layers.
     pub fn layers(&self) -> Vec<ExrLayer<'_>> {
         let mut layers = Vec::new();
         for part in &self.parts {
@@ -152,7 +153,7 @@ impl ExrFile {
             let found = of_letters(["R", "G", "B", "A"]).or_else(|| of_letters(["r", "g", "b", "a"]));
             let (beauty, mut alone) = found.map_or((None, at_root.clone()), |(beauty, alone)| (Some(beauty), alone));
             layers.extend(beauty);
-            // What an alpha belongs to comes before it.
+            // Alpha comes after the channels that it belongs to.
             alone.sort_by_key(|channel| channel.name == "A");
             layers.extend(alone.into_iter().map(|channel| ExrLayer::new(&channel.name, part, vec![channel])));
             let mut names: Vec<&str> = part.channels.iter().map(|channel| channel.layer.as_str()).collect();
@@ -166,12 +167,12 @@ impl ExrFile {
         layers
     }
 
-    /// The layer of a name, or the channel of a full name, or the band of a spectrum around a wavelength, such as
-    /// `550nm` or `S1.550nm`, as a layer of its own; without a name the beauty, or else the first layer. `shown` is the
-    /// file's name in messages.
+    /// Finds a layer by its name, a channel by its full name, or the spectral band around a wavelength, such as `550nm`
+    /// or `S1.550nm`. A channel or band is returned as a layer of its own. Without a name, returns the beauty, or the
+    /// first layer if there is none. `shown` is the file's name in messages.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there is none, with the nearest name and those that there are.
+    /// [`Error::Arguments`] if there is no such layer. It suggests the closest name and lists all names.
     pub fn layer(&self, wanted: Option<&str>, shown: &str) -> Result<ExrLayer<'_>> {
         let mut layers = self.layers();
         if layers.is_empty() {
@@ -193,7 +194,7 @@ impl ExrFile {
         self.band(wanted).ok_or_else(|| self.no_layer(wanted, shown, &[]))
     }
 
-    /// The band of a spectrum in which a wavelength lies, such as `550nm`; of the first spectrum if none is named.
+    /// Finds the spectral band that contains a wavelength such as `550nm`, in the named spectrum or else the first one.
     fn band(&self, wanted: &str) -> Option<ExrLayer<'_>> {
         let wanted = wanted.strip_suffix("nm")?.trim().replace(',', ".");
         let (spectrum, nm) = match wanted.parse::<f64>() {
@@ -211,8 +212,8 @@ impl ExrFile {
         (2.0 * off(centers[at]) <= step).then(|| ExrLayer::new(&band.full_name(), layer.part, vec![band]))
     }
 
-    /// The message on a layer that is not there: the nearest name and those that there are, of layers and of what else
-    /// may be named, such as mattes.
+    /// Returns the error for a missing layer. It suggests the closest name and lists all layers, and `others` that may
+    /// be named as well, such as mattes.
     pub fn no_layer(&self, wanted: &str, shown: &str, others: &[&str]) -> Error {
         let layers = self.layers();
         let names: Vec<&str> = layers.iter().map(|layer| layer.name.as_str()).chain(others.iter().copied()).collect();
@@ -223,14 +224,14 @@ impl ExrFile {
         Error::Arguments { message: format!("{shown} has no layer {wanted}"), help: Some(help) }
     }
 
-    /// The value of an attribute in the first part that has it.
+    /// Returns the value of an attribute in the first part that has it.
     pub fn attribute(&self, name: &str) -> Option<&str> {
         let all = self.parts.iter().flat_map(|part| &part.attributes);
         all.into_iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
     }
 }
 
-/// The layer that other renderers have by this name.
+/// Returns the name used here for a layer that other renderers call `name`.
 fn called_elsewhere(name: &str) -> Option<&'static str> {
     match name.to_lowercase().as_str() {
         "depth" => Some("Z"),
@@ -241,7 +242,7 @@ fn called_elsewhere(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The file's bytes, if it begins as an OpenEXR file does.
+/// Reads the bytes of a file, if it begins like an OpenEXR file.
 fn bytes(path: &Path) -> Result<Vec<u8>> {
     let (shown, an_image) = (path.display(), "an image is an OpenEXR file, such as prism.exr");
     let mut start = Vec::new();
@@ -282,7 +283,7 @@ fn decode_error(path: &Path, said: &str) -> Error {
     Error::Decode { path: path.to_owned(), message: format!("it is no complete OpenEXR image ({said})") }
 }
 
-/// Why the pixels of a file are not read, if they are not.
+/// Returns why the pixels of a file are not read, if that is so.
 fn unread(headers: &[Header]) -> Option<String> {
     let of_part = |header: &Header| match header {
         Header { deep: true, .. } => Some("a deep image, which has many values to a pixel".into()),
@@ -294,7 +295,7 @@ fn unread(headers: &[Header]) -> Option<String> {
     headers.iter().find_map(of_part)
 }
 
-/// The channels of a part. Where an earlier part has one of the same name, the part's name tells them apart.
+/// Returns the channels of a part. If an earlier part has a channel of the same name, prefixes the part's name.
 fn channels(
     header: &Header,
     values: Vec<FlatSamples>,

@@ -1,4 +1,4 @@
-//! What stands in an OpenEXR file before its pixels; the same bytes for the same attributes.
+//! The headers of an OpenEXR file. The same attributes always give the same bytes.
 
 use std::io::Cursor;
 use std::ops::Range;
@@ -6,20 +6,20 @@ use std::ops::Range;
 use exr::error::{Error, Result};
 use exr::meta::header::Header;
 
-/// Magic number and version, before the first attribute.
+/// The bytes of the magic number and version, before the first attribute.
 const START: usize = 8;
-/// The bit of files of several parts in the second byte of the version.
+/// The bit for multipart files, in the second byte of the version.
 const SEVERAL_PARTS: u8 = 0x10;
 
-/// The bytes up to the table of the blocks' places, with the attributes of each part in alphabetical order.
+/// Encodes everything up to the table of block offsets, with the attributes of each part in alphabetical order.
 ///
-/// The library keeps them in a hash map, whose order changes from run to run.
+/// The library keeps attributes in a hash map, whose order changes from run to run.
 ///
 /// # Errors
 /// If the library finds that not every program could read the file.
 pub(super) fn encode(headers: &[Header]) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
-    // The library writes what stands before the blocks, and then asks for these.
+    // The library writes the headers, and then requests the blocks.
     match exr::block::write(&mut bytes, headers.iter().cloned().collect(), true, |_, _| Err(Error::Aborted)) {
         Ok(()) | Err(Error::Aborted) => {}
         Err(error) => return Err(error),
@@ -38,7 +38,7 @@ pub(super) fn encode(headers: &[Header]) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Sets an int attribute of the first part, if that has it; counts beyond 2^31 - 1 become that.
+/// Sets an int attribute of the first part, if it exists. Counts beyond 2^31 - 1 are clamped to that.
 pub(super) fn set_count(head: &mut [u8], name: &str, count: u64) {
     let named = [name.as_bytes(), b"\0int\0"].concat();
     let of_parts = attributes(head).of_parts;
@@ -50,11 +50,11 @@ pub(super) fn set_count(head: &mut [u8], name: &str, count: u64) {
     }
 }
 
-/// Where the attributes stand.
+/// The positions of the attributes.
 struct Attributes {
-    /// The bytes of each attribute, part by part.
+    /// The byte range of each attribute, part by part.
     of_parts: Vec<Vec<Range<usize>>>,
-    /// Where the last part's end.
+    /// The end of the last part's header.
     end: usize,
 }
 
@@ -72,7 +72,7 @@ fn attributes(file: &[u8]) -> Attributes {
             at = end;
         }
         at += 1;
-        // The list of several parts ends with an empty one.
+        // The list of headers of a multipart file ends with an empty header.
         if several && entries.is_empty() {
             return Attributes { of_parts, end: at };
         }

@@ -4,12 +4,12 @@ use exr::prelude::{FlatSamples, Vec2};
 
 use super::exr_attributes::CameraMatrix;
 
-/// A rectangle of pixels, y down; it may begin left of column 0 or above row 0.
+/// A rectangle of pixels, y down. It may begin left of column 0 or above row 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelBounds {
-    /// Its first column and row.
+    /// The first column and row.
     pub corner: [i64; 2],
-    /// Columns and rows.
+    /// The number of columns and rows.
     pub size: [usize; 2],
 }
 
@@ -18,23 +18,23 @@ impl PixelBounds {
         Self { corner: [position.x().into(), position.y().into()], size: [size.width(), size.height()] }
     }
 
-    /// The column and row of a pixel by its number, counted row by row from the top left.
+    /// Returns the column and row of a pixel, given its index, counted row by row from the top left.
     pub fn place(&self, index: usize) -> [i64; 2] {
         [self.corner[0] + (index % self.size[0]) as i64, self.corner[1] + (index / self.size[0]) as i64]
     }
 
-    /// The number of a pixel by its column and row.
+    /// Returns the index of a pixel, given its column and row.
     pub(crate) fn index(&self, [x, y]: [i64; 2]) -> usize {
         let [column, row] = [(x - self.corner[0]) as usize, (y - self.corner[1]) as usize];
         row * self.size[0] + column
     }
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     pub(crate) fn pixels(&self) -> usize {
         self.size[0] * self.size[1]
     }
 
-    /// The pixels that another one holds as well, if there are any.
+    /// Returns the intersection with another rectangle, if it is not empty.
     pub fn common(&self, other: &Self) -> Option<Self> {
         let corner = [0, 1].map(|axis| self.corner[axis].max(other.corner[axis]));
         let [ends, others] = [self, other].map(Self::last);
@@ -42,31 +42,31 @@ impl PixelBounds {
         size.iter().all(|&size| size > 0).then(|| Self { corner, size: size.map(|size| size as usize) })
     }
 
-    /// The last column and row.
+    /// Returns the last column and row.
     pub fn last(&self) -> [i64; 2] {
         [0, 1].map(|axis| self.corner[axis] + self.size[axis] as i64 - 1)
     }
 }
 
-/// One image of a file, with channels of its own.
+/// One image of a file, with its own channels.
 #[derive(Debug)]
 pub struct Part {
-    /// Its name, which files of several parts give.
+    /// The name of the part, which multipart files specify.
     pub name: Option<String>,
-    /// The data window: the pixels that are there.
+    /// The data window: the pixels that are present.
     pub bounds: PixelBounds,
-    /// How its pixels are packed, such as `zip, scan lines`.
+    /// How the pixels are stored, such as `zip, scan lines from the top`.
     pub storage: String,
-    /// The other attributes by their names in the file, in their order, as words.
+    /// The other attributes as text, sorted by their names in the file.
     pub attributes: Vec<(String, String)>,
-    /// World to camera, if it is told.
+    /// The world-to-camera matrix, if the file has one.
     pub camera: Option<CameraMatrix>,
-    /// In the order of the file.
+    /// The channels in the order of the file.
     pub channels: Vec<Channel>,
 }
 
 impl Part {
-    /// The part cut to some of its pixels; none if it does not have all of them.
+    /// Crops the part to some of its pixels. Returns none if the part does not have all of them.
     pub(super) fn cut(&self, bounds: PixelBounds) -> Option<Self> {
         let [left, top] = [0, 1].map(|axis| (bounds.corner[axis] - self.bounds.corner[axis]) as usize);
         let row = |y: usize| {
@@ -87,25 +87,25 @@ impl Part {
     }
 }
 
-/// One number of every pixel.
+/// One value per pixel.
 #[derive(Debug)]
 pub struct Channel {
-    /// What stands before the last dot of its name; empty at the root.
+    /// The prefix before the last dot of the full name. Empty at the root.
     pub layer: String,
-    /// What stands behind it, such as R.
+    /// The rest of the name behind the dot, such as R.
     pub name: String,
-    /// How many columns and rows of pixels share a value; 1 and 1 where values are read.
+    /// How many columns and rows of pixels share a value. Always 1 and 1 where values are read.
     pub sampling: [usize; 2],
     pub(super) samples: FlatSamples,
 }
 
 impl Channel {
-    /// One at the root that is in no file.
+    /// Creates a channel at the root that comes from no file.
     pub(crate) fn of_values(name: &str, values: Vec<f32>) -> Self {
         Self { layer: String::new(), name: name.to_owned(), sampling: [1, 1], samples: FlatSamples::F32(values) }
     }
 
-    /// Layer and name, as the file has them.
+    /// Returns the full name with the layer, as in the file.
     pub fn full_name(&self) -> String {
         if self.layer.is_empty() { self.name.clone() } else { format!("{}.{}", self.layer, self.name) }
     }
@@ -119,7 +119,7 @@ impl Channel {
         Self { layer: self.layer.clone(), name: self.name.clone(), sampling: self.sampling, samples }
     }
 
-    /// `half`, `float` or `uint`.
+    /// Returns `half`, `float` or `uint`.
     pub fn kind(&self) -> &'static str {
         match self.samples {
             FlatSamples::F16(_) => "half",
@@ -128,7 +128,7 @@ impl Channel {
         }
     }
 
-    /// The value of a pixel, counted row by row from the top left of the data window.
+    /// Returns the value of a pixel, counted row by row from the top left of the data window.
     ///
     /// # Panics
     /// If there is no such pixel.
@@ -140,12 +140,12 @@ impl Channel {
         }
     }
 
-    /// All values, row by row from the top left of the data window.
+    /// Returns all values, row by row from the top left of the data window.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         (0..self.samples.len()).map(|index| self.at(index))
     }
 
-    /// What can be said of all values at once.
+    /// Computes statistics over all values.
     pub fn statistics(&self) -> Statistics {
         let mut found =
             Statistics { nan: 0, infinite: 0, finite: 0, min: f64::INFINITY, max: f64::NEG_INFINITY, mean: 0.0 };
@@ -165,19 +165,19 @@ impl Channel {
     }
 }
 
-/// How many values of a channel there are, and how large the finite ones.
+/// Statistics of the values of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Values that are no numbers.
+    /// The number of NaN values.
     pub nan: usize,
-    /// Values that are infinite, of either sign.
+    /// The number of infinite values of either sign.
     pub infinite: usize,
-    /// The others, over which the rest is taken.
+    /// The number of finite values. The other statistics refer to these.
     pub finite: usize,
-    /// The least; infinity where none is finite.
+    /// The minimum, or infinity if no value is finite.
     pub min: f64,
-    /// The largest; minus infinity where none is finite.
+    /// The maximum, or minus infinity if no value is finite.
     pub max: f64,
-    /// Their mean; 0 where none is finite.
+    /// The mean, or 0 if no value is finite.
     pub mean: f64,
 }

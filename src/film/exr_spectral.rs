@@ -13,16 +13,17 @@ use super::format::Compression;
 use super::rows::Rows;
 use crate::error::Result;
 
-/// Writes the spectra of an image: a channel `S0.380,000000nm` and so on for each band, with its center in nm and a
-/// decimal comma, and R, G and B for looking. Where Stokes vectors are asked for, S1, S2 and S3 are beside S0. Nothing
-/// is written of an image without spectra.
+/// Writes the spectra of an image. Each band has a channel such as `S0.380,000000nm`, named after its center in nm with
+/// a decimal comma. R, G and B are added for viewing. If Stokes vectors are requested, S1, S2 and S3 follow S0. Writes
+/// nothing for an image without spectra.
 ///
-/// Numbers are radiance in W m^-2 sr^-1 nm^-1 where the scene's light is absolute, or given in that unit; each is the
-/// mean over its band. Programs that know the layout take it for the radiance at the center, and `emissiveUnits` for a
-/// mere name: that attribute holds the text that they expect, and `render/spectralUnits` the unit.
+/// Values are radiance in W m^-2 sr^-1 nm^-1 if the scene's light is absolute, or given in that unit. Each is the mean
+/// over its band, although programs that know the layout take it for the radiance at the center. They treat
+/// `emissiveUnits` as a mere name, so that attribute holds the text that they expect. The actual unit is in
+/// `render/spectralUnits`.
 ///
 /// # Errors
-/// If rows cannot be read, or the file cannot be encoded or written; a file that was there before is then untouched.
+/// If rows cannot be read, or the file cannot be encoded or written. An existing file is then untouched.
 pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) -> Result<()> {
     let film = heading.film;
     let Some(spectral) = &film.spectral else { return Ok(()) };
@@ -44,7 +45,7 @@ pub fn write_spectral_exr(heading: Heading, rows: &mut dyn Rows, path: &Path) ->
         attributes.other.insert(Text::from(key), value);
     }
     if spectral.has_stokes {
-        // S3 is above 0 of light that turns right, seen toward its source.
+        // S3 is positive for light that turns to the right, seen toward its source.
         attributes.other.insert(Text::from("polarisationHandedness"), text("right"));
     }
     let mut shared = ImageAttributes::new(display_window(film));
@@ -57,7 +58,7 @@ fn text(value: &str) -> AttributeValue {
     AttributeValue::Text(Text::from(value))
 }
 
-/// The layout's name of a Stokes component of the band around a wavelength.
+/// Returns the layout's channel name for a Stokes component of the band around a wavelength.
 fn channel_name(component: usize, center_nm: f64) -> String {
     format!("S{component}.{}nm", format!("{center_nm:.6}").replace('.', ","))
 }

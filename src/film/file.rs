@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Writes files atomically: they appear completely or not at all.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -8,33 +8,33 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::{Error, Result};
 
-/// Most links that are followed, as Linux has it.
+/// The maximum number of links that are followed, as on Linux.
 const MOST_LINKS: u32 = 40;
-/// Most temporary files of a run that died and was followed by one of the same process id.
+/// The maximum number of temporary files left behind by earlier runs that died and had the same process ID.
 const MOST_LEFT_BEHIND: u32 = 1000;
 
-/// Where the bytes of a file go: some of its first ones may be known last.
+/// The destination of a file's bytes. It can seek, because some of the first bytes may be known last.
 pub(super) trait Place: Write + Seek {}
 
 impl<P: Write + Seek> Place for P {}
 
-/// Writes a file under a temporary name beside the target, then renames it: a reader never sees half of it. Missing
-/// folders are made.
+/// Writes a file under a temporary name next to the target, then renames it, so that readers never see an incomplete
+/// file. Creates missing folders.
 ///
-/// A symbolic link stays and its target is replaced; permissions are kept, and other names of the same file (hard
-/// links) keep what they had. What is there but no file, such as a pipe, is written to as it is.
+/// Symbolic links are kept, and their target is replaced. Permissions are kept. Other hard links to the file keep the
+/// old content. A target other than a regular file, such as a pipe, is written to directly.
 ///
 /// # Errors
-/// If it cannot be written; a file that was there before is then untouched, and nothing else is left behind.
+/// If the file cannot be written. An existing file is then untouched, and nothing else is left behind.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
     replace_by(path, |place| place.write_all(bytes).map_err(|source| cannot_write(path, source)))
 }
 
-/// Replaces a file, as [`replace_file`] does, by bytes that come one after another; those of a device are all in memory
-/// before it gets any. Returns what `write` returns.
+/// Replaces a file like [`replace_file`] does, with bytes that `write` produces one after another. For a device, all
+/// bytes are collected in memory before the first is written. Returns what `write` returns.
 ///
 /// # Errors
-/// As [`replace_file`], and what the bytes come with.
+/// Those of [`replace_file`], and those of `write`.
 pub(super) fn replace_by<T>(path: &Path, write: impl FnOnce(&mut dyn Place) -> Result<T>) -> Result<T> {
     let failed = |source| cannot_write(path, source);
     let target = match Target::of(path).map_err(failed)? {
@@ -63,23 +63,24 @@ pub(super) fn replace_by<T>(path: &Path, write: impl FnOnce(&mut dyn Place) -> R
     become_file().map(|()| answer).map_err(failed)
 }
 
-/// The error of a file that cannot be written.
+/// Returns the error for a file that cannot be written.
 pub(super) fn cannot_write(path: &Path, source: io::Error) -> Error {
     Error::Io { doing: "write", path: path.to_owned(), source }
 }
 
-/// The error of a file that cannot be read.
+/// Returns the error for a file that cannot be read.
 pub(super) fn cannot_read(path: &Path, source: io::Error) -> Error {
     Error::Io { doing: "read", path: path.to_owned(), source }
 }
 
-/// Finds out before a long render whether its image can be written; creates the folder if it is missing.
+/// Checks before a long render whether its image can be written. Creates the folder if it is missing.
 ///
 /// # Errors
-/// If the folder cannot be made or written to, the path is a folder or leads nowhere, or its file is write-protected.
+/// If the folder cannot be created or written to, if the path is a folder or a circular link, or if the file is
+/// write-protected.
 pub fn check_writable(path: &Path) -> Result<()> {
     let tried = Target::of(path).and_then(|target| match target {
-        // A reader of a pipe would take opening and closing it for the end of the image.
+        // Opening and closing a pipe would signal the end of the image to its reader.
         Target::Device if is_pipe(path) => Ok(()),
         Target::Device => File::options().write(true).open(path).map(drop),
         Target::File(target) => {
@@ -90,17 +91,17 @@ pub fn check_writable(path: &Path) -> Result<()> {
     tried.map_err(|source| cannot_write(path, source))
 }
 
-/// Makes the folder of a file, if it is missing.
+/// Creates the folder of a file, if it is missing.
 fn make_folder(file: &Path) -> io::Result<()> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
     folder.map_or(Ok(()), fs::create_dir_all)
 }
 
-/// What a path stands for.
+/// What a path refers to.
 enum Target {
-    /// A file, perhaps yet to be made; no link.
+    /// A regular file, which may not exist yet. Links are resolved.
     File(PathBuf),
-    /// Something else that takes bytes.
+    /// Something else that accepts bytes.
     Device,
 }
 
@@ -138,27 +139,26 @@ fn is_pipe(_: &Path) -> bool {
     false
 }
 
-/// A file of a short name of its own, which is removed unless it becomes another.
+/// A temporary file with a short, unique name, removed unless it is renamed to its target.
 struct Temporary(PathBuf);
 
-/// Temporary files that are being written.
+/// The temporary files that are being written.
 static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn being_written() -> MutexGuard<'static, Vec<PathBuf>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what is there so far of files that are being written, where the process is about to end: none can be begun
-/// any more, nor finished.
+/// Removes all unfinished files when the process is about to end. From then on, no file can be begun or finished.
 pub fn remove_unfinished() {
     let mut unfinished = being_written();
     unfinished.drain(..).for_each(|path| drop(fs::remove_file(path)));
-    // Nobody begins another one before the end.
+    // The lock is never released, so nobody begins another file before the process ends.
     std::mem::forget(unfinished);
 }
 
 impl Temporary {
-    /// Creates one in the folder of the target.
+    /// Creates a temporary file in the folder of the target.
     fn beside(target: &Path) -> io::Result<(File, Self)> {
         let mut number = 0;
         loop {
@@ -188,7 +188,7 @@ impl Drop for Temporary {
         let mut unfinished = being_written();
         if let Some(place) = unfinished.iter().position(|path| *path == self.0) {
             unfinished.swap_remove(place);
-            // The error before is the one to report; a temporary file that cannot be removed either changes nothing.
+            // The earlier error is the one to report. Failing to remove the temporary file as well changes nothing.
             let _ = fs::remove_file(&self.0);
         }
     }

@@ -3,11 +3,11 @@ use std::f64::consts::TAU;
 use super::mitchell::{Mitchell, RADIUS};
 use crate::math::{DVec2, disk};
 
-/// Where in its pixel, or around it, a camera sample falls.
+/// The reconstruction filter: where camera samples fall, within and around their pixel.
 ///
-/// The filter is the density of the samples, which all weigh the same: a sample counts for one pixel alone, and pixels
-/// share no noise (Ernst, Stamminger & Greiner 2006, *Filter Importance Sampling*). Where a filter is negative its
-/// absolute value is the density, and samples are subtracted. Widths are in pixels.
+/// The filter is the probability density of the samples, which all have the same weight. Each sample contributes to one
+/// pixel only, so pixels share no noise (Ernst, Stamminger & Greiner 2006, *Filter Importance Sampling*). Where a
+/// filter is negative, its absolute value is the density and the samples are subtracted. Widths are in pixels.
 ///
 /// ```toml
 /// film.filter = "box"        # or "center", "tent", "gaussian", "blackman-harris", "mitchell"
@@ -16,42 +16,42 @@ use crate::math::{DVec2, disk};
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Filter {
-    /// Anywhere in the pixel, evenly.
+    /// Uniform over the pixel.
     #[default]
     Box,
-    /// In the middle, always.
+    /// Always at the center.
     Center,
-    /// On each axis, a density that falls in a straight line to 0.
+    /// On each axis, a density that falls linearly to 0.
     Tent {
-        /// Distance from the pixel's middle where it is 0; 1 in the plain filter.
+        /// The distance from the pixel's center where the density reaches 0. The plain filter uses 1.
         radius: f64,
     },
-    /// A normal distribution, cut off at 4 standard deviations from the middle.
+    /// A normal distribution, cut off at 4 standard deviations from the center.
     Gaussian {
-        /// Its standard deviation on each axis before the cut; 0.5 in the plain filter.
+        /// The standard deviation on each axis before the cut. The plain filter uses 0.5.
         sigma: f64,
     },
-    /// On each axis, the window of four terms that Harris 1978, *On the Use of Windows for Harmonic Analysis with the
-    /// Discrete Fourier Transform*, gives for side lobes of -92 dB.
+    /// On each axis, the four-term window with side lobes of -92 dB given by Harris 1978, *On the Use of Windows for
+    /// Harmonic Analysis with the Discrete Fourier Transform*.
     BlackmanHarris {
-        /// Half of the window's length; 1.5 in the plain filter.
+        /// Half of the window's length. The plain filter uses 1.5.
         radius: f64,
     },
-    /// A cubic on each axis that falls below 0 and so keeps edges sharp.
+    /// A cubic on each axis with negative lobes, which keep edges sharp.
     Mitchell(Mitchell),
 }
 
-/// Where the normal distribution ends, in standard deviations: 0.03 % of it lie beyond.
+/// The distance at which the normal distribution is cut off, in standard deviations. 0.03 % of it lies beyond.
 const CUT: f64 = 4.0;
-/// The share of the normal distribution of the plane that lies within [`CUT`]: 1 - exp(-CUT^2 / 2).
+/// The fraction of the two-dimensional normal distribution within [`CUT`]: 1 - exp(-CUT^2 / 2).
 const WITHIN: f64 = 0.9996645373720975;
-/// Farthest that a sample falls from the middle of its pixel, on one axis.
+/// The maximum distance of a sample from the center of its pixel, on one axis.
 const FARTHEST: f64 = 16.0;
-/// The coefficients of the window of Blackman and Harris.
+/// The coefficients of the Blackman-Harris window.
 const WINDOW: [f64; 4] = [0.35875, 0.48829, 0.14128, 0.01168];
 
 impl Filter {
-    /// The filters as their names alone mean them.
+    /// All filters, with the parameters that they have if only their name is given.
     pub const PLAIN: [Self; 6] = [
         Self::Box,
         Self::Center,
@@ -61,7 +61,7 @@ impl Filter {
         Self::Mitchell(Mitchell::PLAIN),
     ];
 
-    /// A position about the unit pixel, y down. A sample counts for one pixel alone.
+    /// Samples a position relative to the unit pixel, y down. The sample contributes to this pixel only.
     pub fn place(self, u: [f64; 2]) -> DVec2 {
         let middle = DVec2::splat(0.5);
         match self {
@@ -74,10 +74,11 @@ impl Filter {
         }
     }
 
-    /// The value at an offset from the middle of a pixel, in pixels; its integral is 1. Where it is nowhere negative it
-    /// is the density of samples.
+    /// Returns the filter's value at an offset from the center of a pixel, in pixels. The filter integrates to 1. If it
+    /// is nowhere negative, it is the density of the samples.
     ///
-    /// A filter without a width has none: what cannot be drawn there, but only found, is spread over the pixel.
+    /// A filter without width has no such value. Contributions that cannot be sampled at its position, but only found,
+    /// are spread over the pixel.
     pub fn value(self, offset: DVec2) -> f64 {
         let each = |value: &dyn Fn(f64) -> f64| value(offset.x) * value(offset.y);
         match self {
@@ -99,22 +100,22 @@ impl Filter {
         }
     }
 
-    /// The value where it is positive, over the integral of that; elsewhere 0.
+    /// Returns the positive part of the filter, normalized to integrate to 1.
     pub fn positive_value(self, offset: DVec2) -> f64 {
         self.value(offset).max(0.0) / (0.5 * (1.0 + self.absolute_integral()))
     }
 
-    /// Whether samples may fall where the filter is negative.
+    /// Returns whether samples may fall where the filter is negative.
     pub fn is_signed(self) -> bool {
         matches!(self, Self::Mitchell(_))
     }
 
-    /// Whether a sample at a place about the unit pixel is subtracted.
+    /// Returns whether a sample at a position relative to the unit pixel is subtracted.
     pub fn subtracts(self, place: DVec2) -> bool {
         self.is_signed() && self.value(place - 0.5) < 0.0
     }
 
-    /// The integral of the absolute value: what a sample counts before signs.
+    /// Returns the integral of the filter's absolute value. This is the weight of a sample before its sign.
     pub fn absolute_integral(self) -> f64 {
         match self {
             Self::Mitchell(cubic) => cubic.absolute() * cubic.absolute(),
@@ -122,7 +123,7 @@ impl Filter {
         }
     }
 
-    /// The largest offset of a sample from the middle of its pixel on each axis, in pixels.
+    /// Returns the largest offset of a sample from the center of its pixel on each axis, in pixels.
     pub fn reach(self) -> f64 {
         match self {
             Self::Box | Self::Center => 0.5,
@@ -132,7 +133,7 @@ impl Filter {
         }
     }
 
-    /// The filter's name in a scene file.
+    /// Returns the filter's name in a scene file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Box => "box",
@@ -144,7 +145,7 @@ impl Filter {
         }
     }
 
-    /// Name and width or parameters, as a file records them.
+    /// Returns the name and the width or other parameters, as files record them.
     pub fn described(self) -> String {
         let name = self.name();
         if let Self::Mitchell(Mitchell { b, c }) = self {
@@ -153,7 +154,7 @@ impl Filter {
         self.width().map_or(name.to_owned(), |(key, width, _)| format!("{name} {key} {width}"))
     }
 
-    /// The key, value and greatest value of a width that cannot be.
+    /// Returns the key, the value and the maximum of a width that is out of range.
     pub fn too_wide(self) -> Option<(&'static str, f64, f64)> {
         self.width().filter(|(_, width, most)| !(*width > 0.0 && width <= most))
     }
@@ -167,14 +168,15 @@ impl Filter {
     }
 }
 
-/// Density 1 - |x| within -1 and 1, by its inverse.
+/// Samples the density 1 - |x| on -1 to 1 by inversion.
 fn tent(u: f64) -> f64 {
     if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).sqrt() }
 }
 
-/// The normal distribution of the plane within [`CUT`]: a disk whose radii are stretched so that strata stay compact.
+/// Samples the two-dimensional normal distribution within [`CUT`]. Maps the numbers to a disk and stretches its radii,
+/// so that strata stay compact.
 ///
-/// Of the disk, the share rho^2 lies within rho; of the distribution, 1 - exp(-r^2 / 2) within r.
+/// The disk has the fraction rho^2 of its area within radius rho, the distribution 1 - exp(-r^2 / 2) within r.
 fn normal(u: [f64; 2]) -> DVec2 {
     let point = disk(u);
     let squared = point.length_squared();
@@ -185,10 +187,10 @@ fn normal(u: [f64; 2]) -> DVec2 {
     point * (stretched / squared).sqrt()
 }
 
-/// Density of the window within -1 and 1, by Newton's method on its integral, kept between bounds that halve.
+/// Samples the density of the window on -1 to 1. Inverts its integral by Newton's method, safeguarded by bisection.
 fn blackman_harris(u: f64) -> f64 {
     let [a, b, c, d] = WINDOW;
-    // Of the half above 0, whose window falls from the middle to the end.
+    // Solves for the half above 0, where the window falls from the center to the end.
     let wanted = (2.0 * u - 1.0).abs();
     let (mut low, mut high, mut x) = (0.0, 1.0, 0.5 * wanted);
     for _ in 0..60 {
@@ -204,7 +206,7 @@ fn blackman_harris(u: f64) -> f64 {
             low = x
         }
         let next = x - error / density;
-        // An exact root is a bound itself.
+        // An exact root equals one of the bounds.
         let next = if (low..=high).contains(&next) { next } else { 0.5 * (low + high) };
         let step = (next - x).abs();
         x = next;

@@ -1,58 +1,58 @@
-//! How an image is written.
+//! The file format of an image.
 
 use serde::{Deserialize, Serialize};
 
 use super::layers::{FirstSurface, Layer};
 use crate::spectrum::WavelengthBands;
 
-/// What a file holds beside the image, and how its numbers are written.
+/// What a file holds besides the image, and how its values are encoded.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Format {
-    /// Layers, in the order in which they were asked for.
+    /// The layers, in the order in which they were requested.
     pub layers: Vec<Layer>,
-    /// Whether the components of Stokes vectors are among them, whatever others are asked for in place of the scene's.
+    /// Whether the Stokes components stay among the layers even if other layers replace those of the scene.
     #[serde(skip)]
     pub stokes: bool,
-    /// Which surface layers such as `N` and `albedo` are of.
+    /// The surface that layers such as `N` and `albedo` describe.
     pub first: FirstSurface,
-    /// Bits of a color.
+    /// The precision of colors.
     pub precision: Precision,
-    /// How the numbers are packed.
+    /// The compression of the values.
     pub compression: Compression,
-    /// Whether each layer is a part of its own. Then a compression that loses packs colors alone, and
-    /// [`Compression::Zip`] what is no color.
+    /// Whether each layer is a part of its own. A lossy compression then applies to colors only, and everything else
+    /// uses [`Compression::Zip`].
     pub multipart: bool,
-    /// The bands of the spectral image that is made beside it, if one is.
+    /// The bands of the additional spectral image, if there is one.
     pub spectral: Option<WavelengthBands>,
-    /// Luminance of red, green and blue of 1, in cd/m^2, where the scene gives its lights in such units.
+    /// The luminance in cd/m^2 of a pixel whose red, green and blue are 1, if the scene gives its lights in such units.
     pub white_luminance: Option<f64>,
-    /// Who owns the image.
+    /// The owner of the image.
     pub owner: Option<String>,
-    /// What there is to say about it.
+    /// Comments on the image.
     pub comments: Option<String>,
-    /// Frame rate of the sequence to which it belongs: frames, and the seconds that they take.
+    /// The frame rate of the sequence that the image belongs to: a number of frames, and the seconds that they take.
     pub frames_per_second: Option<[u32; 2]>,
 }
 
-/// Last parts of the names of channels that DWA packs with loss (OpenEXR 3.3, ImfDwaCompressor.cpp).
+/// The last components of the channel names that DWA compresses lossily (OpenEXR 3.3, ImfDwaCompressor.cpp).
 const COLORS_OF_DWA: [&str; 6] = ["R", "G", "B", "Y", "BY", "RY"];
 
 impl Format {
-    /// Asks for some layers in place of others.
+    /// Requests layers in place of the present ones.
     pub fn ask_for(&mut self, layers: &[Layer]) {
         self.layers = layers.to_vec();
         let stokes = Layer::STOKES.into_iter().filter(|layer| self.stokes && !layers.contains(layer));
         self.layers.extend(stokes);
     }
 
-    /// Whether anything is asked for of Stokes vectors.
+    /// Returns whether any polarization layer is requested.
     pub fn has_stokes(&self) -> bool {
         self.layers.iter().copied().any(Layer::is_of_polarization)
     }
 
-    /// Why no file can hold this, and what to do instead, if that is so.
+    /// Returns why no file can hold this combination, and what to do instead, if that is so.
     ///
-    /// What is no color must stay as it is: a depth, a normal or the number of a matte that is nearly right is wrong.
+    /// Everything except color must be stored exactly: a depth, a normal or a matte ID that is nearly right is wrong.
     pub fn objection(&self) -> Option<(String, String)> {
         let name = self.compression.name();
         if self.compression.is_of_16_bits() && self.precision == Precision::Float {
@@ -62,8 +62,8 @@ impl Format {
         if !self.compression.is_lossy() || self.multipart {
             return None;
         }
-        // DWA packs what it does not take for a color by its channel's name without loss, and so a depth; PXR24 rounds
-        // all of 32 bits.
+        // DWA recognizes colors by their channel names and compresses all else, such as depth, without loss. PXR24
+        // rounds all 32-bit values.
         let is_dwa = self.compression.is_of_16_bits();
         let depth = Some("Z").filter(|_| !is_dwa);
         let takes_for_color = |layer: &Layer| layer.channels().iter().any(|name| COLORS_OF_DWA.contains(name));
@@ -78,10 +78,10 @@ impl Format {
     }
 }
 
-/// Bits of a color. Depth, places and statistics always have 32.
+/// The precision of colors. Depth, positions and statistics always have 32 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Precision {
-    /// 16 bits: three digits, up to 65504.
+    /// 16 bits: three significant digits, values up to 65504.
     Half,
     /// 32 bits.
     #[default]
@@ -89,34 +89,35 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Both by their names in a scene file.
+    /// Both precisions by their names in a scene file.
     pub const NAMES: [(&str, Self); 2] = [("half", Self::Half), ("float", Self::Float)];
 }
 
-/// How numbers are packed: without losing a bit, but for those that say so.
+/// The compression of the values. It is lossless unless stated otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Compression {
-    /// Not at all: the largest files, the fastest to write.
+    /// No compression: the largest files, and the fastest to write.
     None,
-    /// Runs of equal bytes.
+    /// Run-length encoding of bytes.
     Rle,
-    /// Deflate, each row by itself.
+    /// Deflate, one row at a time.
     Zips,
     /// Deflate, 16 rows at a time.
     #[default]
     Zip,
-    /// Wavelets: smaller for noisy images.
+    /// Wavelets. Files of noisy images are smaller.
     Piz,
-    /// Numbers of 32 bits rounded to 24, one part in 65 536 or less; those of 16 bits stay as they are.
+    /// Rounds 32-bit values to 24 bits, an error of one part in 65 536 or less. 16-bit values stay as they are.
     Pxr24,
-    /// Cosines of 8 x 8 pixels: colors of 16 bits nearly as they look, in the smallest files; 32 rows at a time.
+    /// A cosine transform of 8 x 8 pixels, 32 rows at a time. Colors have 16 bits and look nearly the same, in the
+    /// smallest files.
     Dwaa,
-    /// The same, 256 rows at a time.
+    /// Like `Dwaa`, but 256 rows at a time.
     Dwab,
 }
 
 impl Compression {
-    /// All by their names in a scene file.
+    /// All compressions by their names in a scene file.
     pub const NAMES: [(&str, Self); 8] = [
         ("none", Self::None),
         ("rle", Self::Rle),
@@ -128,17 +129,17 @@ impl Compression {
         ("dwab", Self::Dwab),
     ];
 
-    /// The name in a scene file.
+    /// Returns the name in a scene file.
     pub fn name(self) -> &'static str {
         Self::NAMES.into_iter().find(|(_, known)| *known == self).map_or("", |(name, _)| name)
     }
 
-    /// Whether numbers come back changed.
+    /// Returns whether the compression changes values.
     pub fn is_lossy(self) -> bool {
         matches!(self, Self::Pxr24) || self.is_of_16_bits()
     }
 
-    /// Whether it makes 16 bits of every color.
+    /// Returns whether all colors are stored in 16 bits.
     pub fn is_of_16_bits(self) -> bool {
         matches!(self, Self::Dwaa | Self::Dwab)
     }

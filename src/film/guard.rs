@@ -1,4 +1,4 @@
-//! Decoders of other makers: some panic over damaged files, some believe any size that a file claims to have.
+//! Guards against third-party decoders: some panic on damaged files, some trust any size that a file claims to have.
 
 use std::cell::Cell;
 use std::fmt::Display;
@@ -14,7 +14,7 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What a decoder answers, or an error if it panics; nothing is printed of that.
+/// Runs a decoder. Returns its result, or an error if it panics, without printing the panic.
 pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -34,26 +34,26 @@ pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> R
     }
 }
 
-/// Most texels of an image: 16384 x 8192.
+/// The maximum number of texels of an image: 16384 x 8192.
 pub(crate) const MOST_TEXELS: usize = 1 << 27;
 
-/// Most pixels of a film, and of an image of one that is read.
+/// The maximum number of pixels of a film, and of an image that is read.
 pub(crate) const MOST_PIXELS: usize = 1 << 28;
 
-/// What is said of an image that has more pixels than are read.
+/// Returns the message for an image with more pixels than are read, or none if it is small enough.
 pub(crate) fn too_large(width: usize, height: usize, most: usize) -> Option<String> {
     let said = || format!("its {width} x {height} pixels are more than {most}");
     (width.saturating_mul(height) > most).then(said)
 }
 
-/// Bytes of texels that a file of any length may ask for.
+/// The bytes of texels that a file of any length may claim.
 const ALWAYS: u64 = 1 << 27;
-/// Bytes of texels that one byte of a file can stand for: deflate packs 1032 into one at best (RFC 1951: 258 by 2
-/// bits), and of a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
+/// The maximum bytes of texels per byte of a file. Deflate compresses at best 1032 bytes into one (RFC 1951: 258 by 2
+/// bits), and with a palette of two colors each bit is a texel of 3 bytes. Nothing else in these formats is as dense.
 const DENSEST: u64 = 1032 * 24;
 
-/// Refuses images without texels, and sizes whose `bytes` would fill the memory before it shows that the file has no
-/// such texels.
+/// Refuses images without texels, and sizes whose `bytes` would exhaust the memory before the decoder notices that the
+/// file does not have these texels.
 pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), String> {
     if width == 0 || height == 0 {
         return Err("it has no pixels".into());
@@ -64,12 +64,12 @@ pub(crate) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Resu
     Ok(())
 }
 
-/// Most bytes that a part of a block of DWAA or DWAB may claim beside twice those of the block's pixels.
+/// The bytes that a section of a DWAA or DWAB block may claim in addition to twice the bytes of the block's pixels.
 const CLAIMED: u64 = 1 << 20;
 
-/// Refuses an OpenEXR file whose blocks of DWAA or DWAB claim to be much larger than their pixels: their decoder takes
-/// the memory before it unpacks them. Each begins with a version and nine numbers of bytes or of half floats,
-/// little-endian, but for one that is not packed, as that would make it larger.
+/// Refuses an OpenEXR file with DWAA or DWAB blocks that claim to be much larger than their pixels, because the decoder
+/// allocates the memory before it unpacks them. Each block begins with a version and nine counts of bytes or half
+/// floats, little-endian, unless it is stored uncompressed because compression would make it larger.
 pub(crate) fn claims_fit(bytes: &[u8]) -> exr::error::Result<()> {
     let reader = exr::block::read(Cursor::new(bytes), false)?;
     let is_packed = |header: &Header| matches!(header.compression, Compression::DWAA(_) | Compression::DWAB(_));

@@ -1,4 +1,4 @@
-//! An image: its pixels and what they mean.
+//! The film: its pixels and what they mean.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,69 +8,69 @@ use super::spectral::SpectralImage;
 use super::window::Window;
 use crate::spectrum::ColorSpace;
 
-/// Depth of a pixel whose rays meet nothing, the value compositing packages expect.
+/// The depth of a pixel whose rays hit nothing. This is the value that compositing packages expect.
 pub const DEPTH_OF_NOTHING: f32 = 1e10;
 
-/// What one camera sample saw.
+/// The result of one camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Film red, green and blue, linear.
+    /// Linear red, green and blue in the film's color space.
     pub rgb: [f64; 3],
-    /// Depth of the surface that the camera ray hit, if it hit any.
+    /// The depth of the surface that the camera ray hit, if any.
     pub depth: Option<f64>,
-    /// Whether it fell where the filter is negative.
+    /// Whether the sample fell where the filter is negative.
     pub is_subtracted: bool,
 }
 
 /// A finished pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pixel {
-    /// Film red, green and blue, linear, the mean of the samples as the filter weighs them.
+    /// Linear red, green and blue in the film's color space: the mean of the samples, weighted by the filter.
     pub rgb: [f32; 3],
-    /// Share of the camera rays that hit something, weighed by the filter, from 0 to 1.
+    /// The fraction of the camera rays that hit something, weighted by the filter, from 0 to 1.
     pub alpha: f32,
-    /// The nearest depth among the samples, [`DEPTH_OF_NOTHING`] where none met anything.
+    /// The smallest depth among the samples, or [`DEPTH_OF_NOTHING`] if none hit anything.
     pub depth: f32,
-    /// How many samples the mean is made of.
+    /// The number of samples in the mean.
     pub samples: f32,
 }
 
 impl Pixel {
-    /// One of which nothing is known.
+    /// A pixel without data.
     pub(super) const BLANK: Self = Self { rgb: [0.0; 3], alpha: 0.0, depth: 0.0, samples: 0.0 };
 }
 
-/// A finished image, with its overscan or a part of it, rows from the top.
+/// A finished image, possibly with overscan or cropped, with rows from the top.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
-    /// Pixels per row.
+    /// The number of pixels per row.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// Column and row of the first pixel, counted from the top left corner of the format: negative in its overscan.
+    /// Column and row of the first pixel, counted from the top left corner of the format. Negative in the overscan.
     pub corner: [i32; 2],
-    /// Pixels per row and rows of the format.
+    /// The number of pixels per row and the number of rows of the format.
     pub full: [u32; 2],
-    /// What red, green and blue mean.
+    /// The color space of red, green and blue.
     pub color_space: ColorSpace,
     /// `width * height` pixels, row by row.
     pub pixels: Vec<Pixel>,
-    /// What was asked for beside them.
+    /// The requested layers.
     pub layers: Vec<LayerImage>,
-    /// Their spectra, if those were asked for.
+    /// The spectra of the pixels, if requested.
     pub spectral: Option<SpectralImage>,
-    /// What the numbers of their mattes stand for.
+    /// The names behind the IDs in the mattes.
     pub manifests: Vec<Manifest>,
 }
 
 impl Film {
-    /// Which pixels of the format it has.
+    /// Returns the window of the format that the film covers.
     pub fn window(&self) -> Window {
         let [left, top] = self.corner;
         Window { left, top, width: self.width, height: self.height }
     }
 
-    /// Makes room for a number of rows.
+    /// Resizes the film to a number of rows.
     pub fn resize(&mut self, rows: u32) {
         self.height = rows;
         let pixels = self.width as usize * rows as usize;
@@ -81,7 +81,7 @@ impl Film {
         }
     }
 
-    /// The pixel in column x, row y of the part that is there.
+    /// Returns the pixel in column x, row y of the film's window.
     pub fn at(&self, x: u32, y: u32) -> &Pixel {
         &self.pixels[(y as usize) * self.width as usize + x as usize]
     }

@@ -1,4 +1,4 @@
-//! What a file may hold beside red, green, blue, coverage and depth.
+//! Layers: what a file may hold besides red, green, blue, coverage and depth.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,81 +7,82 @@ use crate::error::nearest;
 /// A layer, or several of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Layer {
-    /// Light straight from surfaces that shine: `L E` in Heckbert's notation.
+    /// Light that reaches the camera straight from emitting surfaces: `L E` in Heckbert's notation.
     Emission,
-    /// Light straight from the sky or the sun.
+    /// Light that reaches the camera straight from the sky or the sun.
     Background,
-    /// Light that was scattered once, by whatever surface: `L (S|D) E`.
+    /// Light that was scattered once, by any kind of surface: `L (S|D) E`.
     Direct,
-    /// Light that was scattered more often.
+    /// Light that was scattered more than once.
     Indirect,
     /// Direct light that the first surface reflects diffusely.
     DiffuseDirect,
-    /// Direct light that it reflects glossily: rough metal, the coat of rough plastic.
+    /// Direct light that the first surface reflects glossily: rough metal, the coat of rough plastic.
     GlossyDirect,
-    /// What it mirrors.
+    /// Direct light that the first surface reflects specularly.
     SpecularDirect,
-    /// What comes through it.
+    /// Direct light that the first surface transmits.
     TransmissionDirect,
-    /// Of the indirect light, what the first surface reflects diffusely.
+    /// Indirect light that the first surface reflects diffusely.
     DiffuseIndirect,
-    /// What it reflects glossily.
+    /// Indirect light that the first surface reflects glossily.
     GlossyIndirect,
-    /// What it mirrors.
+    /// Indirect light that the first surface reflects specularly.
     SpecularIndirect,
-    /// What comes through it.
+    /// Indirect light that the first surface transmits.
     TransmissionIndirect,
-    /// Light that photons found; it is part of the indirect light.
+    /// Light found by photons. It is part of the indirect light.
     Caustics,
     /// Light whose wavelengths parted on their way.
     Dispersed,
-    /// One layer for each light, or group of lights. Together they are the image.
+    /// One layer for each light or group of lights. Together they add up to the image.
     Lights,
-    /// The share of light that the first surface sends back, 0 to 1.
+    /// The albedo of the first surface: the fraction of light that it sends back, 0 to 1.
     Albedo,
-    /// The unit normal by which the first surface scatters, on the camera's side, in the world's axes.
+    /// The unit shading normal of the first surface, on the camera's side, in world space.
     Normal,
-    /// The unit normal of the surface's own shape.
+    /// The unit geometric normal of the first surface.
     GeometricNormal,
-    /// The point of the first surface in the world, of the nearest sample.
+    /// The world-space position on the first surface, of the nearest sample.
     Position,
-    /// Where images lie on it, of the nearest sample.
+    /// The texture coordinates on the first surface, of the nearest sample.
     Uv,
-    /// Variance of the pixel's mean.
+    /// The variance of the pixel's mean.
     Variance,
-    /// Camera samples.
+    /// The number of camera samples.
     Samples,
-    /// The image of the first half of the samples, which is the larger one of an odd number.
+    /// The image of the first half of the samples, which is the larger half if their number is odd.
     HalfA,
-    /// The image of the second half.
+    /// The image of the second half of the samples.
     HalfB,
-    /// The energy audit: of weight 1 that left the camera, what has not ended at a light, in the sky or absorbed.
+    /// The energy audit: of the weight 1 that leaves the camera, the part not ended by a light, the sky or absorption.
     Residual,
-    /// The share of the light on shadow catchers that other objects block.
+    /// The fraction of the light on shadow catchers that other objects block.
     Shadow,
-    /// A matte of each object that the camera sees, by Cryptomatte.
+    /// A matte for each object that the camera sees, by Cryptomatte.
     CryptoObject,
-    /// A matte of each material.
+    /// A matte for each material.
     CryptoMaterial,
-    /// A matte of all instances of an object together.
+    /// A matte for all instances of an object together.
     CryptoAsset,
-    /// How much of the light is polarized along the image's rows more than along its columns: the second component of
-    /// the Stokes vector, of which the image is the first.
+    /// The second component of the Stokes vector, whose first component is the image: how much more of the light is
+    /// polarized along the image's rows than along its columns.
     S1,
-    /// How much of the light is polarized along the diagonal from the lower left to the upper right more than across
-    /// it.
+    /// The third component of the Stokes vector: how much more of the light is polarized along the diagonal from the
+    /// lower left to the upper right than along the other one.
     S2,
-    /// How much more of the light is circularly polarized to the right than to the left, seen toward the scene.
+    /// The fourth component of the Stokes vector: how much more of the light is circularly polarized to the right than
+    /// to the left, seen toward the scene.
     S3,
-    /// The degree of polarization, that of linear polarization, and the angle of the latter: see [`polarization`].
+    /// The degrees of polarization and of linear polarization, and the angle of the latter: see [`polarization`].
     Polarization,
 }
 
 impl Layer {
-    /// The word that asks for all of them.
+    /// The name that requests all layers.
     pub const ALL: &str = "all";
 
-    /// All of them by the names that ask for them.
+    /// All layers by the names that request them.
     pub const NAMES: [(&str, Self); 33] = [
         ("emission", Self::Emission),
         ("background", Self::Background),
@@ -118,24 +119,24 @@ impl Layer {
         ("polarization", Self::Polarization),
     ];
 
-    /// The components of the Stokes vector beside the image.
+    /// The components of the Stokes vector besides the image.
     pub const STOKES: [Self; 3] = [Self::S1, Self::S2, Self::S3];
 
-    /// Every one that does not ask for light to be followed in another way.
+    /// Returns all layers except those of polarization, which change how light is traced.
     pub fn all() -> Vec<Self> {
         let all = Self::NAMES.iter().map(|(_, layer)| *layer);
         all.filter(|layer| !layer.is_of_polarization()).collect()
     }
 
-    /// Whether it asks for polarization to be traced.
+    /// Returns whether the layer requires tracing polarization.
     pub fn is_of_polarization(self) -> bool {
         self == Self::Polarization || Self::STOKES.contains(&self)
     }
 
-    /// Those that some names ask for, of which one may be the word for all.
+    /// Returns the layers with the given names. One of the names may be [`Self::ALL`].
     ///
     /// # Errors
-    /// If there are no such layers: all of these, each with the name that was most likely meant.
+    /// If some names are unknown. The message lists all of these, each with the name that was most likely meant.
     pub fn of_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Vec<Self>, String> {
         let (mut layers, mut unknown) = (Vec::new(), Vec::new());
         for name in names {
@@ -148,12 +149,12 @@ impl Layer {
         if unknown.is_empty() { Ok(layers) } else { Err(unknown_layers(&unknown)) }
     }
 
-    /// The name that asks for it, and that the file has unless there are several.
+    /// Returns the name that requests the layer. The file uses it too, unless one request makes several layers.
     pub fn name(self) -> &'static str {
         Self::NAMES.into_iter().find(|(_, layer)| *layer == self).map_or("", |(name, _)| name)
     }
 
-    /// The names of its channels.
+    /// Returns the names of the channels.
     pub fn channels(self) -> &'static [&'static str] {
         match self {
             Self::Normal | Self::GeometricNormal | Self::Position => &["X", "Y", "Z"],
@@ -165,24 +166,24 @@ impl Layer {
         }
     }
 
-    /// Whether 16 bits are enough where the file has them: for light, and for numbers up to 1.
+    /// Returns whether 16 bits suffice if the file uses them, as they do for light and for values up to 1.
     pub fn may_be_half(self) -> bool {
         let exact = matches!(self, Self::Position | Self::Uv | Self::Variance | Self::Samples | Self::Residual);
         !exact && !self.is_matte() && !self.is_of_polarization()
     }
 
-    /// Whether it is light to look at: what is computed with, such as an albedo or a half of the samples, is none.
+    /// Returns whether the layer is meant for viewing. Data for computation, such as an albedo or a half image, is not.
     pub fn is_color(self) -> bool {
         self == Self::Shadow || self.is_light() && !Self::STOKES.contains(&self)
     }
 
-    /// Whether its numbers are colors of the film's space: not where they are shares, squares or differences.
+    /// Returns whether the values are colors in the film's color space, not fractions, squares or differences.
     pub fn has_color_space(self) -> bool {
         let is_color = self.is_color() && self != Self::Shadow;
         is_color || matches!(self, Self::Albedo | Self::HalfA | Self::HalfB)
     }
 
-    /// Whether it holds what one lobe of the first surface sends to the camera.
+    /// Returns whether the layer holds what one lobe of the first surface sends to the camera.
     pub fn is_of_lobe(self) -> bool {
         use Layer::{DiffuseDirect, GlossyDirect, SpecularDirect, TransmissionDirect};
         use Layer::{DiffuseIndirect, GlossyIndirect, SpecularIndirect, TransmissionIndirect};
@@ -190,7 +191,7 @@ impl Layer {
             || matches!(self, DiffuseIndirect | GlossyIndirect | SpecularIndirect | TransmissionIndirect)
     }
 
-    /// Whether it holds light, which is filtered as the image is.
+    /// Returns whether the layer holds light, and so is filtered like the image.
     pub fn is_light(self) -> bool {
         match self {
             Self::Emission | Self::Background | Self::Direct | Self::Indirect => true,
@@ -203,13 +204,13 @@ impl Layer {
         }
     }
 
-    /// Whether it is a matte.
+    /// Returns whether the layer is a matte.
     pub fn is_matte(self) -> bool {
         matches!(self, Self::CryptoObject | Self::CryptoMaterial | Self::CryptoAsset)
     }
 }
 
-/// What to ask for in place of a layer that other renderers have by this name.
+/// Returns what to request in place of a layer that other renderers call `name`.
 pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
     match name.to_lowercase().as_str() {
         "z" | "depth" | "mist" => Some("leave it out: Z is in every file"),
@@ -227,7 +228,7 @@ pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
     }
 }
 
-/// The message on names that no layer has, at least one.
+/// Returns the error message for one or more unknown names.
 fn unknown_layers(unknown: &[&str]) -> String {
     let known = || Layer::NAMES.iter().map(|(known, _)| *known).chain([Layer::ALL]);
     let list = || known().collect::<Vec<_>>().join(", ");
@@ -250,9 +251,9 @@ fn unknown_layers(unknown: &[&str]) -> String {
     format!("there are no layers {told}{list}")
 }
 
-/// The degree of polarization of light, the degree of its linear polarization, both 0 to 1, and the angle of the latter
-/// from the image's right counterclockwise, above -90 to 90 degrees, by the luminances S0 to S3 of its Stokes vector;
-/// 0 of no light.
+/// Returns the degree of polarization, the degree of linear polarization, both 0 to 1, and the angle of linear
+/// polarization. Takes the luminances S0 to S3 of the Stokes vector. The angle is measured from the image's right
+/// counterclockwise, above -90 to 90 degrees. All three are 0 if there is no light.
 ///
 /// sqrt(S1^2 + S2^2 + S3^2) / S0, sqrt(S1^2 + S2^2) / S0 and atan2(S2, S1) / 2 (Hecht 2017, *Optics*, section 8.13.1).
 pub fn polarization([s0, s1, s2, s3]: [f64; 4]) -> [f64; 3] {
@@ -261,53 +262,54 @@ pub fn polarization([s0, s1, s2, s3]: [f64; 4]) -> [f64; 3] {
     }
     let linear = libm::hypot(s1, s2);
     let angle = 0.5 * libm::atan2(s2, s1).to_degrees();
-    // What lies along the columns is so whichever way S2 was rounded.
+    // Polarization along the columns gives 90 degrees, however S2 was rounded.
     let angle = if angle <= -90.0 { 90.0 } else { angle };
     [(libm::hypot(linear, s3) / s0).min(1.0), (linear / s0).min(1.0), angle]
 }
 
-/// Which surface is the first.
+/// Which surface counts as the first one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FirstSurface {
-    /// The one that the camera ray meets.
+    /// The surface that the camera ray hits.
     #[default]
     Met,
-    /// The one that is seen, in mirrors and through smooth glass as well.
+    /// The surface that is seen, also in mirrors and through smooth glass.
     Visible,
 }
 
 impl FirstSurface {
-    /// Both by their names in a scene file.
+    /// Both variants by their names in a scene file.
     pub const NAMES: [(&str, Self); 2] = [("met", Self::Met), ("visible", Self::Visible)];
 }
 
 /// A layer of a finished image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LayerImage {
-    /// What it is.
+    /// The kind of layer.
     pub layer: Layer,
-    /// Its name in the file.
+    /// The name in the file.
     pub name: String,
-    /// The numbers of all channels of a pixel, pixel by pixel.
+    /// The values of all channels, pixel by pixel.
     pub values: Vec<f32>,
 }
 
 impl LayerImage {
-    /// Numbers of a pixel.
+    /// Returns the number of values per pixel.
     pub fn numbers(&self) -> usize {
         self.layer.channels().len()
     }
 
-    /// One of its channels, row by row from the top left.
+    /// Returns one channel, row by row from the top left.
     pub fn channel(&self, number: usize) -> impl ExactSizeIterator<Item = f32> + '_ {
         self.values.iter().skip(number).step_by(self.numbers()).copied()
     }
 }
 
-/// Longest name of a channel that every reader keeps.
+/// The longest channel name that every reader preserves.
 pub const LONGEST_NAME: usize = 31;
 
-/// The name of a light's layer: `light_` and its name, in which other characters than letters and digits become `_`.
+/// Returns the name of a light's layer: `light_` and the light's name, in which `_` replaces all characters except
+/// letters and digits.
 pub fn light_layer_name(name: &str) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };
     format!("light_{}", name.chars().map(plain).collect::<String>())

@@ -8,27 +8,28 @@
 //! | \|x\| < 2 | (-B - 6 C) \|x\|^3 + (6 B + 30 C) \|x\|^2 + (-12 B - 48 C) \|x\| + 8 B + 24 C |
 //! | else | 0 |
 //!
-//! The integral is 1 for any B and C. For both from 0 to 1 the inner piece falls from (6 - 2 B) / 6 to B / 6, which is
-//! not negative. With t = 2 - |x| the outer one is t^2 ((B + 6 C) t - 6 C) / 6: negative where t is less than
-//! t0 = 6 C / (B + 6 C), with the integral -M on each side, M = C t0^3 / 12. So that of |k| is 1 + 4 M.
+//! The integral is 1 for any B and C. If both are between 0 and 1, the inner piece falls from (6 - 2 B) / 6 to B / 6,
+//! and so is not negative. With t = 2 - |x| the outer piece is t^2 ((B + 6 C) t - 6 C) / 6. It is negative where t is
+//! less than t0 = 6 C / (B + 6 C), and its integral there is -M on each side, with M = C t0^3 / 12. Hence the integral
+//! of |k| is 1 + 4 M.
 
-/// Farthest from the middle where a filter is not 0.
+/// The largest distance from the center where a filter is not 0.
 pub(super) const RADIUS: f64 = 2.0;
 
-/// A cubic filter of two parameters, each from 0 to 1.
+/// A cubic filter with two parameters, each from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mitchell {
-    /// How far it blurs: 1 is the cubic B-spline, if c is 0.
+    /// The blur: with 1 the filter is the cubic B-spline, if c is 0.
     pub b: f64,
-    /// How far it rings: 0.5 is the spline of Catmull and Rom, if b is 0.
+    /// The ringing: with 0.5 the filter is the Catmull-Rom spline, if b is 0.
     pub c: f64,
 }
 
 impl Mitchell {
-    /// What the authors recommend.
+    /// The parameters that the authors recommend.
     pub const PLAIN: Self = Self { b: 1.0 / 3.0, c: 1.0 / 3.0 };
 
-    /// Its value at a distance from the middle on one axis.
+    /// Returns the value at a distance from the center on one axis.
     pub(super) fn value(self, x: f64) -> f64 {
         let (Self { b, c }, x) = (self, x.abs());
         if x < 1.0 {
@@ -41,13 +42,13 @@ impl Mitchell {
         }
     }
 
-    /// The integral of its absolute value on one axis.
+    /// Returns the integral of the absolute value on one axis.
     pub(super) fn absolute(self) -> f64 {
         1.0 + 4.0 * self.negative()
     }
 
-    /// A distance from the middle, drawn by the absolute value: by Newton's method on its integral, kept between bounds
-    /// that halve.
+    /// Samples an offset from the center with a density proportional to the absolute value. Inverts its integral by
+    /// Newton's method, safeguarded by bisection.
     pub(super) fn place(self, u: f64) -> f64 {
         let wanted = 0.5 * self.absolute() * (2.0 * u - 1.0).abs();
         let (mut low, mut high, mut x) = (0.0, RADIUS, wanted);
@@ -72,18 +73,18 @@ impl Mitchell {
         if u < 0.5 { -x } else { x }
     }
 
-    /// Where the outer piece changes its sign, from the end.
+    /// Returns the distance from the end of the filter at which the outer piece changes its sign.
     fn change(self) -> f64 {
         if self.c > 0.0 { 6.0 * self.c / (self.b + 6.0 * self.c) } else { 0.0 }
     }
 
-    /// The integral of what is negative on one side, without its sign.
+    /// Returns the integral of the negative part on one side, without its sign.
     fn negative(self) -> f64 {
         let change = self.change();
         self.c * change * change * change / 12.0
     }
 
-    /// The integral of the absolute value from the middle to x.
+    /// Returns the integral of the absolute value from the center to x.
     fn within(self, x: f64) -> f64 {
         let Self { b, c } = self;
         if x < 1.0 {

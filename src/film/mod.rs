@@ -1,4 +1,4 @@
-//! Floor 2: what is remembered of the light that arrives, and how it is written down.
+//! Floor 2: the film, which stores the light that arrives, and the files it is written to.
 
 mod blocks;
 mod cryptomatte;

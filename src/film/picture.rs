@@ -5,15 +5,15 @@ use super::image::Film;
 use crate::error::{Error, Result};
 use crate::spectrum::{apply, encode_srgb};
 
-/// Writes an 8-bit sRGB picture for looking at: RGB times 2^`exposure`, clipped to 0..1, without alpha.
+/// Writes an 8-bit sRGB picture for viewing: RGB times 2^`exposure`, clipped to 0..1, without alpha.
 ///
 /// # Errors
-/// If the file cannot be written; nothing is left behind then.
+/// If the file cannot be written. Nothing is then left behind.
 pub fn write_png(film: &Film, exposure: f64, path: &Path) -> Result<()> {
     replace_file(path, &film_png(film, exposure, path)?)
 }
 
-/// The bytes of that picture; `path` is what it is called if it cannot be made.
+/// Encodes the picture that [`write_png`] writes; `path` names it in errors.
 ///
 /// # Errors
 /// If the encoder refuses the size.
@@ -25,8 +25,8 @@ pub fn film_png(film: &Film, exposure: f64, path: &Path) -> Result<Vec<u8>> {
     png(&bytes, [film.width, film.height], path)
 }
 
-/// The bytes of a PNG of this width and height, of red, green and blue of 8 bits, row by row, which it says are sRGB;
-/// `path` is what it is called if it cannot be made.
+/// Encodes 8-bit red, green and blue, row by row, as a PNG of the given width and height. Marks it as sRGB; `path`
+/// names it in errors.
 ///
 /// # Errors
 /// If the encoder refuses the size.

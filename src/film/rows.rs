@@ -1,19 +1,19 @@
-//! Images that are written row by row.
+//! Access to images row by row, for writing them.
 
 use std::ops::Range;
 
 use super::image::Film;
 use crate::error::Result;
 
-/// Where the rows of an image come from while it is written, from the top down.
+/// The source of an image's rows while it is written, from the top down.
 pub trait Rows {
-    /// Most rows that should be asked for at once; none if all are there.
+    /// Returns the maximum number of rows that should be requested at once, or none if all are in memory.
     fn at_once(&self) -> Option<u32>;
 
-    /// Rows of the image: a film that has them, and the number in it of the first one's first pixel.
+    /// Returns a film that contains the requested rows, and the index in it of the first row's first pixel.
     ///
     /// # Errors
-    /// If they cannot be read.
+    /// If the rows cannot be read.
     fn rows(&mut self, rows: Range<u32>) -> Result<(&Film, usize)>;
 }
 

@@ -1,30 +1,30 @@
 use super::filter::Filter;
 
-/// Samples of a pixel that tell its variance, at least. Fewer are the same by chance in one pixel of an edge and others
-/// in the next render, and then seem to have none.
+/// The minimum number of samples of a pixel for estimating its variance. With fewer samples, those of a pixel on an
+/// edge may all be equal by chance, and differ from those of the next render. Their variance then seems to be 0.
 pub const TELL_VARIANCE: u32 = 4;
 
-/// What each of a pixel's samples counts in its means.
+/// The weights of a pixel's samples in its means.
 ///
-/// Of n samples drawn by the absolute value of a filter f, with the integral a, s are subtracted: they fall where f is
-/// negative. With r = a s / n, a pixel is (1 + r) times the mean of those that are added, minus r times the mean of
-/// those that are subtracted. The expectation is the filtered image: that of r is the integral of what is negative, and
-/// the mean of the others does not depend on r. An even image comes out without noise, as the weights sum to 1 whatever
-/// s is. Weights of a and -a would have the same expectation, and let s be seen there: of the plain cubic, 2 % of noise
-/// with 64 samples. A division by their sum would show no s, but would be biased, and undefined where as many are
-/// subtracted as are added, which is one of eight pixels with 2 samples.
+/// Let a be the integral of |f| for a filter f, and let n samples be drawn with a density proportional to |f|. The s
+/// samples that fall where f is negative are subtracted. With r = a s / n, a pixel is (1 + r) times the mean of the
+/// added samples, minus r times the mean of the subtracted ones. Its expectation is the filtered image: that of r is
+/// the integral of the negative part, and the expected means do not depend on r. A uniform image has no noise, since
+/// the weights sum to 1 for any s. Weights of a and -a would have the same expectation, but s would be visible: for the
+/// plain cubic with 64 samples, as 2 % of noise. Dividing by their sum would hide s, but be biased, and undefined if as
+/// many samples are subtracted as added, which happens in one of eight pixels with 2 samples.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleWeights {
     counts: [u32; 2],
     /// The integral of the filter's absolute value.
     absolute: f64,
-    /// What each sample counts that is added or subtracted, times the number of all.
+    /// The weights of an added and of a subtracted sample, times the number of all samples.
     each: [f64; 2],
 }
 
 impl SampleWeights {
-    /// Weights for a number of samples that are added, and one of samples that are subtracted. Where none is added
-    /// there is nothing to subtract from, and the others are the image.
+    /// Computes the weights for the given numbers of added and subtracted samples. If none is added, there is nothing
+    /// to subtract from, and the image consists of the others.
     pub fn new(filter: Filter, counts: [u32; 2]) -> Self {
         Self::by(filter.absolute_integral(), counts)
     }
@@ -39,45 +39,47 @@ impl SampleWeights {
         Self { counts, absolute, each }
     }
 
-    /// The weights of a part of these samples by itself.
+    /// Returns the weights of a part of these samples on its own.
     pub fn of_part(&self, counts: [u32; 2]) -> Self {
         Self::by(self.absolute, counts)
     }
 
-    /// The weights of those that are not in a part.
+    /// Returns the weights of the samples outside a part.
     pub fn of_others(&self, counts: [u32; 2]) -> Self {
         self.of_part([0, 1].map(|i| self.counts[i].saturating_sub(counts[i])))
     }
 
-    /// Whether any sample is subtracted.
+    /// Returns whether any sample is subtracted.
     pub fn subtracts(&self) -> bool {
         self.counts[1] > 0
     }
 
-    /// How many samples there are.
+    /// Returns the number of samples.
     pub fn kept(&self) -> u32 {
         self.counts[0] + self.counts[1]
     }
 
-    /// The same, at least 1.
+    /// Returns the number of samples, at least 1.
     pub fn taken(&self) -> f64 {
         f64::from(self.kept().max(1))
     }
 
-    /// How many are added, at least 1: layers of what samples meet are the means of these.
+    /// Returns the number of added samples, at least 1. Layers that describe what samples hit are means over these.
     pub fn added(&self) -> f64 {
         f64::from(self.counts[0].max(1))
     }
 
-    /// A sum over all samples, by the sums over those that are added and subtracted; over all of them, a mean.
+    /// Returns the weighted sum over all samples, given the sums over the added and the subtracted ones. Divided by the
+    /// number of all samples, it is a mean.
     pub fn sum(&self, [added, subtracted]: [f64; 2]) -> f64 {
         self.each[0] * added - self.each[1] * subtracted
     }
 
-    /// The variance of a mean by both sums and the sum of all squares; of one sample nothing is known.
+    /// Estimates the variance of a mean from both sums and the sum of all squares. For a single sample nothing is
+    /// known, and it returns 0.
     ///
-    /// The mean is, but for terms that vanish faster, that of a s (c - m), where s is the sign and m the mean of the
-    /// samples c that are added.
+    /// Up to terms that vanish faster, it is the variance of the mean of a s (c - m). Here s is the sign of a sample, c
+    /// its value, and m the mean of the added samples.
     pub fn variance(&self, sums: [f64; 2], squares: f64) -> f64 {
         let (taken, [added, subtracted]) = (self.taken(), self.counts.map(f64::from));
         let spread = if self.counts.contains(&0) {

@@ -1,15 +1,15 @@
-//! An image in tiles, and the part of them that one machine makes.
+//! Divides an image into tiles, and the tiles among machines.
 
 use serde::{Deserialize, Serialize};
 
 use super::window::Window;
 
-/// Side of a tile in pixels.
+/// The side of a tile in pixels.
 pub const TILE: u32 = 16;
 
-/// One of several parts of an image, which can be made on different machines: every n-th tile.
+/// One of several parts of an image, which can be rendered on different machines. A part consists of every n-th tile.
 ///
-/// Parts have whole pixels, not samples of all: sums of samples in another order would have other last bits.
+/// Parts have whole pixels, not a share of each pixel's samples: sums in another order would differ in their last bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     number: u32,
@@ -25,13 +25,13 @@ impl Default for Shard {
 /// A tile of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TilePlace {
-    /// Counted row by row.
+    /// The index of the tile, counted row by row.
     pub number: u32,
-    /// Its first column and row in the window.
+    /// The first column and row in the window.
     pub corner: [u32; 2],
-    /// Pixels per row.
+    /// The number of pixels per row.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
 }
 
@@ -39,22 +39,22 @@ impl Shard {
     /// The whole image.
     pub const WHOLE: Self = Self { number: 1, count: 1 };
 
-    /// Part `number` of `count`, counted from 1; none if there is no such part.
+    /// Returns part `number` of `count`, counted from 1, or none if there is no such part.
     pub fn new(number: u32, count: u32) -> Option<Self> {
         (1..=count).contains(&number).then_some(Self { number, count })
     }
 
-    /// Which one it is, counted from 1.
+    /// Returns the number of this part, counted from 1.
     pub fn number(self) -> u32 {
         self.number
     }
 
-    /// Number of parts of the image.
+    /// Returns the number of parts of the image.
     pub fn count(self) -> u32 {
         self.count
     }
 
-    /// The tiles of a window that belong to this part, in ascending order of their numbers.
+    /// Returns the tiles of a window that belong to this part, in ascending order of their numbers.
     pub fn tiles(self, window: Window) -> impl Iterator<Item = TilePlace> {
         let [columns, rows] = [window.width, window.height].map(|side| side.div_ceil(TILE));
         (self.number - 1..columns * rows).step_by(self.count as usize).map(move |number| {
@@ -64,8 +64,8 @@ impl Shard {
         })
     }
 
-    /// Where among its tiles the one is that holds a pixel of a window, and the pixel's place in it; none if it has no
-    /// such tile.
+    /// Returns the index, among the tiles of this part, of the one that contains a pixel of a window, and the index of
+    /// the pixel in the tile. Returns none if the tile belongs to another part.
     pub fn place_of(self, window: Window, pixel: u32) -> Option<[usize; 2]> {
         let [x, y] = [pixel % window.width, pixel / window.width];
         let number = y / TILE * window.width.div_ceil(TILE) + x / TILE;
@@ -76,12 +76,12 @@ impl Shard {
 }
 
 impl TilePlace {
-    /// Number of pixels.
+    /// Returns the number of pixels.
     pub fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }
 
-    /// The number of one of its pixels in the window.
+    /// Returns the index in the window of one of the tile's pixels.
     pub fn pixel(self, window: Window, place: u32) -> usize {
         let [x, y] = [self.corner[0] + place % self.width, self.corner[1] + place / self.width];
         y as usize * window.width as usize + x as usize

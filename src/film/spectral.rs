@@ -1,4 +1,4 @@
-//! Images that hold a spectrum in each pixel.
+//! Images with a spectrum in each pixel.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,32 +7,32 @@ use crate::spectrum::WavelengthBands;
 /// The spectra of an image's pixels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpectralImage {
-    /// Where their bands lie.
+    /// The wavelength bands.
     pub bands: WavelengthBands,
     /// Whether S1, S2 and S3 of each band follow the radiance, which is S0.
     pub has_stokes: bool,
-    /// The radiance of all bands of a pixel, and the other components in the same way if there are any, pixel by pixel
-    /// from the top left; per nm, the mean over the band.
+    /// For each pixel from the top left, the radiance of all bands, followed by the other components in the same way if
+    /// there are any. Values are per nm, the mean over the band.
     pub values: Vec<f32>,
 }
 
 impl SpectralImage {
-    /// Components of each band: S0 alone, or S0 to S3.
+    /// Returns the number of components of each band: S0 alone, or S0 to S3.
     pub fn components(&self) -> usize {
         if self.has_stokes { 4 } else { 1 }
     }
 
-    /// Numbers of a pixel.
+    /// Returns the number of values per pixel.
     pub fn numbers(&self) -> usize {
         self.components() * self.bands.count()
     }
 
-    /// The radiance of all bands of a pixel, by its number.
+    /// Returns the radiance of all bands of a pixel, given its index.
     pub fn pixel(&self, number: usize) -> &[f32] {
         self.component(number, 0)
     }
 
-    /// A Stokes component of all bands of a pixel, by its number.
+    /// Returns a Stokes component of all bands of a pixel, given its index.
     ///
     /// # Panics
     /// If there is no such component.

@@ -3,24 +3,24 @@ use serde::{Deserialize, Serialize};
 use super::image::{DEPTH_OF_NOTHING, Pixel, Sample};
 use super::sample_weights::SampleWeights;
 
-/// Samples that are summed one after another before the tree begins.
+/// The number of samples that are summed sequentially before they enter the tree.
 const BLOCK: u32 = 16;
 
-/// The running sum of a pixel's samples in one pass in 64 bits, in an order that never changes.
+/// The running sum of a pixel's samples in one pass, in 64-bit precision and a fixed order.
 ///
-/// Aligned blocks of 16 samples are summed one by one, blocks as the leaves of a binary tree: so the error grows with
-/// the logarithm of the count.
+/// Aligned blocks of 16 samples are summed sequentially, and the blocks are the leaves of a binary tree. The error
+/// therefore grows with the logarithm of the count.
 #[derive(Clone, Debug)]
 pub struct PassSum {
     block: Entry,
-    /// Entry i, where present, sums 2^i blocks.
+    /// Entry i, if present, is the sum of 2^i blocks.
     tree: Vec<Option<Entry>>,
     taken: u32,
     rejected: u32,
     nearest: f64,
 }
 
-/// The sum of a pixel's passes, in the order in which they were made.
+/// The sum of a pixel's passes, in the order in which they were rendered.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PixelSum {
     total: Entry,
@@ -53,7 +53,7 @@ impl Default for PixelSum {
 }
 
 impl PassSum {
-    /// Adds the next sample. One that is not finite is left out and counted; the answer says whether it was kept.
+    /// Adds the next sample and returns whether it was kept. A sample that is not finite is left out and counted.
     pub fn add(&mut self, sample: &Sample) -> bool {
         let finite = sample.rgb.iter().all(|x| x.is_finite());
         if finite {
@@ -70,7 +70,7 @@ impl PassSum {
         finite
     }
 
-    /// Puts the finished block into the tree, as a binary counter carries.
+    /// Moves the finished block into the tree, with carries as in a binary counter.
     fn carry(&mut self) {
         let mut sum = std::mem::take(&mut self.block);
         for level in &mut self.tree {
@@ -85,17 +85,17 @@ impl PassSum {
         self.tree.push(Some(sum));
     }
 
-    /// The sum of the samples that were kept.
+    /// Returns the sum of the samples that were kept.
     pub fn rgb(&self) -> [f64; 3] {
         self.total().rgb
     }
 
-    /// Number of samples that were kept.
+    /// Returns the number of samples that were kept.
     pub fn kept(&self) -> u32 {
         self.taken - self.rejected
     }
 
-    /// Number of samples that hit a surface.
+    /// Returns the number of samples that hit a surface.
     pub fn met(&self) -> u32 {
         self.total().met
     }
@@ -113,18 +113,18 @@ impl PixelSum {
         self.nearest = self.nearest.min(pass.nearest);
     }
 
-    /// The sum of the samples that were kept.
+    /// Returns the sum of the samples that were kept.
     pub fn rgb(&self) -> [f64; 3] {
         self.total.rgb
     }
 
-    /// Number of samples that were kept.
+    /// Returns the number of samples that were kept.
     pub fn kept(&self) -> u32 {
         self.kept
     }
 
-    /// The mean over the samples that were kept, with those that are subtracted, and light beside them that is a mean
-    /// already. Depths are of those that are added.
+    /// Returns the pixel: the mean over the samples that were kept, including the subtracted ones, plus `beside`, light
+    /// that is already a mean. The depth is that of the added samples.
     pub fn pixel(&self, subtracted: &Self, weights: &SampleWeights, beside: [f64; 3]) -> Pixel {
         let mean = |of: &dyn Fn(&Self) -> f64| weights.sum([of(self), of(subtracted)]) / weights.taken();
         Pixel {
@@ -136,7 +136,8 @@ impl PixelSum {
     }
 }
 
-/// A number as the file has it. Beyond f32 it becomes the largest finite one: EXR readers choke on infinities.
+/// Converts a number for storage. Values beyond the range of f32 become the largest finite one, because EXR readers
+/// choke on infinities.
 pub fn stored(number: f64) -> f32 {
     (number as f32).clamp(f32::MIN, f32::MAX)
 }

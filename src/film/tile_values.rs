@@ -1,4 +1,4 @@
-//! The values of a tile, before they are laid into an image.
+//! The values of a tile, before they are copied into an image.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,26 +7,26 @@ use super::shard::TilePlace;
 use super::spectral::SpectralImage;
 use super::window::Window;
 
-/// A tile's pixels, row by row, and their numbers in each layer and in the spectral image.
+/// A tile's pixels, row by row, with their values in each layer and in the spectral image.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct TileValues {
-    /// The image.
+    /// The pixels of the image.
     pub pixels: Vec<Pixel>,
-    /// The layers beside it.
+    /// The values of each layer.
     pub layers: Vec<Vec<f32>>,
-    /// Spectra, if they are asked for.
+    /// The spectra, if requested.
     pub spectral: Vec<f32>,
 }
 
 impl TileValues {
-    /// Pixels of which nothing is known yet, with all that a film has.
+    /// Creates pixels without data, with room for everything that the film has.
     pub fn blank(film: &Film, pixels: usize) -> Self {
         let layers = film.layers.iter().map(|layer| vec![0.0; pixels * layer.numbers()]).collect();
         let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
         Self { pixels: vec![Pixel::BLANK; pixels], layers, spectral: vec![0.0; pixels * spectra] }
     }
 
-    /// Whether they are all numbers of a place in a film.
+    /// Returns whether there are exactly as many values as the film has in this tile.
     pub fn fit(&self, place: TilePlace, film: &Film) -> bool {
         let spectra = film.spectral.as_ref().map_or(0, SpectralImage::numbers);
         self.pixels.len() == place.pixels()
@@ -34,7 +34,7 @@ impl TileValues {
             && self.spectral.len() == place.pixels() * spectra
     }
 
-    /// Puts them into their place in a film.
+    /// Copies the values to their place in a film.
     pub fn put_into(&self, film: &mut Film, place: TilePlace) {
         let window = film.window();
         put(&self.pixels, 1, window, place, &mut film.pixels);
@@ -47,7 +47,7 @@ impl TileValues {
     }
 }
 
-/// Puts the values of a tile's pixels, `each` of every pixel, into the rows of a window.
+/// Copies the values of a tile, `each` per pixel, into the rows of a window.
 fn put<T: Copy>(values: &[T], each: usize, window: Window, place: TilePlace, rows: &mut [T]) {
     let length = place.width as usize * each;
     for (row, values) in (0..place.height).zip(values.chunks_exact(length)) {

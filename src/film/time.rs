@@ -1,19 +1,19 @@
-//! The time of day, as files write it.
+//! The time of day as files record it.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Seconds of a day.
 const DAY: u64 = 86_400;
 
-/// A time in UTC as `YYYY:MM:DD hh:mm:ss` (OpenEXR, *Standard Attributes*, `capDate`); one before 1970 as its first
-/// second.
+/// Formats a time in UTC as `YYYY:MM:DD hh:mm:ss` (OpenEXR, *Standard Attributes*, `capDate`). A time before 1970
+/// becomes the first second of that year.
 ///
-/// The calendar is that of H. Hinnant, *chrono-Compatible Low-Level Date Algorithms* (2013), `civil_from_days`: years
-/// begin in March, so that the day of a leap year is their last.
+/// The algorithm is `civil_from_days` of H. Hinnant, *chrono-Compatible Low-Level Date Algorithms* (2013). Years begin
+/// in March, so that a leap day is the last day of its year.
 pub(super) fn cap_date(time: SystemTime) -> String {
     let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
-    // From 0000-03-01 on; an era is 400 years.
+    // Days since 0000-03-01. An era has 400 years.
     let days = seconds / DAY + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;

@@ -14,42 +14,43 @@ use crate::spectrum::Quantity;
 pub struct Area<S> {
     /// The surface.
     pub shape: Arc<Shape>,
-    /// The object it belongs to.
+    /// The object whose surface it is.
     pub object: u32,
-    /// What it shows.
+    /// The radiance of the surface.
     pub radiance: S,
-    /// The sides that show it.
+    /// The sides that emit.
     pub sides: Sides,
-    /// Whether next-event estimation samples it: finite `emissive` surfaces. Chance finds planes and glowing glass.
+    /// Whether next-event estimation samples it, as it does finite `emissive` surfaces. Planes and glowing glass are
+    /// only found by chance.
     pub is_sampled: bool,
-    /// The image that it shows, if it shows one.
+    /// The image that it shows, if any.
     image: Option<ShownImage>,
-    /// The parts of a shape of several, one of which is sampled.
+    /// The parts of a shape that has several. Sampling chooses one of them.
     parts: Option<LightParts>,
-    /// The box from whose outside no backs are seen.
+    /// The box of a closed shape. From outside of it, no back faces are visible.
     closed: Option<Bounds>,
-    /// The unit normals of all that is seen of a sphere, if that is a small part.
+    /// The unit normals of all that is visible of a sphere, if that is a small part.
     visible_cap: Option<Cone>,
 }
 
 /// An image on a surface that shines.
 #[derive(Clone, Debug)]
 pub struct ShownImage {
-    /// Where the points of the surface lie in it.
+    /// The mapping from points of the surface to the image.
     pub coordinates: Arc<Coordinates>,
-    /// How bright it makes them; none of a surface that is not sampled.
+    /// The brightness that it gives them; `None` for a surface that is not sampled.
     pub map: Option<Arc<EmissionMap>>,
 }
 
-/// 1 - cos of the largest cap that is sampled, and not the cone in which the whole sphere is seen: an eighth of it.
+/// Largest 1 - cos of a cap that is sampled instead of the cone to the whole sphere: an eighth of the sphere.
 const SMALL: f64 = 0.25;
-/// Unit normals below which a cap is not known well enough.
+/// Fewest unit normals from which a cap is known well enough.
 const ENOUGH: usize = 64;
-/// How often a lamp that shows an image is sampled where that is bright, and not evenly over what is seen of it.
+/// Probability of sampling a lamp that shows an image by the image's brightness, and not evenly over its visible part.
 const BY_IMAGE: f64 = 0.75;
 
 impl<S> Area<S> {
-    /// The light that an object is, with the image that it shows. Parts that are known of its mesh are shared.
+    /// Creates the light of an object, with the image that it shows. Parts of known meshes are shared.
     pub fn new(
         shape: Arc<Shape>,
         object: u32,
@@ -82,28 +83,28 @@ impl<S> Area<S> {
         }
     }
 
-    /// Whether a cap may be all that is seen of it, so that learning it could help: of a sphere that shines evenly.
+    /// Returns whether learning its visible cap could help: for a sampled sphere that emits evenly.
     pub fn may_show_a_cap(&self) -> bool {
         self.is_sampled && matches!(*self.shape, Shape::Sphere(_)) && self.image.is_none()
     }
 
-    /// How bright its image makes it, if that varies.
+    /// Returns the brightness that its image gives to its places, if that varies.
     pub(super) fn emission_map(&self) -> Option<&EmissionMap> {
         self.image.as_ref()?.map.as_deref()
     }
 
-    /// The shape with its image, and the cells of a part by which that is sampled, if it has some.
+    /// Returns the shape with its image, and the cells by which a part is sampled, if it has any.
     fn cells(&self, part: u32) -> Option<(TexturedShape<'_>, &Distribution2d)> {
         let image = self.image.as_ref()?;
         let surface = TexturedShape { shape: &self.shape, coordinates: &image.coordinates };
         Some((surface, image.map.as_ref()?.cells(part)?))
     }
 
-    /// Tells the light the unit normals at which paths hit it by chance: if they lie close together, it is sampled
-    /// there.
+    /// Learns the visible cap from the unit normals at which paths hit the light by chance. If they lie close together,
+    /// the light is sampled there.
     ///
-    /// The cap is larger than that by a margin, the more so the fewer are known: what is seen beyond the rim makes rare
-    /// bright samples, which cost more than some that see nothing.
+    /// The cap is larger than these normals require. The margin grows as fewer normals are known: light from beyond the
+    /// rim makes rare bright samples, which cost more than some samples that see nothing.
     pub fn learn_visible_cap(&mut self, normals: &[DVec3]) {
         let margin = 1.1 + 4.0 / (normals.len() as f64).sqrt();
         let cap = if normals.len() < ENOUGH { None } else { Cone::around(normals) };
@@ -111,7 +112,7 @@ impl<S> Area<S> {
         self.visible_cap = wider.filter(|cap| cap.one_minus_cos < SMALL);
     }
 
-    /// The sphere that it is and the part of that which is seen, if that is small.
+    /// Returns the sphere and its visible cap, if that is small.
     fn seen_cap(&self) -> Option<(&Sphere, &Cone)> {
         match &*self.shape {
             Shape::Sphere(sphere) => Some((sphere, self.visible_cap.as_ref()?)),
@@ -119,12 +120,12 @@ impl<S> Area<S> {
         }
     }
 
-    /// Whether the backs of parts may be hit first: never from outside of a closed body.
+    /// Returns whether a ray may hit the back of a part first. From outside of a closed body it never does.
     fn shows_backs(&self, from: DVec3) -> bool {
         self.sides == Sides::Both && self.closed.is_none_or(|bounds| bounds.contains(from))
     }
 
-    /// Whether one of several parts or cells is drawn first, which uses up digits of a random number.
+    /// Returns whether a part or a cell is chosen first, which uses up digits of a random number.
     pub(super) fn has_parts(&self) -> bool {
         self.parts.is_some() || self.emission_map().is_some_and(EmissionMap::has_cells)
     }
@@ -138,7 +139,7 @@ impl<S> Area<S> {
         Some(self.sample_part(Some(part.index as u32), from, [part.u, u[1]])?.times(part.probability))
     }
 
-    /// A direction toward one of several parts, or to a shape that has no others.
+    /// Samples a direction toward one part, or toward a shape that has only one.
     fn sample_part(&self, part: Option<u32>, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
         let evenly = |u: f64| match part {
             Some(part) => self.shape.sample_part(part, from, [u, v]),
@@ -157,7 +158,8 @@ impl<S> Area<S> {
         Some(ShapeSample { density: None, ..sample })
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first hits it at a crossing.
+    /// Returns the pdf per steradian with which `sample_part` draws the direction of a ray whose first hit is
+    /// `intersection`.
     fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let evenly = match &self.parts {
             Some(_) => self.shape.pdf_part(ray, intersection),
@@ -172,14 +174,14 @@ impl<S> Area<S> {
         BY_IMAGE * of_image + (1.0 - BY_IMAGE) * evenly
     }
 
-    /// A sample of which it is known that no other part of the light hides it.
+    /// Samples the light, and rejects samples that another part of it occludes.
     pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let sample = self.sample_li_in_part(from, normal, u)?;
         let is_hidden = |part| self.shape.hides(&sample.ray, part, sample.distance);
         (!sample.part.is_some_and(is_hidden)).then_some(LightSample { part: None, ..sample })
     }
 
-    /// Looks for the light exactly as a ray that happens to hit it would: no distance needs a tolerance.
+    /// Samples the light, and hits it exactly as a ray that finds it by chance would: no distance needs a tolerance.
     pub(super) fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let sample = self.sample(from.position, normal, u)?;
         // A point in space has no horizon.
@@ -187,7 +189,7 @@ impl<S> Area<S> {
             return None;
         }
         let ray = from.leave(sample.direction);
-        // The tree of a mesh is left to those who ask what occludes the light.
+        // The tree of a mesh is not searched here: that is left to the test for occlusion.
         let part = sample.part.filter(|_| self.shape.has_triangles());
         let intersection = match part {
             Some(part) => self.shape.intersect_triangle(&ray, part)?,
@@ -211,8 +213,8 @@ impl<S> Area<S> {
         Some(LightSample { ray, distance, object, part, pdf: Some(pdf), factor: 1.0, uv })
     }
 
-    /// Density per steradian with which the light is sampled, from a surface of the given unit normal, along a ray that
-    /// hits it first at a crossing; none where it is seen exactly edge-on.
+    /// Returns the pdf per steradian with which the light is sampled from a surface with the given unit normal, along a
+    /// ray that first hits it at `intersection`; `None` if the pdf is 0, or if the light is seen exactly edge-on.
     pub(super) fn pdf_at(&self, ray: &Ray, normal: DVec3, intersection: &Intersection) -> Option<f64> {
         usable(match (self.seen_cap(), &self.parts) {
             (Some((sphere, cap)), _) => sphere.pdf_cap(cap, ray, intersection.t),
@@ -225,17 +227,17 @@ impl<S> Area<S> {
         })
     }
 
-    /// The factor on its radiance by the image that it shows, each place by what it sends; 1 if it shows none.
+    /// Returns the factor of its image on its radiance, a mean weighted by the light of each place; 1 without an image.
     pub fn brightness(&self) -> f64 {
         self.emission_map().map_or(1.0, |map| map.brightness)
     }
 
-    /// The share of its area that sends as much light at that brightness; 1 if it shows no image.
+    /// Returns the share of its area that would emit as much light at that mean brightness; 1 without an image.
     pub fn bright_share(&self) -> f64 {
         self.emission_map().map_or(1.0, |map| map.mean / map.brightness.max(f64::MIN_POSITIVE))
     }
 
-    /// A ball around the part that can be seen, and the most area that is seen of it; none of an infinite shape.
+    /// Returns a ball around the visible part, and the largest area that is seen of it; `None` for an infinite shape.
     pub fn visible_part(&self) -> Option<(Ball, f64)> {
         let own = self.shape.ball()?;
         let size = LightBounds::of_shape(&self.shape, self.sides == Sides::Both)?.intensity;
@@ -245,7 +247,7 @@ impl<S> Area<S> {
         Some((part, PI * part.radius * part.radius))
     }
 
-    /// Whether photons can be sent from it.
+    /// Returns whether photons can be sent from it.
     pub(super) fn sends_photons(&self) -> bool {
         self.image.as_ref().is_none_or(|image| image.map.is_some())
     }
@@ -259,7 +261,7 @@ impl<S> Area<S> {
         Beam { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart }
     }
 
-    /// A photon from a point of the surface to the ball: in the cone that it fills or, from inside, by its cosine.
+    /// Samples a photon from a point to the ball: in the cone that the ball subtends or, from inside, by the cosine.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let surface = self.sample_emission(ball, u)?;
         let point = &surface.point;
@@ -269,8 +271,8 @@ impl<S> Area<S> {
         self.sides.shine(cos > 0.0).then_some(sample)
     }
 
-    /// How densely `sample_le` draws a photon for a ball from places of a density of their own, per unit of area and
-    /// steradian; 0 of a way that does not lead there.
+    /// Returns the pdf with which `sample_le` draws a photon for a ball, per unit of area and steradian; 0 for a
+    /// direction that does not lead there. `guide` is the density of places in the unit square.
     pub(super) fn pdf_le(&self, ball: &Ball, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let Some(EmissionPoint { point, density, .. }) = &sample.surface else { return 0.0 };
         let along = self.toward(ball, point).pdf(sample.ray.direction, guide);
@@ -286,7 +288,7 @@ impl<S> Area<S> {
         TowardBall { ball, from: point.position, normal: point.normal, front: self.front() }
     }
 
-    /// A point from which light may reach a ball.
+    /// Samples a point from which light may reach a ball.
     fn sample_emission(&self, ball: &Ball, u: [f64; 2]) -> Option<EmissionPoint> {
         match (&self.image, self.seen_cap()) {
             (Some(image), _) => self.sample_textured(&image.coordinates, u),
@@ -296,7 +298,7 @@ impl<S> Area<S> {
         }
     }
 
-    /// A point of a part that is drawn by its flux: most often where its image is bright, else anywhere.
+    /// Chooses a part by its flux and samples a point on it: usually where its image is bright, otherwise anywhere.
     fn sample_textured(&self, coordinates: &Coordinates, [u, v]: [f64; 2]) -> Option<EmissionPoint> {
         let surface = TexturedShape { shape: &self.shape, coordinates };
         let whole = DiscreteSample { index: 0, probability: 1.0, u };
@@ -314,14 +316,14 @@ impl<S> Area<S> {
         Some(EmissionPoint { point, uv: surface.coordinates_at(part, at)?, density })
     }
 
-    /// A path of light from a point of the surface, by its cosine; most often from the cap of a sphere that is seen.
+    /// Emits a cosine-distributed light path from a point of the surface, usually of the visible cap of a sphere.
     pub(super) fn emit(&self, [u0, u1, a, b]: [f64; 4]) -> Option<LeSample> {
         let sample = self.sample_le(&EVERYWHERE, [a, b], [u0, u1])?;
         let factor = sample.factor / self.pdf_le(&EVERYWHERE, &sample, |_| 1.0);
         (factor > 0.0 && factor.is_finite()).then_some(LeSample { factor, ..sample })
     }
 
-    /// The flux that `emit` sends, per radiance; 0 if it cannot.
+    /// Returns the flux that `emit` sends for a radiance of 1; 0 if it sends none.
     pub(super) fn flux(&self) -> f64 {
         if !self.is_sampled || !self.sends_photons() {
             return 0.0;
@@ -331,7 +333,7 @@ impl<S> Area<S> {
         PI * seen * sides * self.shape.area()
     }
 
-    /// How often a point inside the ball that photons are sent to sends one from its front.
+    /// Returns the probability with which a point inside the ball that photons are sent to sends one from its front.
     fn front(&self) -> f64 {
         match (self.sides, self.shape.is_closed()) {
             (Sides::Front, _) => 1.0,
@@ -341,10 +343,10 @@ impl<S> Area<S> {
     }
 }
 
-/// A ball that holds everything.
+/// A ball that contains everything.
 const EVERYWHERE: Ball = Ball { center: DVec3::ZERO, radius: f64::INFINITY };
 
-/// How often the outer side of a closed lamp around which an object is built sends a photon, and not the inner one.
+/// Probability that a photon leaves a closed lamp from its outer side, where an object is built around the lamp.
 const OUTWARD: f64 = 0.875;
 
 fn usable(pdf: f64) -> Option<f64> {

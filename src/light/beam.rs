@@ -8,26 +8,26 @@ use crate::shape::Ball;
 /// How one light sends photons to a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Beam {
-    /// What they are sent to.
+    /// The ball to which photons are sent.
     pub ball: Ball,
-    /// Of a light that is a point: the directions that photons take.
+    /// For a point light, the directions that photons take.
     pub cone: Cone,
-    /// Of a sky: the opening through which they come, if it is one.
+    /// For a sky, the opening through which photons come, if any.
     pub opening: Option<Opening>,
-    /// The flux that it sends to the ball or into the cone, per emission, about.
+    /// Estimated flux that it sends to the ball or into the cone, for an emission of 1.
     pub flux: f64,
-    /// Whether the light is apart from the ball, so that a place of the unit square stands for a way to it.
+    /// Whether the light lies apart from the ball, so that a place of the unit square stands for one way to it.
     pub is_apart: bool,
 }
 
 impl Beam {
-    /// Of light that comes from far away, with an irradiance for its emission.
+    /// Creates the beam of a light far away, with the irradiance for an emission of 1.
     pub(super) fn from_sky(ball: &Ball, irradiance: f64) -> Self {
         let flux = irradiance * PI * ball.radius * ball.radius;
         Self { ball: *ball, cone: Cone::ALL, opening: None, flux, is_apart: true }
     }
 
-    /// Of a sky's light that comes through an opening, with a mean radiance for its emission.
+    /// Creates the beam of a sky through an opening, with the mean radiance for an emission of 1.
     pub(super) fn through(opening: &Opening, ball: &Ball, radiance: f64) -> Self {
         let TowardBall { from, normal, .. } = opening.toward(ball, opening.center);
         let cone = ball.cone_from(from);
@@ -38,21 +38,23 @@ impl Beam {
         Self { ball: *ball, cone: Cone::ALL, opening: Some(*opening), flux, is_apart }
     }
 
-    /// The ray of a photon from a unit vector toward the sky, through a disc across the ball; none beside the disc.
+    /// Returns the ray of a photon that comes from the unit vector `toward` the sky, through a disc across the ball;
+    /// `None` if `guide_uv` lies beside the disc.
     pub(super) fn ray_from_sky(ball: &Ball, toward: DVec3, guide_uv: [f64; 2]) -> Option<Ray> {
         let [x, y] = disk_in_square(guide_uv)?;
         let origin = ball.center + Frame::about(toward).to_world(DVec3::new(x, y, 0.0) * ball.radius);
         Some(Ray { origin, direction: -toward })
     }
 
-    /// The place of the unit square where the way from a point toward the sky runs through the disc; none beside it.
+    /// Returns the place of the unit square where the line from a point to the sky crosses the disc; `None` beside it.
     pub(crate) fn place_in_disc(&self, from: DVec3, toward: DVec3) -> Option<[f64; 2]> {
         let local = Frame::about(toward).to_local(from - self.ball.center) / self.ball.radius;
         square_around_disk([local.x, local.y])
     }
 
-    /// How densely the ray of a photon from the sky is drawn from places of a density of their own: per unit of area
-    /// across its way, and through an opening per steradian as well; 0 of one that does not lead to the ball.
+    /// Returns the pdf of a photon's ray from the sky: per unit of area across the ray and, through an opening, per
+    /// steradian as well; 0 for a ray that does not lead to the ball. `guide` is the density of places in the unit
+    /// square.
     pub(super) fn pdf_from_sky(&self, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         if let Some(opening) = &self.opening {
             return opening.pdf_toward(&self.ball, ray, guide);

@@ -7,33 +7,33 @@ use std::f64::consts::PI;
 use crate::math::{Bounds, DVec3};
 use crate::shape::{Polygon, Shape};
 
-/// What a tree knows of a light.
+/// What a light tree uses of a light.
 #[derive(Clone, Copy, Debug)]
 pub struct LightBounds {
-    /// The box that it fills.
+    /// The box around it.
     pub bounds: Bounds,
-    /// The unit normal of its front; none where that faces all ways.
+    /// The unit normal of its front; `None` if it faces all directions.
     pub normal: Option<DVec3>,
     /// Whether its back shines as well.
     pub two_sided: bool,
-    /// Radiance times the area seen from where it is seen best, 0 or more.
+    /// Radiance times the area seen from the best direction, 0 or more.
     pub intensity: f64,
 }
 
-/// Several lights as one.
+/// Several lights taken as one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightGroup {
-    /// The box that they fill.
+    /// The box around them.
     pub bounds: Bounds,
     /// The box around their unit normals.
     normals: Bounds,
-    /// Whether the back of any shines.
+    /// Whether the back of any of them shines.
     pub two_sided: bool,
     pub intensity: f64,
 }
 
 impl LightBounds {
-    /// A shape of radiance 1; none of an infinite one.
+    /// Bounds a shape of radiance 1; `None` if it is infinite.
     ///
     /// A convex body shows a quarter of its area on average (Cauchy 1841).
     pub(super) fn of_shape(shape: &Shape, two_sided: bool) -> Option<Self> {
@@ -42,22 +42,22 @@ impl LightBounds {
         Some(Self { bounds: shape.bounds()?, normal: shape.flat_normal(), two_sided, intensity })
     }
 
-    /// A part of a shape, of radiance 1, that shines from its front.
+    /// Bounds a part of a shape that shines from its front, with radiance 1.
     pub fn of_part(part: &Polygon) -> Self {
         Self { bounds: part.bounds(), normal: Some(part.normal()), two_sided: false, intensity: part.area() }
     }
 
-    /// A point that shines in all directions with an intensity of 1.
+    /// Bounds a point that shines in all directions, with intensity 1.
     pub(super) fn of_point(position: DVec3) -> Self {
         Self { bounds: Bounds::around([position]), normal: None, two_sided: false, intensity: 1.0 }
     }
 }
 
 impl LightGroup {
-    /// Of no light.
+    /// The group of no lights.
     pub const EMPTY: Self = Self { bounds: Bounds::EMPTY, normals: Bounds::EMPTY, two_sided: false, intensity: 0.0 };
 
-    /// Those and another light.
+    /// Returns the group with one more light.
     pub fn and(&self, light: &LightBounds) -> Self {
         let normals = match light.normal {
             Some(normal) => Bounds::around([normal]),
@@ -67,7 +67,7 @@ impl LightGroup {
         self.with(&Self { bounds, normals, two_sided, intensity })
     }
 
-    /// Both groups as one.
+    /// Returns both groups as one.
     pub fn with(&self, other: &Self) -> Self {
         Self {
             bounds: self.bounds.union(other.bounds),
@@ -77,20 +77,20 @@ impl LightGroup {
         }
     }
 
-    /// The middle of all normals, if there is one.
+    /// Returns the middle of all normals, if there is one.
     pub fn axis(&self) -> Option<DVec3> {
         self.normals.center().try_normalize()
     }
 
-    /// The paper's cost of holding so much light in so large a box, facing so many ways.
+    /// Returns the paper's cost of a group with this intensity, this size of box and this spread of normals.
     pub fn cost(&self) -> f64 {
         let edges = self.bounds.size();
         let area = edges.x * edges.y + edges.y * edges.z + edges.z * edges.x;
-        // Lamps on a line or in a point have no area; their length tells them apart.
+        // Lamps on a line or in a point have no area: the lengths of their boxes tell them apart.
         self.intensity * (area + 1e-6 * edges.length_squared()) * orientations(self.least_cosine())
     }
 
-    /// At most the cosine between the middle of all normals and any of them.
+    /// Returns a lower bound for the cosine between the middle of all normals and any of them.
     ///
     /// A unit vector n no farther than r from c has r^2 >= 1 + |c|^2 - 2 c . n.
     fn least_cosine(&self) -> f64 {
@@ -102,8 +102,8 @@ impl LightGroup {
     }
 }
 
-/// The paper's measure of orientations within an angle of an axis, given by its cosine, for lights that shine by the
-/// cosine: its integral, solved for angles below and above a right one.
+/// Returns the paper's measure of orientations within an angle of an axis, given by its cosine, for lights whose
+/// emission falls off with the cosine. The integral is solved for angles below and above a right angle.
 fn orientations(cos: f64) -> f64 {
     let sin = (1.0 - cos * cos).sqrt();
     if cos >= 0.0 {

@@ -1,4 +1,4 @@
-//! How bright an image makes the places of a lamp, by which they are sampled.
+//! The brightness that an image gives to the places of a lamp, by which they are sampled.
 
 use rayon::prelude::*;
 
@@ -6,14 +6,14 @@ use crate::math::Distribution2d;
 use crate::shape::{Coordinates, TexturedShape};
 use crate::spectrum::CurveKind;
 
-/// The brightness of each part of a surface that shines by an image, and of cells of the unit square on it.
+/// The brightness of each part of a surface that shows an image, and of the cells of a grid on each part.
 ///
-/// Cells are about as large as texels; those of large images hold several. A part that is nearly even has none.
+/// Cells are about as large as texels; in large images, each holds several. A part that is nearly even has none.
 #[derive(Clone, Debug)]
 pub struct EmissionMap {
-    /// The mean brightness of the lamp, a third of red, green and blue.
+    /// Mean brightness of the lamp, where brightness is the mean of red, green and blue.
     pub(super) mean: f64,
-    /// Its brightness, each place by what it sends: the mean square over the mean.
+    /// Mean brightness with each place weighted by its light: the mean square over the mean.
     pub(super) brightness: f64,
     parts: Vec<Part>,
 }
@@ -25,21 +25,21 @@ struct Part {
     cells: Option<Box<Distribution2d>>,
 }
 
-/// Most cells of a lamp, which take 8 MB.
+/// Maximum number of cells of a lamp. They take 8 MB.
 const MOST_CELLS: f64 = (1 << 20) as f64;
-/// Most texels along an edge of a part that are told apart.
+/// Maximum number of texels along an edge of a part.
 const MOST_TEXELS: f64 = MOST_CELLS;
-/// Most places of a lamp that are looked at, but for two each way in each of its cells.
+/// Maximum number of places at which a lamp is evaluated. Each cell has at least two along each side regardless.
 const MOST_LOOKS: f64 = (1 << 25) as f64;
-/// The mean square of a part's brightness, over its squared mean, from which cells bring more than they take.
+/// Ratio of a part's mean squared brightness to its squared mean above which cells save more than they cost.
 const UNEVEN: f64 = 1.3;
-/// The same of a round shape, of which cells behind the horizon are drawn as often as those before it.
+/// Value of `UNEVEN` for a round shape, where cells behind the horizon are drawn as often as those in front of it.
 const UNEVEN_ROUND: f64 = 4.0;
-/// How much of a part's worth is its own brightness, and not the lamp's: no part is left out because it seemed dark.
+/// Weight of a part's own brightness in its worth, against the lamp's: no part is left out because it seemed dark.
 const OWN: f64 = 0.9;
 
 impl EmissionMap {
-    /// Of a shape on which an image or a pattern lies; none if that does not vary, or if the shape is infinite.
+    /// Creates the map of a shape with an image or a pattern; `None` if nothing varies, or if the shape is infinite.
     pub fn new(kind: &CurveKind, surface: TexturedShape) -> Option<Self> {
         let shape = surface.shape;
         let resolution = kind.resolution().filter(|_| shape.is_bounded())?;
@@ -72,7 +72,7 @@ impl EmissionMap {
         Some(Self { mean: light / whole, brightness, parts })
     }
 
-    /// By how much an area of a part counts.
+    /// Returns the weight of a unit of area of a part.
     pub(super) fn worth(&self, part: u32) -> f64 {
         OWN * self.parts[part as usize].mean + (1.0 - OWN) * self.mean
     }
@@ -81,30 +81,31 @@ impl EmissionMap {
         self.parts.iter().any(|part| part.cells.is_some())
     }
 
-    /// The cells of a part, each drawn by its light; none if it is nearly even.
+    /// Returns the cells of a part, each drawn in proportion to its light; `None` if the part is nearly even.
     pub(super) fn cells(&self, part: u32) -> Option<&Distribution2d> {
         self.parts[part as usize].cells.as_deref()
     }
 }
 
-/// The unit square on a part, cut into cells of even size.
+/// The unit square on a part, cut into cells of equal size.
 struct Grid<F> {
     size: [usize; 2],
     looks: [usize; 2],
-    /// The brightness at a place, and how much area it stands for; none beside the shape.
+    /// The brightness at a place, and the area that it stands for; `None` beside the shape.
     look: F,
 }
 
 impl<F: Fn([f64; 2]) -> Option<[f64; 2]> + Sync> Grid<F> {
-    /// Of a part with so many texels; cells are coarser by a factor of 1 or more, looked at in so many rows at most.
+    /// Creates the grid of a part that spans `texels`. Its cells are coarser than texels by a factor of 1 or more, and
+    /// are evaluated in at most `most` rows and columns each.
     fn new(texels: [f64; 2], [coarser, most]: [f64; 2], look: F) -> Self {
         let size = texels.map(|texels| (texels / coarser).ceil());
-        // Two looks are exact where texels pass into each other, and one at each of several.
+        // Two places per side are exact within an interpolated texel, and one per texel is where a cell holds several.
         let looks = [0, 1].map(|i| (texels[i] / size[i]).ceil().clamp(2.0, most) as usize);
         Self { size: size.map(|cells| cells as usize), looks, look }
     }
 
-    /// The part, and the mean square of its brightness.
+    /// Returns the part, and its mean squared brightness.
     fn part(&self, uneven: f64) -> (Part, f64) {
         let [columns, rows] = self.size;
         let cell = |number: usize| self.cell([number % columns, number / columns]);
@@ -122,7 +123,7 @@ impl<F: Fn([f64; 2]) -> Option<[f64; 2]> + Sync> Grid<F> {
         (Part { mean, cells: keeps.then(kept) }, square)
     }
 
-    /// The light of a cell and its area.
+    /// Returns the light of a cell and its area.
     fn cell(&self, cell: [usize; 2]) -> [f64; 2] {
         let [mut light, mut area] = [0.0; 2];
         for (i, j) in (0..self.looks[1]).flat_map(|j| (0..self.looks[0]).map(move |i| (i, j))) {

@@ -6,7 +6,7 @@ use crate::math::{DMat3, DVec3, Ray, cosine_about, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table, Texture};
 
-/// Light from all directions, where rays miss everything: the same from everywhere, or an image.
+/// Light from all directions, seen by rays that miss everything: the same from everywhere, or an image.
 ///
 /// ```toml
 /// [[light]]
@@ -18,30 +18,31 @@ use crate::spectrum::{Curve, CurveKind, Draw, Lanes, Placement, Quantity, Table,
 /// ```
 #[derive(Clone, Debug)]
 pub struct Environment<S> {
-    /// What rays show that miss everything; a factor on the image, where there is one.
+    /// The radiance seen by rays that miss everything; a factor on the image, if there is one.
     pub radiance: S,
     /// The image.
     pub image: Option<Sky<S>>,
-    /// How it is polarized, if it is.
+    /// The polarization of its light, if any.
     pub polarization: Option<SkyPolarization>,
 }
 
-/// The polarization of a clear sky: of sunlight that air has scattered once.
+/// The polarization of a clear sky: of sunlight scattered once by the air.
 ///
 /// Rayleigh 1871, *On the Light from the Sky, its Polarization and Colour*: the degree is sin^2 g / (1 + cos^2 g) at an
-/// angle g from the sun, and fields swing across the plane of the sun and the ray. Air scatters more than once, and
-/// molecules are no spheres: so the most there is, a quarter turn from the sun, is given.
+/// angle g from the sun, and the field oscillates at right angles to the plane of the sun and the ray. Real air
+/// scatters more than once, and molecules are not spheres, so the largest degree, a quarter turn from the sun, is a
+/// parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkyPolarization {
     /// Unit vector toward the sun.
     pub sun: DVec3,
-    /// The degree a quarter turn from it, 0 to 1.
+    /// Degree of polarization a quarter turn from the sun, 0 to 1.
     pub degree: f64,
 }
 
 impl SkyPolarization {
-    /// Along which direction light is polarized that comes from the unit vector `wi`, and to which degree; none toward
-    /// the sun and away from it, where it is not.
+    /// Returns the axis along which light from the unit vector `wi` is polarized, and its degree; `None` toward the sun
+    /// and away from it, where light is unpolarized.
     pub fn toward(&self, wi: DVec3) -> Option<(DVec3, f64)> {
         let cos = wi.dot(self.sun);
         let axis = wi.cross(self.sun).try_normalize()?;
@@ -53,14 +54,14 @@ impl SkyPolarization {
 #[derive(Clone, Debug)]
 pub struct Sky<S> {
     panorama: Arc<Panorama>,
-    /// World to image.
+    /// The rotation from world to image.
     turn: DMat3,
     /// The image's colors as factors on white.
     colors: S,
 }
 
 impl Sky<Curve> {
-    /// An image, turned from its own directions into the world's by a rotation.
+    /// Creates an image that `rotation` turns from its own directions into the world's.
     pub fn new(panorama: Panorama, rotation: DMat3) -> Self {
         let texture = Texture { image: panorama.image.clone(), placement: Placement::default() };
         let colors = CurveKind::Texture(texture).into();
@@ -79,7 +80,7 @@ impl<S> Environment<S> {
         Environment { radiance: convert(Quantity::Emission, &self.radiance), image, polarization }
     }
 
-    /// Draws directions by the image's brightness; without one by the cosine, as the irradiance of an even sky.
+    /// Samples a direction by the image's brightness; without one, by the cosine, like the irradiance of an even sky.
     pub(super) fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let (direction, pdf) = match &self.image {
             Some(sky) => {
@@ -94,7 +95,7 @@ impl<S> Environment<S> {
         (pdf > 0.0).then(|| LightSample::of_sky(from.leave(direction), Some(pdf), 1.0))
     }
 
-    /// Density per steradian with which `sample_li` draws a direction, at a surface of the given unit normal.
+    /// Returns the pdf per steradian with which `sample_li` draws a direction at a surface with the given unit normal.
     pub(super) fn pdf(&self, direction: DVec3, normal: DVec3) -> f64 {
         match &self.image {
             Some(sky) => sky.panorama.pdf(sky.turn * direction),
@@ -102,41 +103,42 @@ impl<S> Environment<S> {
         }
     }
 
-    /// The bright part of its image, from which photons are sent; none of a polarized sky.
+    /// Returns the bright part of its image, from which photons are sent; `None` for a polarized sky.
     pub fn bright(&self) -> Option<&BrightPart> {
         self.image.as_ref().filter(|_| self.polarization.is_none())?.panorama.bright.as_ref()
     }
 
-    /// Whether a direction lies in that part.
+    /// Returns whether a direction lies in the bright part from which photons are sent.
     pub(super) fn is_bright(&self, direction: DVec3) -> bool {
         let is_bright = |sky: &Sky<S>| sky.panorama.is_bright(sky.turn * direction);
         self.polarization.is_none() && self.image.as_ref().is_some_and(is_bright)
     }
 
-    /// Whether its image is not black in a direction.
+    /// Returns whether its image is not black in a direction.
     pub fn shines_toward(&self, direction: DVec3) -> bool {
         let color = |sky: &Sky<S>| sky.panorama.color(sky.turn * direction);
         self.image.as_ref().is_none_or(|sky| color(sky).iter().any(|&x| x > 0.0))
     }
 
-    /// A direction toward the bright part for two random numbers, and its density per steradian.
+    /// Samples a direction toward the bright part, and returns it with its pdf per steradian.
     pub fn sample_bright(&self, u: [f64; 2]) -> Option<(DVec3, f64)> {
         let sky = self.image.as_ref()?;
         let (direction, pdf) = sky.panorama.sample_bright(u)?;
         Some((unit(sky.turn.transpose() * direction), pdf))
     }
 
-    /// Photons of the bright part.
+    /// Returns the beam of the bright part.
     pub(super) fn beam(&self, ball: &Ball) -> Option<Beam> {
         Some(Beam::from_sky(ball, self.bright()?.irradiance))
     }
 
-    /// Photons of all its light that comes through an opening, but that of the bright part; none of a polarized sky.
+    /// Returns the beam through an opening, of all light except that of the bright part; `None` for a polarized sky.
     pub(super) fn beam_through(&self, opening: &Opening, ball: &Ball) -> Option<Beam> {
         self.polarization.is_none().then(|| Beam::through(opening, ball, self.mean()))
     }
 
-    /// A photon of the bright part, through a disc across the ball; of a beam through an opening, of all but that part.
+    /// Samples a photon: from the bright part, through a disc across the ball; or through the beam's opening, from
+    /// everywhere but that part.
     pub(super) fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let Some(opening) = &beam.opening else {
             let (direction, pdf) = self.sample_bright(u)?;
@@ -147,20 +149,20 @@ impl<S> Environment<S> {
         (!self.is_bright(-ray.direction)).then_some(LeSample { ray, factor: 1.0, surface: None })
     }
 
-    /// How densely `sample_le` draws a photon for a beam; 0 of a direction whose light the beam does not send.
+    /// Returns the pdf with which `sample_le` draws a photon for a beam; 0 for light that the beam does not send.
     pub(super) fn pdf_le(&self, beam: &Beam, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let is_sent = self.is_bright(-ray.direction) == beam.opening.is_none();
         if is_sent { beam.pdf_from_sky(ray, guide) } else { 0.0 }
     }
 
-    /// The mean over all directions of the factor on `radiance`.
+    /// Returns the mean of the factor on `radiance` over all directions.
     pub fn mean(&self) -> f64 {
         self.image.as_ref().map_or(1.0, |sky| sky.panorama.mean)
     }
 }
 
 impl Environment<Table> {
-    /// The radiance along a direction.
+    /// Returns the radiance along a direction.
     pub(super) fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3) -> Lanes<N> {
         let level = draw.read(&self.radiance);
         let Some(sky) = &self.image else { return level };
@@ -168,8 +170,8 @@ impl Environment<Table> {
     }
 }
 
-/// A color made up as white, what two channels have beyond it, and what one has beyond those: the bits of images in
-/// three bands are those of such sums.
+/// Rebuilds a color as the sum of white, the excess of two channels over it, and the excess of one channel over those.
+/// Images in three bands have the bits of such sums.
 fn summed(color: [f32; 3]) -> [f32; 3] {
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| color[a].total_cmp(&color[b]));

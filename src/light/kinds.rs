@@ -15,18 +15,18 @@ pub type LightId = usize;
 pub enum Light<S> {
     /// A surface that shines.
     Area(Area<S>),
-    /// A point that shines evenly.
+    /// A point that shines equally in all directions.
     Point(Point<S>),
     /// A point that shines into a cone.
     Spot(Spot<S>),
-    /// What rays hit that miss everything.
+    /// What rays see that miss everything.
     Environment(Environment<S>),
     /// A disc in the sky.
     Sun(Sun<S>),
 }
 
 impl<S> Light<S> {
-    /// The light with its spectrum converted.
+    /// Returns the light with its spectrum converted.
     pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Light<T> {
         match self {
             Self::Area(area) => Light::Area(area.map(convert)),
@@ -37,7 +37,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// The radiance, intensity of a point or a spot, or irradiance of a sun.
+    /// Returns the radiance, the intensity of a point or a spot, or the irradiance of a sun.
     pub fn emission(&self) -> &S {
         match self {
             Self::Area(area) => &area.radiance,
@@ -48,23 +48,24 @@ impl<S> Light<S> {
         }
     }
 
-    /// How its light is polarized; none of light that is not.
+    /// Returns the polarization of its light; `None` if it is unpolarized.
     pub fn polarization(&self) -> Option<&SkyPolarization> {
         if let Self::Environment(environment) = self { environment.polarization.as_ref() } else { None }
     }
 
-    /// Whether next-event estimation samples it; otherwise it shines by being hit.
+    /// Returns whether next-event estimation samples it; otherwise its light is only found by hitting it.
     pub fn is_sampled(&self) -> bool {
         if let Self::Area(area) = self { area.is_sampled } else { true }
     }
 
-    /// Whether one of several parts is drawn before a direction, which uses up digits of the first random number.
+    /// Returns whether one of several parts is chosen before a direction, which uses digits of the first random number.
     pub fn has_parts(&self) -> bool {
         if let Self::Area(area) = self { area.has_parts() } else { false }
     }
 
-    /// A ray from a point of a surface toward the light; none where it does not shine that way, or an area lies below
-    /// the surface's horizon there. `normal` is its unit normal on the lit side, toward which most samples lead.
+    /// Samples a ray from a point of a surface toward the light; `None` if the light does not shine that way, or if an
+    /// area lies below the surface's horizon there. `normal` is the unit normal on the lit side, toward which most
+    /// samples lead.
     pub fn sample_li(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample_li(from, normal, u),
@@ -75,7 +76,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// A ray toward the light as `sample_li` draws it; the caller tests whether other triangles occlude its `part`.
+    /// Samples the light like `sample_li`, but the caller has to test whether other triangles occlude its `part`.
     pub fn sample_li_in_part(&self, from: &SurfacePoint, normal: DVec3, u: [f64; 2]) -> Option<LightSample> {
         if let Self::Area(area) = self {
             area.sample_li_in_part(from, normal, u)
@@ -84,8 +85,9 @@ impl<S> Light<S> {
         }
     }
 
-    /// Density per steradian with which `sample_li` draws the direction of a ray that leaves a surface of the given
-    /// unit normal; none if it cannot. `intersection` is where the ray first hits a surface that shines, if known.
+    /// Returns the pdf per steradian with which `sample_li` draws the direction of a ray that leaves a surface with the
+    /// given unit normal; `None` if it cannot. `intersection` is where the ray first hits an emissive surface, if
+    /// known.
     pub fn pdf_li(&self, ray: &Ray, normal: DVec3, intersection: Option<&Intersection>) -> Option<f64> {
         match self {
             Self::Area(area) if area.is_sampled => match intersection {
@@ -98,7 +100,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether photons can be sent from it.
+    /// Returns whether photons can be sent from it.
     pub fn sends_photons(&self) -> bool {
         match self {
             Self::Area(area) => area.sends_photons(),
@@ -107,27 +109,30 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether photons can be sent from it through openings: of a sky that is not polarized.
+    /// Returns whether photons can be sent from it through openings, as from a sky that is not polarized.
     pub fn sends_photons_through_openings(&self) -> bool {
         matches!(self, Self::Environment(environment) if environment.polarization.is_none())
     }
 
-    /// Whether photons can be sent from it in a room of these openings; skies send all but bright parts through them.
+    /// Returns whether photons can be sent from it in a room with these openings. Through openings, skies send all
+    /// light but that of their bright parts.
     pub fn sends_photons_with(&self, openings: &[Opening]) -> bool {
         self.sends_photons() || (!openings.is_empty() && self.sends_photons_through_openings())
     }
 
-    /// The mean radiance of a sky, per emission; 0 of other lights.
+    /// Returns the mean radiance of a sky for an emission of 1; 0 for other lights.
     pub fn mean_radiance(&self) -> f64 {
         if let Self::Environment(environment) = self { environment.mean() } else { 0.0 }
     }
 
-    /// Whether photons bring what it sends along a direction toward it, if it sends any, wherever that way leads.
+    /// Returns whether photons carry what it emits along a direction toward it, wherever that light goes, if it sends
+    /// photons at all.
     pub fn sends_photons_from(&self, direction: DVec3) -> bool {
         if let Self::Environment(environment) = self { environment.is_bright(direction) } else { true }
     }
 
-    /// The direction toward the middle of a sun, or a random one toward what is bright in a sky; none of other lights.
+    /// Returns the direction toward the center of a sun, or a random one toward the bright part of a sky; `None` for
+    /// other lights.
     pub(crate) fn bright_direction(&self, u: [f64; 2]) -> Option<DVec3> {
         match self {
             Self::Sun(sun) => Some(sun.middle()),
@@ -136,7 +141,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// How photons are sent to a ball; none if the light sends none there.
+    /// Returns how photons are sent to a ball; `None` if the light sends none there.
     pub fn beam(&self, ball: &Ball) -> Option<Beam> {
         let beam = match self {
             Self::Area(area) => area.beam(ball),
@@ -148,13 +153,15 @@ impl<S> Light<S> {
         Some(beam).filter(|beam| beam.flux > 0.0)
     }
 
-    /// How photons of a sky are sent to a ball through an opening; none of other lights, or if it sends none there.
+    /// Returns how photons of a sky are sent to a ball through an opening; `None` for other lights, or if the sky sends
+    /// none there.
     pub fn beam_through(&self, opening: &Opening, ball: &Ball) -> Option<Beam> {
         let Self::Environment(environment) = self else { return None };
         environment.beam_through(opening, ball).filter(|beam| beam.flux > 0.0)
     }
 
-    /// The start of a photon for a place of the unit square, its way, and two random numbers; none where it is dark.
+    /// Samples the start of a photon; `None` where the light is dark. `guide_uv` is the place in the unit square that
+    /// stands for the photon's way.
     pub fn sample_le(&self, beam: &Beam, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.sample_le(&beam.ball, guide_uv, u),
@@ -165,8 +172,8 @@ impl<S> Light<S> {
         }
     }
 
-    /// How densely `sample_le` draws the start of a photon of this light for a beam, which may be another than the
-    /// photon's own, from places of the unit square of a density of their own; 0 if it cannot.
+    /// Returns the pdf with which `sample_le` draws the start of a photon of this light for a beam, which may differ
+    /// from the photon's own; 0 if it cannot. `guide` is the density of places in the unit square.
     pub fn pdf_le(&self, beam: &Beam, sample: &LeSample, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         match self {
             Self::Area(area) => area.pdf_le(&beam.ball, sample, guide),
@@ -176,8 +183,8 @@ impl<S> Light<S> {
         }
     }
 
-    /// The start of a path of its light, toward anything, for four random numbers; its factor makes flux of the
-    /// emission. None where the light does not shine, and from a sky.
+    /// Samples the start of a light path toward anything. Its factor converts the emission to flux. `None` where the
+    /// light does not shine, and for an environment or a sun.
     pub fn emit(&self, u: [f64; 4]) -> Option<LeSample> {
         match self {
             Self::Area(area) => area.emit(u),
@@ -187,7 +194,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// The flux that `emit` sends, per emission, about; 0 where it sends nothing, or not all light.
+    /// Estimates the flux that `emit` sends for an emission of 1; 0 if it sends nothing, or not all of the light.
     pub fn flux(&self) -> f64 {
         match self {
             Self::Area(area) => area.flux(),
@@ -197,7 +204,7 @@ impl<S> Light<S> {
         }
     }
 
-    /// What a scene file calls such a light.
+    /// Returns what a scene file calls such a light.
     pub fn kind_name(&self) -> &'static str {
         match self {
             Self::Area(_) => "emissive",
@@ -208,17 +215,17 @@ impl<S> Light<S> {
         }
     }
 
-    /// Whether it is hit by rays that hit nothing else.
+    /// Returns whether it is hit by rays that hit nothing else.
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Environment(_) | Self::Sun(_))
     }
 
-    /// Whether it is a sky that looks the same in all directions.
+    /// Returns whether it is a sky that looks the same in all directions.
     pub fn is_even_sky(&self) -> bool {
         matches!(self, Self::Environment(environment) if environment.image.is_none())
     }
 
-    /// Whether it has an extent, so that what it sends to a point comes from many directions.
+    /// Returns whether it has an extent, so that its light reaches a point from many directions.
     pub fn is_extended(&self) -> bool {
         match self {
             Self::Area(_) | Self::Environment(_) => true,
@@ -229,7 +236,7 @@ impl<S> Light<S> {
 }
 
 impl Light<Table> {
-    /// What the light sends along a direction toward it, which hits it at `uv`: its emission, lane by lane.
+    /// Returns the emission along a direction toward the light, which hits it at `uv`, lane by lane.
     pub fn toward<const N: usize>(&self, draw: &Draw<N>, direction: DVec3, uv: [f64; 2]) -> Lanes<N> {
         match self {
             Self::Environment(environment) => environment.toward(draw, direction),
@@ -237,12 +244,12 @@ impl Light<Table> {
         }
     }
 
-    /// The mean brightness of the image that lies on a lamp, which may be a small part of its file.
+    /// Returns the mean brightness of the image on a lamp, which may be a small part of the image file.
     pub fn shown(&self) -> Option<f64> {
         if let Self::Area(area) = self { area.emission_map().map(|map| map.mean) } else { None }
     }
 
-    /// The largest irradiance that a sky gives; 0 of other lights.
+    /// Returns the largest irradiance from a sky; 0 for other lights.
     pub fn irradiance(&self) -> f64 {
         let brightest = || self.emission().range().1.max(0.0);
         match self {
@@ -252,12 +259,12 @@ impl Light<Table> {
         }
     }
 
-    /// Where the light is and how much it shines, as one of many; none of one that is infinite.
+    /// Returns the light's place, orientation and intensity for a light tree; `None` if the light is infinite.
     pub fn bounds(&self) -> Option<LightBounds> {
         let bounds = match self {
             Self::Area(area) => LightBounds::of_shape(&area.shape, area.sides == Sides::Both)?,
             Self::Point(point) => LightBounds::of_point(point.position.into()),
-            // A spot that shines elsewhere is found dark when it is sampled.
+            // A spot that shines elsewhere turns out to be dark when it is sampled.
             Self::Spot(spot) => LightBounds::of_point(spot.position.into()),
             Self::Environment(_) | Self::Sun(_) => return None,
         };

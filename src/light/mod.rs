@@ -1,8 +1,8 @@
 //! Floor 2: how lights are sampled.
 //!
-//! Everything that shines is a [`Light`]. Next-event estimation samples one from a point (`sample_li`) or asks how
-//! densely it would have sampled a direction that was drawn by other means (`pdf_li`), so that the weights of both add
-//! up to 1. Photons start from lights (`sample_le`, `pdf_le`). Of many lights a [`LightSampler`] draws one.
+//! Every source of light is a [`Light`]. Next-event estimation samples one from a point (`sample_li`). It also
+//! evaluates the pdf of a direction that was drawn by other means (`pdf_li`), so that the weights of both techniques
+//! add up to 1. Photons start from lights (`sample_le`, `pdf_le`). A [`LightSampler`] chooses one of many lights.
 
 mod area;
 mod beam;

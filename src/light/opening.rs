@@ -6,63 +6,63 @@ use super::toward_ball::TowardBall;
 use crate::math::{DVec3, Ray, cosine_about, unit};
 use crate::shape::Ball;
 
-/// A rectangle through which the light of a sky comes into a room.
+/// A rectangle through which a sky's light enters a room.
 ///
-/// What is said of it is said of straight lines: whether a ray runs through it, before its origin or behind it, does
-/// not depend on what the ray passes on its way.
+/// Its methods treat rays as straight lines: whether a ray crosses it, ahead of its origin or behind it, does not
+/// depend on anything that lies in between.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Opening {
-    /// Its middle.
+    /// Its center.
     pub center: DVec3,
-    /// Half edges at right angles; their cross product leads into the room.
+    /// Half edges at right angles. Their cross product points into the room.
     pub half: [DVec3; 2],
 }
 
 impl Opening {
-    /// Its area.
+    /// Returns its area.
     pub fn area(&self) -> f64 {
         let [u, v] = self.half;
         4.0 * u.cross(v).length()
     }
 
-    /// The unit normal that leads into the room.
+    /// Returns the unit normal that points into the room.
     fn normal(&self) -> DVec3 {
         let [u, v] = self.half;
         unit(u.cross(v).normalize())
     }
 
-    /// The solid angle in steradians under which it is seen from a point, about.
+    /// Estimates the solid angle in steradians that it subtends at a point.
     pub fn solid_angle_from(&self, point: DVec3) -> f64 {
         let way = self.center - point;
         let squared = way.length_squared();
         (self.area() * self.normal().dot(way).abs() / (squared * squared.sqrt())).min(TAU)
     }
 
-    /// Its point for a place of the unit square.
+    /// Returns its point for a place of the unit square.
     pub fn point(&self, [a, b]: [f64; 2]) -> DVec3 {
         let [u, v] = self.half;
         self.center + u * (2.0 * a - 1.0) + v * (2.0 * b - 1.0)
     }
 
-    /// How a photon leaves a point of it toward a ball.
+    /// Returns how a photon leaves one of its points toward a ball.
     pub(super) fn toward<'a>(&self, ball: &'a Ball, from: DVec3) -> TowardBall<'a> {
         TowardBall { ball, from, normal: self.normal(), front: 1.0 }
     }
 
-    /// The ray of a photon from one of its points toward a ball.
+    /// Samples the ray of a photon from one of its points toward a ball.
     pub(super) fn ray_toward(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<Ray> {
         let origin = self.point(u);
         Some(Ray { origin, direction: self.toward(ball, origin).sample(guide_uv)? })
     }
 
-    /// How densely `ray_toward` draws the line of a ray, per unit of area across it and steradian.
+    /// Returns the pdf with which `ray_toward` draws the line of a ray, per unit of area across it and steradian.
     pub(super) fn pdf_toward(&self, ball: &Ball, ray: &Ray, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let Some(from) = self.crossing(ray) else { return 0.0 };
         let toward = self.toward(ball, from);
         toward.pdf(ray.direction, guide) / (self.area() * toward.normal.dot(ray.direction).abs())
     }
 
-    /// Where the line of a ray crosses it.
+    /// Returns the point where the line of a ray crosses it.
     fn crossing(&self, ray: &Ray) -> Option<DVec3> {
         let [u, v] = self.half;
         let across = u.cross(v);
@@ -72,13 +72,13 @@ impl Opening {
         (is_within(u) && is_within(v)).then(|| ray.at(t))
     }
 
-    /// Whether the line of a ray crosses it into the room.
+    /// Returns whether the line of a ray crosses it into the room.
     pub fn is_entered_by(&self, ray: &Ray) -> bool {
         self.normal().dot(ray.direction) > 0.0 && self.crossing(ray).is_some()
     }
 
-    /// The ray of a path of light through one of some openings, by its cosine there, and how densely its line is drawn
-    /// by all of them, per unit of area across it and steradian; none where there are none.
+    /// Samples a light path's ray through one of several openings, cosine-distributed, and returns it with the pdf of
+    /// its line over all of them, per unit of area across it and steradian; `None` if there are no openings.
     pub fn ray_through(openings: &[Self], [a, b, c, d]: [f64; 4]) -> Option<(Ray, f64)> {
         let all: f64 = openings.iter().map(Self::area).sum();
         let mut left = a * all;
@@ -87,7 +87,7 @@ impl Opening {
             left < 0.0
         };
         let chosen = openings.iter().find(is_chosen).or(openings.last())?;
-        // Of the area left over, the part within the one that was chosen.
+        // The random number is reused: it is uniform within the area of the chosen opening.
         let a = (1.0 + left / chosen.area()).clamp(0.0, 1.0);
         let ray = Ray { origin: chosen.point([a, b]), direction: cosine_about(chosen.normal(), [c, d]) };
         let entered = openings.iter().filter(|opening| opening.is_entered_by(&ray)).count();
@@ -99,7 +99,7 @@ impl Opening {
 mod tests {
     use super::*;
 
-    /// Two openings, one behind the other and of other sizes: of lines through both, each draws its part.
+    /// Two openings of different sizes, one behind the other. Each draws its share of the lines that cross both.
     fn openings() -> [Opening; 2] {
         let at = |z: f64, side: f64| Opening {
             center: DVec3::new(0.1, -0.2, z),
@@ -108,7 +108,7 @@ mod tests {
         [at(0.0, 1.0), at(0.5, 0.4)]
     }
 
-    /// The measure of lines that enter a rectangle is pi times its area; that of both counts lines through both once.
+    /// The measure of lines that enter a rectangle is pi times its area. For both, lines through both count once.
     #[test]
     fn lines_through_openings_are_drawn_as_densely_as_is_said() {
         let openings = openings();

@@ -1,4 +1,4 @@
-//! Light from all around as an image, drawn where it is bright.
+//! Light from all around as an image, sampled where it is bright.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -10,50 +10,51 @@ use crate::spectrum::{Image, Wrap};
 
 /// An image of all directions: latitude and longitude, +y on top, +z in the center, +x at the left quarter.
 ///
-/// Between the middles of its texels it is linear. Directions are drawn by texel, each by the exact solid angle of its
-/// row and by how much its mean brightness is above that of the image, and evenly within it: what is dimmer is found by
-/// bounces. Karlík, Šik, Vévoda, Skřivan & Křivánek 2019, *MIS Compensation: Optimizing Sampling Techniques in Multiple
-/// Importance Sampling*.
+/// It is linear between the centers of its texels. Sampling draws a texel, by the exact solid angle of its row and by
+/// how much its mean brightness exceeds that of the image, and then a direction evenly within it. What is dimmer is
+/// found by bounces. Karlík, Šik, Vévoda, Skřivan & Křivánek 2019, *MIS Compensation: Optimizing Sampling Techniques in
+/// Multiple Importance Sampling*.
 #[derive(Clone, Debug)]
 pub struct Panorama {
     pub(super) image: Arc<Image>,
-    /// The mean of its brightness, a third of red, green and blue, over all directions.
+    /// Mean brightness over all directions, where brightness is the mean of red, green and blue.
     pub(super) mean: f64,
     texels: Distribution2d,
-    /// Cosine of the angle from the top to the upper edge of each row, and to the lower edge of the last.
+    /// Cosine of the polar angle of the upper edge of each row, and of the lower edge of the last.
     edges: Vec<f64>,
-    /// What is brightest in it, if that is much brighter than the rest.
+    /// The brightest part, if it is much brighter than the rest.
     pub(super) bright: Option<BrightPart>,
 }
 
 /// The texels of an image far brighter than its mean, such as a sun or lamps, if they fill a small part of the sky.
 #[derive(Clone, Debug)]
 pub struct BrightPart {
-    /// Their brightness is above this one.
+    /// The brightness that all of them exceed.
     above: f64,
     texels: Vec<u32>,
     by_light: Distribution,
-    /// At right angles, for one of the image.
+    /// Irradiance at normal incidence, in units of the image.
     pub(super) irradiance: f64,
-    /// In steradians.
+    /// Solid angle in steradians.
     pub solid_angle: f64,
-    /// Their radiance, each direction by what it sends, for one of the image.
+    /// Mean radiance with each direction weighted by its light, in units of the image.
     pub radiance: f64,
 }
 
-/// How densely directions are drawn at least, in units of how they would be by brightness alone: what is dimmer than
-/// the mean is not left out, for bounces do not find it everywhere.
+/// Least weight of a texel, relative to sampling by brightness alone. Texels dimmer than the mean are not left out,
+/// because bounces do not find them everywhere.
 const PLAINLY: f64 = 0.1;
-/// How many times as bright as the mean a texel of the bright part is at least.
+/// Least brightness of a texel of the bright part, as a multiple of the mean.
 const BRIGHT: f64 = 8.0;
-/// Columns go around, and beyond the top and bottom row come those rows again.
+/// Columns wrap around. Beyond the top and bottom rows lie those rows again.
 const AROUND: [Wrap; 2] = [Wrap::Repeat, Wrap::Clamp];
-/// The largest solid angle of the bright part, and the least share of the light that is worth telling it apart.
+/// The largest solid angle of the bright part, and the share of the light below which it is not treated apart.
 const MOST_SOLID_ANGLE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.02;
 
 impl BrightPart {
-    /// Of texels of some brightness, and the solid angle of each; none if few are so much brighter than the mean.
+    /// Finds the bright part among texels of known brightness and solid angle; `None` if it sends too little of the
+    /// light.
     fn new(levels: &[f64], mean: f64, solid_angle: impl Fn(u32) -> f64) -> Option<Self> {
         let level = |texel: u32| levels[texel as usize];
         let mut texels: Vec<u32> = (0..levels.len() as u32).filter(|&texel| level(texel) > BRIGHT * mean).collect();
@@ -83,8 +84,8 @@ impl BrightPart {
 }
 
 impl Panorama {
-    /// Of an image in which no number is negative or not finite. Where few paths bounce, so that these find little of
-    /// its light, directions are drawn by brightness alone.
+    /// Creates the panorama of an image whose numbers are finite and not negative. With `few_bounces`, bounces find
+    /// little of its light, so directions are drawn by brightness alone.
     pub fn new(image: Arc<Image>, few_bounces: bool) -> Self {
         let plainly = if few_bounces { 1.0 } else { PLAINLY };
         let size @ [width, height] = [image.width(), image.height()];
@@ -104,28 +105,28 @@ impl Panorama {
         Self { image, mean, texels, edges, bright }
     }
 
-    /// Where a direction lies in the image, in texels from its upper left corner.
+    /// Returns where a direction lies in the image, in texels from its upper left corner.
     fn place(&self, direction: DVec3) -> [f64; 2] {
         let DVec3 { x, y, z } = direction;
         let u = 0.5 - libm::atan2(x, z) / TAU;
-        // The polar angle by its tangent keeps its digits at the poles.
+        // Taken from its tangent, the polar angle keeps its digits at the poles.
         let v = libm::atan2((x * x + z * z).sqrt(), y) / PI;
         [u * self.image.width() as f64, v * self.image.height() as f64]
     }
 
-    /// What is seen in a direction, linear Rec.709.
+    /// Returns what is seen in a direction, in linear Rec.709.
     pub fn color(&self, direction: DVec3) -> [f32; 3] {
         self.image.linear(self.place(direction), AROUND)
     }
 
-    /// A direction for two random numbers, not turned into the world, and its density per steradian.
+    /// Samples a direction that is not yet turned into the world, and returns it with its pdf per steradian.
     pub(super) fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
         let [column, row] = self.texels.sample(u);
         let texel = [column.index, row.index];
         (self.direction(texel, [column.u, row.u]), self.density(texel))
     }
 
-    /// The direction at a place of a texel.
+    /// Returns the direction at a place of a texel.
     fn direction(&self, [column, row]: [usize; 2], [u, v]: [f64; 2]) -> DVec3 {
         let (top, bottom) = (self.edges[row], self.edges[row + 1]);
         let y = top + v * (bottom - top);
@@ -135,13 +136,13 @@ impl Panorama {
         DVec3::new(radius * sin, y, radius * cos)
     }
 
-    /// Whether a direction lies in the bright part.
+    /// Returns whether a direction lies in the bright part.
     pub(super) fn is_bright(&self, direction: DVec3) -> bool {
         let level = || brightness(&self.image, self.texel_of(direction));
         self.bright.as_ref().is_some_and(|bright| level() > bright.above)
     }
 
-    /// A direction to the bright part for two random numbers, and its density per steradian.
+    /// Samples a direction toward the bright part, and returns it with its pdf per steradian.
     pub(super) fn sample_bright(&self, [u, v]: [f64; 2]) -> Option<(DVec3, f64)> {
         let bright = self.bright.as_ref()?;
         let drawn = bright.by_light.sample(u);
@@ -150,7 +151,7 @@ impl Panorama {
         Some((self.direction(texel, [drawn.u, v]), brightness(&self.image, texel) / bright.irradiance))
     }
 
-    /// Density per steradian with which `sample` draws a direction.
+    /// Returns the pdf per steradian with which `sample` draws a direction.
     pub(super) fn pdf(&self, direction: DVec3) -> f64 {
         self.density(self.texel_of(direction))
     }
@@ -159,19 +160,19 @@ impl Panorama {
         self.texels.probability(texel) / self.solid_angle(texel[1])
     }
 
-    /// Of a texel of a row, in steradians.
+    /// Returns the solid angle of a texel in a row, in steradians.
     fn solid_angle(&self, row: usize) -> f64 {
         TAU / self.image.width() as f64 * (self.edges[row] - self.edges[row + 1])
     }
 
-    /// Column and row of the texel in which a direction lies.
+    /// Returns column and row of the texel that contains a direction.
     fn texel_of(&self, direction: DVec3) -> [usize; 2] {
         let [x, y] = self.place(direction);
         [(x as usize).min(self.image.width() - 1), (y as usize).min(self.image.height() - 1)]
     }
 }
 
-/// The mean over a texel of what is shown there: it and its neighbors, weighed as linear interpolation does.
+/// Returns the mean over a texel of what it shows: it and its neighbors, weighted as by linear interpolation.
 fn brightness(image: &Image, [column, row]: [usize; 2]) -> f64 {
     const SHARES: [f64; 3] = [0.125, 0.75, 0.125];
     let ([across, down], mut sum) = (AROUND, 0.0);
@@ -233,7 +234,7 @@ mod tests {
         }
     }
 
-    /// The density is that of the drawn directions: sums over solid angle, and each texel's share of the draws.
+    /// The pdf matches the drawn directions: both its integral over solid angle, and each texel's share of the draws.
     #[test]
     fn directions_follow_their_density() {
         let (width, height) = (12, 6);
@@ -285,8 +286,8 @@ mod tests {
         assert!((bright.irradiance / irradiance - 1.0).abs() < 1e-12, "{irradiance}");
         assert!((bright.solid_angle / solid_angle - 1.0).abs() < 1e-12 && solid_angle < MOST_SOLID_ANGLE);
         assert!(bright.radiance > 300.0 && bright.radiance < 900.0, "{}", bright.radiance);
-        // Every draw stands for the same irradiance but for what changes within a texel, whose rows are 15 degrees high
-        // here: their mean is that of linear interpolation by solid angle, the table's by latitude.
+        // Every draw stands for the same irradiance, except for variation within a texel. Rows are 15 degrees high
+        // here: their mean is that of linear interpolation by solid angle, while that of the table is by latitude.
         let mut sum = 0.0;
         for u in grid(400) {
             let (direction, pdf) = panorama.sample_bright(u).expect("there is a bright part");

@@ -7,30 +7,30 @@ use super::{LightBounds, LightTree};
 use crate::math::{DVec3, DiscreteSample, Distribution, Transform};
 use crate::shape::{Mesh, Shape};
 
-/// The parts of a light, by which one of them is drawn.
+/// The parts of a light, with the distributions that draw one of them.
 #[derive(Clone, Debug)]
 pub struct LightParts {
     shared: Arc<Shared>,
-    /// Where a mesh is placed by a map that keeps angles: the map back to the mesh, and how much longer lengths are.
+    /// For a mesh placed by a similarity transform: the map back to the mesh, and the factor on lengths.
     placed: Option<(Transform, f64)>,
 }
 
 #[derive(Debug)]
 struct Shared {
-    /// By what they send to a point.
+    /// The tree that draws parts by the light that they send to a point.
     tree: LightTree,
-    /// By what they send at all.
+    /// The distribution of parts by all the light that they send.
     flux: Distribution,
 }
 
-/// The parts of known meshes, for all that are placed by maps that keep angles: shares of what they send are the same.
+/// The parts of known meshes, for all placements by similarity transforms: these keep each part's share of the light.
 #[derive(Default)]
 pub struct KnownParts(HashMap<*const Mesh, (Arc<Mesh>, Option<Arc<Shared>>)>);
 
 impl KnownParts {
-    /// Those of a mesh that shines everywhere alike.
+    /// Returns the parts of a mesh that emits evenly.
     fn of(&mut self, mesh: &Arc<Mesh>) -> Option<Arc<Shared>> {
-        // A mesh that is kept is nowhere else in memory.
+        // The mesh is kept alive here, so its address stays unique.
         let new = || (mesh.clone(), Shared::new(&Shape::Mesh(mesh.clone()), |_| 1.0).map(Arc::new));
         self.0.entry(Arc::as_ptr(mesh)).or_insert_with(new).1.clone()
     }
@@ -49,7 +49,7 @@ impl Shared {
 }
 
 impl LightParts {
-    /// Those of a shape of several that shines everywhere alike; none of a shape of one part.
+    /// Returns the parts of a shape that emits evenly; `None` if it has only one.
     pub fn even(shape: &Shape, known: &mut KnownParts) -> Option<Self> {
         let of_mesh = match shape {
             Shape::Mesh(mesh) => Some((mesh, None)),
@@ -60,12 +60,12 @@ impl LightParts {
         Some(Self { shared: known.of(mesh)?, placed })
     }
 
-    /// Those of a shape of several where an area of each part is worth so much; none of a shape of one part.
+    /// Returns the parts of a shape, where an area of each is weighted by `worth`; `None` if it has only one.
     pub fn of(shape: &Shape, worth: impl Fn(u32) -> f64) -> Option<Self> {
         Some(Self { shared: Arc::new(Shared::new(shape, worth)?), placed: None })
     }
 
-    /// A place and a unit normal as the parts have them.
+    /// Converts a point and a unit normal to the space of the parts.
     fn own(&self, from: DVec3, normal: DVec3) -> (DVec3, DVec3) {
         match &self.placed {
             Some((to_own, scale)) => (to_own.point(from), to_own.vector(normal) * *scale),
@@ -73,19 +73,19 @@ impl LightParts {
         }
     }
 
-    /// A part for a point on a surface, as [`LightTree::sample`].
+    /// Samples a part for a point on a surface, as [`LightTree::sample`] does.
     pub fn sample(&self, from: DVec3, normal: DVec3, two_sided: bool, u: f64) -> Option<DiscreteSample> {
         let (from, normal) = self.own(from, normal);
         self.shared.tree.sample(from, normal, two_sided, u)
     }
 
-    /// How likely `sample` draws a part.
+    /// Returns the probability with which `sample` draws a part.
     pub fn probability(&self, part: u32, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
         let (from, normal) = self.own(from, normal);
         self.shared.tree.probability(part as usize, from, normal, two_sided)
     }
 
-    /// A part by what it sends at all.
+    /// Samples a part by all the light that it sends.
     pub(super) fn sample_by_flux(&self, u: f64) -> DiscreteSample {
         self.shared.flux.sample(u)
     }

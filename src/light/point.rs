@@ -5,7 +5,7 @@ use crate::math::{Ray, ball_surface};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
-/// A point that shines evenly in all directions; rays never hit it.
+/// A point that shines equally in all directions; rays never hit it.
 ///
 /// ```toml
 /// [[light]]
@@ -13,7 +13,7 @@ use crate::spectrum::Quantity;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Point<S> {
-    /// Where it is.
+    /// Its position.
     pub position: [f64; 3],
     /// Radiance times area, in scene units.
     pub intensity: S,

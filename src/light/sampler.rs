@@ -2,36 +2,36 @@ use super::{Light, LightBounds, LightId, LightTree};
 use crate::math::{DVec3, Distribution};
 use crate::spectrum::Table;
 
-/// Which of many lights is sampled from a point: by what they may send there.
+/// A sampler that chooses one of many lights for a point, by what they may send there.
 ///
-/// Lights of a finite extent stand in a tree. The sky, whose power depends on the scene's size, gets as much as all of
-/// them together, divided by the irradiance of its parts.
+/// Finite lights are in a tree. The power of a sky depends on the scene's size, so all skies together are chosen as
+/// often as the whole tree, and each in proportion to its irradiance.
 #[derive(Clone, Debug)]
 pub struct LightSampler {
     tree: LightTree,
-    /// How likely a light of the tree is drawn.
+    /// Probability of choosing a light of the tree.
     of_tree: f64,
     /// The tree, then each infinite light.
     kinds: Distribution,
     /// The lights of the tree, then the infinite ones.
     lights: Vec<LightId>,
-    /// How many lights stand in the tree.
+    /// Number of lights in the tree.
     finite: usize,
-    /// Place of each light among `lights`; none of one that is not sampled or does not shine.
+    /// Index of each light in `lights`; `None` if it is not sampled or does not shine.
     places: Vec<Option<usize>>,
 }
 
 /// A light drawn at random.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledLight {
-    /// Which one.
+    /// The light.
     pub light: LightId,
-    /// How likely it was, above 0 and at most 1.
+    /// Its probability, above 0 and at most 1.
     pub probability: f64,
 }
 
 impl LightSampler {
-    /// Of those lights that are sampled and shine.
+    /// Creates a sampler of the lights that are sampled and shine.
     pub fn new(lights: &[Light<Table>]) -> Self {
         let sampled = || (0..lights.len()).filter(|&id| lights[id].is_sampled());
         let bounds = |id: LightId| Some((id, lights[id].bounds().filter(|light| light.intensity > 0.0)?));
@@ -51,14 +51,15 @@ impl LightSampler {
         Self { tree: LightTree::new(&bounds), of_tree, kinds, lights: all, finite: finite.len(), places }
     }
 
-    /// The lights that are sampled from anywhere, in order.
+    /// Returns the lights that may be sampled, in order.
     pub fn lights(&self) -> Vec<LightId> {
         let mut lights = self.lights.clone();
         lights.sort_unstable();
         lights
     }
 
-    /// A light for a point on a surface of the given unit normal; none where no light can come from any.
+    /// Samples a light for a point on a surface with the given unit normal; `None` if the choice falls on the tree and
+    /// none of its lights can reach the point.
     pub fn sample(&self, from: DVec3, normal: DVec3, u: f64) -> Option<SampledLight> {
         if u < self.of_tree {
             let drawn = self.tree.sample(from, normal, false, u / self.of_tree)?;
@@ -72,7 +73,7 @@ impl LightSampler {
         Some(SampledLight { light, probability: kind.probability })
     }
 
-    /// How likely `sample` draws a light.
+    /// Returns the probability with which `sample` draws a light.
     pub fn probability(&self, light: LightId, from: DVec3, normal: DVec3) -> f64 {
         match self.places[light] {
             None => 0.0,

@@ -5,7 +5,7 @@ use crate::math::{Cone, DVec3, Ray, unit};
 use crate::shape::Ball;
 use crate::spectrum::Quantity;
 
-/// A point that shines into a cone, dimmer toward its edge; rays never hit it.
+/// A point that shines into a cone and dims toward the cone's edge; rays never hit it.
 ///
 /// ```toml
 /// [[light]]
@@ -13,15 +13,15 @@ use crate::spectrum::Quantity;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Spot<S> {
-    /// Where it is.
+    /// Its position.
     pub position: [f64; 3],
-    /// The direction in the middle of the cone, of any length.
+    /// The axis of the cone, a direction of any length.
     pub toward: [f64; 3],
-    /// Full angle of the cone, in degrees, above 0 to 180.
+    /// Full angle of the cone in degrees, above 0 and at most 180.
     pub cone_angle: f64,
-    /// The outer part of the cone's half angle over which the light fades, 0 to 1.
+    /// The outer part of the cone's half angle in which the light fades, 0 to 1.
     pub blend: f64,
-    /// Radiance times area in the middle, in scene units.
+    /// Radiance times area on the axis, in scene units.
     pub intensity: S,
 }
 
@@ -37,8 +37,8 @@ impl<S> Spot<S> {
         }
     }
 
-    /// The part of the intensity that leaves in a direction: 1 within the cone's inner part, 0 beyond the cone, between
-    /// them 3 t^2 - 2 t^3 of the angle.
+    /// Returns the part of the intensity that leaves in a direction: 1 in the inner part of the cone, 0 outside of the
+    /// cone, and 3 t^2 - 2 t^3 of the angle in between.
     pub fn part(&self, direction: DVec3) -> f64 {
         let axis = DVec3::from(self.toward).normalize();
         let angle = libm::atan2(axis.cross(direction).length(), axis.dot(direction));
@@ -51,13 +51,13 @@ impl<S> Spot<S> {
         if angle >= outer { 0.0 } else { t * t * (3.0 - 2.0 * t) }
     }
 
-    /// The directions that it shines in.
+    /// Returns the cone of directions into which it shines.
     pub fn cone(&self) -> Cone {
         let sin = libm::sin(0.25 * self.cone_angle.to_radians());
         Cone { axis: unit(DVec3::from(self.toward).normalize()), one_minus_cos: 2.0 * sin * sin }
     }
 
-    /// Photons fill the narrower one of both cones: the spot's own, and that of the ball.
+    /// Sends photons into the narrower of two cones: the spot's own, and the one that the ball subtends.
     pub(super) fn beam(&self, ball: &Ball) -> Beam {
         let (toward, own) = (ball.cone_from(self.position.into()), self.cone());
         let half = |cone: &Cone| libm::acos((1.0 - cone.one_minus_cos).clamp(-1.0, 1.0));

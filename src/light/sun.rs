@@ -6,7 +6,7 @@ use crate::math::{Cone, DVec3, Ray, one_minus_cos_of_cone, unit};
 use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Quantity;
 
-/// A disc in the sky, the same from everywhere: light from a small cone of directions.
+/// A disc in the sky, seen in the same direction from everywhere: light from a small cone of directions.
 ///
 /// ```toml
 /// [[light]]
@@ -20,21 +20,21 @@ pub struct Sun<S> {
     pub angular_diameter: f64,
     /// Irradiance on a surface that faces the sun: radiance times the disc's projected solid angle.
     pub irradiance: S,
-    /// What every ray asks of it.
+    /// What every ray needs of it, computed once.
     disc: OnceLock<Disc>,
 }
 
-/// The disc as rays ask for it.
+/// The disc in the form that rays need.
 #[derive(Clone, Copy, Debug)]
 struct Disc {
-    /// Directions toward it.
+    /// The cone of directions toward it.
     cone: Cone,
-    /// The factor on the irradiance that makes the disc's radiance of it.
+    /// Factor from irradiance to the disc's radiance.
     radiance_factor: f64,
 }
 
 impl<S> Sun<S> {
-    /// A sun in a direction of any length, so many degrees wide.
+    /// Creates a sun in a direction of any length, with its angular diameter in degrees.
     pub fn new(toward: [f64; 3], angular_diameter: f64, irradiance: S) -> Self {
         Self { toward, angular_diameter, irradiance, disc: OnceLock::new() }
     }
@@ -52,12 +52,12 @@ impl<S> Sun<S> {
         })
     }
 
-    /// The direction toward the middle of the disc.
+    /// Returns the direction toward the center of the disc.
     pub fn middle(&self) -> DVec3 {
         self.disc().cone.axis
     }
 
-    /// A direction toward the disc, uniform over its solid angle.
+    /// Samples a direction toward the disc, uniformly over its solid angle.
     fn sample(&self, u: [f64; 2]) -> DVec3 {
         let cone = &self.disc().cone;
         if self.angular_diameter == 0.0 { cone.axis } else { unit(cone.sample_uniform(u)) }
@@ -70,13 +70,13 @@ impl<S> Sun<S> {
     fn along(&self, ray: Ray) -> LightSample {
         let (pdf, factor) = match self.angular_diameter {
             0.0 => (None, 1.0),
-            // What is drawn lies in the disc, though rounding may put it beyond the rim of a very small one.
+            // A sampled direction lies in the disc, even if rounding puts it beyond the rim of a very small one.
             _ => (Some(self.disc().cone.uniform_pdf()), self.radiance_factor()),
         };
         LightSample::of_sky(ray, pdf, factor)
     }
 
-    /// Density per steradian with which a ray's direction is drawn; none beside the disc and for parallel light.
+    /// Returns the pdf per steradian of drawing a ray's direction; `None` beside the disc and for parallel light.
     pub fn pdf(&self, ray: &Ray) -> Option<f64> {
         let cone = &self.disc().cone;
         // For unit vectors |d - axis|^2 = 2 (1 - cos), without the rounding of 1 - cos.
@@ -84,17 +84,17 @@ impl<S> Sun<S> {
         (inside && cone.one_minus_cos > 0.0).then(|| cone.uniform_pdf())
     }
 
-    /// The solid angle under which it is seen, in steradians; 0 of parallel light.
+    /// Returns the solid angle of the disc in steradians; 0 for parallel light.
     pub(crate) fn solid_angle(&self) -> f64 {
         TAU * self.disc().cone.one_minus_cos
     }
 
-    /// The factor on the irradiance that makes the disc's radiance of it.
+    /// Returns the factor from irradiance to the disc's radiance.
     pub fn radiance_factor(&self) -> f64 {
         self.disc().radiance_factor
     }
 
-    /// A photon through a disc across the ball.
+    /// Samples a photon through a disc across the ball.
     pub(super) fn sample_le(&self, ball: &Ball, guide_uv: [f64; 2], u: [f64; 2]) -> Option<LeSample> {
         let ray = Beam::ray_from_sky(ball, self.sample(u), guide_uv)?;
         let light = self.along(Ray { direction: -ray.direction, ..ray });
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Rounding puts draws beyond the rim of a disc that is not much wider than it: a seventh of the light was lost.
+    /// Rounding puts draws beyond the rim of a disc hardly wider than the rounding: a seventh of the light was lost.
     #[test]
     fn a_very_small_sun_loses_no_light() {
         for angular_diameter in [1e-9, 1e-11, 1e-13, 1e-14, 1e-15] {

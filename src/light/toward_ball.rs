@@ -3,17 +3,18 @@ use std::f64::consts::PI;
 use crate::math::{DVec3, cosine_about};
 use crate::shape::Ball;
 
-/// How a photon leaves a point of a surface toward a ball: in the cone that it fills or, from inside, by the cosine.
+/// How a photon leaves a point of a surface toward a ball: in the cone that the ball subtends or, from inside of the
+/// ball, cosine-distributed.
 pub(super) struct TowardBall<'a> {
     pub(super) ball: &'a Ball,
     pub(super) from: DVec3,
     pub(super) normal: DVec3,
-    /// From inside, how often it leaves on the side of the normal.
+    /// From inside of the ball, the probability of leaving on the side of the normal.
     pub(super) front: f64,
 }
 
 impl TowardBall<'_> {
-    /// The direction for a place of the unit square.
+    /// Returns the direction for a place of the unit square.
     pub(super) fn sample(&self, [a, b]: [f64; 2]) -> Option<DVec3> {
         let (front, cone) = (self.front, self.ball.cone_from(self.from));
         if !cone.is_all() {
@@ -23,7 +24,8 @@ impl TowardBall<'_> {
         Some(cosine_about(side, [a, b]))
     }
 
-    /// Density per steradian with which `sample` draws a direction from places of a density of their own.
+    /// Returns the pdf per steradian with which `sample` draws a direction. `guide` is the density of places in the
+    /// unit square.
     pub(super) fn pdf(&self, direction: DVec3, guide: impl Fn([f64; 2]) -> f64) -> f64 {
         let cone = self.ball.cone_from(self.from);
         if !cone.is_all() {

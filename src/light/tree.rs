@@ -1,44 +1,44 @@
-//! A tree over lights, by which one of many is sampled for a point.
+//! A tree over lights that samples one of many for a point.
 //!
 //! Conty Estevez & Kulla 2018, *Importance Sampling of Many Lights with Adaptive Tree Splitting*, sections 4 and 5.1,
-//! without their splitting: from any point exactly one is chosen.
+//! without their splitting: exactly one light is chosen for any point.
 
 use super::LightBounds;
 use super::bounds::LightGroup;
 use crate::math::{BELOW_ONE, Bounds, DVec3, DiscreteSample, gamma};
 
-/// Lights 0, 1, 2, .. in nested boxes, with how much light those hold and which way it goes.
+/// Lights 0, 1, 2, .. in nested boxes, with the intensity and the orientations of the lights in each box.
 #[derive(Clone, Debug)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// Each node's parent; the root is its own.
+    /// Each node's parent. The root is its own parent.
     parents: Vec<u32>,
-    /// Each light's leaf, if it shines.
+    /// Each light's leaf; `None` if it does not shine.
     leaves: Vec<Option<u32>>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
     center: DVec3,
-    /// Of the sphere around the box.
+    /// Radius of the sphere around the box.
     radius: f64,
     axis: DVec3,
     sin: f64,
     cos: f64,
     two_sided: bool,
     leaf: bool,
-    /// The light of a leaf, or the first child, whose sibling follows it.
+    /// The light of a leaf, or the first child of another node. Its sibling follows it.
     first: u32,
     intensity: f64,
 }
 
-/// Slices along each axis between which a node is split.
+/// Number of slices along each axis between which a node may be split.
 const SLICES: usize = 12;
-/// Depth below which nodes are split by halves.
+/// Depth from which on nodes are split in half.
 const DEEP: u32 = 40;
 
 impl LightTree {
-    /// The tree over lights; those that do not shine are never drawn.
+    /// Builds the tree over lights. Lights that do not shine are never drawn.
     pub fn new(lights: &[LightBounds]) -> Self {
         let mut order: Vec<u32> = (0..lights.len() as u32).collect();
         order.retain(|&i| lights[i as usize].intensity > 0.0);
@@ -71,9 +71,9 @@ impl LightTree {
         tree
     }
 
-    /// A light for a point on a surface of the given normal; none where no light can come from any.
+    /// Samples a light for a point on a surface with the given normal; `None` if no light can reach it.
     ///
-    /// `two_sided`: whether backs are seen of lights that do not say so themselves.
+    /// With `two_sided`, the backs of all lights are visible, also of those that are not two-sided themselves.
     pub fn sample(&self, from: DVec3, normal: DVec3, two_sided: bool, mut u: f64) -> Option<DiscreteSample> {
         let (mut node, mut probability) = (self.nodes.first()?, 1.0);
         u = u.min(BELOW_ONE);
@@ -87,7 +87,7 @@ impl LightTree {
         (probability > 0.0).then_some(DiscreteSample { index: node.first as usize, probability, u })
     }
 
-    /// How likely `sample` draws a light.
+    /// Returns the probability with which `sample` draws a light.
     pub fn probability(&self, light: usize, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
         let Some(leaf) = self.leaves[light] else { return 0.0 };
         let (mut node, mut probability) = (leaf, 1.0);
@@ -101,14 +101,14 @@ impl LightTree {
         probability
     }
 
-    /// How often the first of two siblings is taken; none where neither can send light.
+    /// Returns the probability of taking the first of two siblings; `None` if neither can send light.
     fn share(&self, first: usize, from: DVec3, normal: DVec3, two_sided: bool) -> Option<f64> {
         let [a, b] = [0, 1].map(|child| self.nodes[first + child].importance(from, normal, two_sided));
         (a + b > 0.0).then(|| a / (a + b))
     }
 }
 
-/// Reorders items so that the first of two groups comes first, and tells how many it has: the split of least cost.
+/// Finds the split of least cost, reorders items so that the first group comes first, and returns its size.
 fn split(lights: &[LightBounds], items: &mut [u32], depth: u32) -> usize {
     if items.len() == 2 {
         return 1;
@@ -157,14 +157,14 @@ fn split(lights: &[LightBounds], items: &mut [u32], depth: u32) -> usize {
 }
 
 impl Node {
-    /// Around one light or several.
+    /// Creates the node around one or several lights.
     fn around(lights: &[LightBounds], items: &[u32]) -> Self {
         let each = || items.iter().map(|&item| &lights[item as usize]);
         let all = each().fold(LightGroup::EMPTY, |all, light| all.and(light));
         let axis = all.axis();
         let cosine = |light: &LightBounds| light.normal.zip(axis).map_or(-1.0, |(normal, axis)| normal.dot(axis));
         let least = each().map(cosine).fold(1.0, f64::min);
-        // Rounding leaves no normal out: each of two unit vectors has six roundings, their product three.
+        // Rounding must leave no normal out: each of two unit vectors has six roundings, and their product three.
         let widened = (least - gamma(15)).max(-1.0);
         let cos = if items.len() == 1 && axis.is_some() { 1.0 } else { widened };
         let radius = (0.5 * all.bounds.size()).length();
@@ -181,11 +181,11 @@ impl Node {
         }
     }
 
-    /// About the light that reaches a point but for what hides it: equation 3 of the paper, times the cosine at the
-    /// surface, and 0 exactly where those are.
+    /// Estimates the unoccluded light that reaches a point: equation 3 of the paper, times the cosine at the surface.
+    /// The estimate is 0 exactly where the light is 0.
     ///
-    /// Of a sphere of radius r at distance d whose center has the cosine c, the brightest point has a cosine above 0
-    /// where c > -r / d; (c + r / d) / (1 + r / d) is that without roots.
+    /// For a sphere of radius r at distance d whose center has the cosine c, the brightest point has a positive cosine
+    /// where c > -r / d. The expression (c + r / d) / (1 + r / d) captures this without roots.
     fn importance(&self, from: DVec3, normal: DVec3, two_sided: bool) -> f64 {
         let way = self.center - from;
         let squared = way.length_squared();
@@ -196,7 +196,7 @@ impl Node {
         let distance = squared.sqrt();
         let along = -self.axis.dot(way);
         let along = if two_sided || self.two_sided { along.abs() } else { along };
-        // The largest cosine to a direction faced: max(0, a - b) of two angles.
+        // The largest cosine to a direction that the lights face: max(0, a - b) of two angles.
         let largest = if along >= self.cos * distance {
             distance
         } else {

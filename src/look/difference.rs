@@ -9,74 +9,72 @@ use crate::error::{Error, Result};
 use crate::film::{BEAUTY, Channel, ExrFile, ExrLayer, PixelBounds};
 use crate::spectrum::{apply, space_of_file};
 
-/// What the square of a value is raised by before the square of a difference is divided by it: dark pixels do not
-/// count without bound.
+/// Added to the square of a value before it divides the square of a difference, to bound the influence of dark pixels.
 const DARK: f64 = 0.01;
-/// Most that the matrices of two color spaces differ by if they are the same, written in 32-bit floats.
+/// The largest difference between the matrices of two equal color spaces, written as 32-bit floats.
 const SAME_SPACE: f64 = 1e-3;
 
-/// How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`.
+/// The difference between two images. Pixels with a value that is not finite are left out, except from `torn`.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// The pixels that are compared: those that both images have.
+    /// The compared pixels: those that both images have.
     pub bounds: PixelBounds,
-    /// Whether one of them has others as well, as beside a crop of it.
+    /// Whether one of the images has other pixels as well, for example if the other one is a crop.
     pub is_part: bool,
-    /// The channels that are compared.
+    /// The compared channels.
     pub channels: Vec<String>,
-    /// Whether every value is the same; those that are no numbers are.
+    /// Whether all values are equal. NaN counts as equal to NaN.
     pub is_equal: bool,
-    /// If all of both images is equal: the other layers of both files that are not.
+    /// The other layers that differ between the files, if the images are entirely equal.
     pub layers_apart: Vec<String>,
-    /// The layers, or channels of a layer of both, that the first or the second file alone has, if no layer is asked
-    /// for.
+    /// The layers, and channels of common layers, that only the first or second file has, if no layer was requested.
     pub only_in: [Vec<String>; 2],
-    /// Pixels that are left out.
+    /// The number of pixels that are left out.
     pub left_out: usize,
-    /// Those of them whose values differ: finite in one image only, or infinite with another sign.
+    /// How many left-out pixels differ, for example finite in only one image, or infinite with opposite signs.
     pub torn: usize,
     /// The mean of (a - b)^2 / (b^2 + 0.01) over all values.
     pub relative_mse: f64,
-    /// The sum of the first image's values over that of the second one's.
+    /// The sum of the first image's values, divided by that of the second image's.
     pub brightness: f64,
-    /// How different the colors look, if they are colors.
+    /// The perceived difference of the colors, if the layer has colors.
     pub color: Option<ColorDifference>,
     /// The pixel with the largest sum of (a - b)^2 / (b^2 + 0.01), if any differs.
     pub worst: Option<WorstPixel>,
-    /// The first pixel that is left out and differs, if any does.
+    /// The first left-out pixel that differs, if any does.
     pub first_torn: Option<WorstPixel>,
-    /// How far apart the alpha beside compared colors is, if it differs.
+    /// The difference in the alpha of the compared colors, if there is any.
     pub alpha: Option<AlphaDifference>,
-    /// Whether that is noise, if both files say how noisy they are.
+    /// Whether the difference is noise, if both files state how noisy they are.
     pub noise: Option<Noise>,
-    /// The largest |a - b| of each pixel's values; infinite where it is left out and torn, 0 where only left out.
+    /// The largest |a - b| of each pixel's values. For a left-out pixel, infinity if it differs, else 0.
     pub absolute: Vec<f64>,
 }
 
-/// The alpha of both images, of which no file says how noisy it is.
+/// The difference in the alpha of two images. No file states how noisy its alpha is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlphaDifference {
-    /// The largest |a - b|; infinite if one of them is no finite number.
+    /// The largest |a - b|. It is infinite if values differ that are not both finite.
     pub largest: f64,
     /// The mean of (a - b)^2 / (b^2 + 0.01).
     pub relative_mse: f64,
     /// Pixels that are empty in one image and full in the other.
     pub opposite: usize,
-    /// How many of those chance makes at most, on the average; none if no file says how many samples were taken. If a
-    /// share p of a pixel is covered, n samples all miss that and n others all meet it in p^n (1 - p)^n of cases, at
-    /// most 1 / 4^n.
+    /// An upper bound on the mean number of opposite pixels by chance. None unless both files state their noise and
+    /// their number of samples. If a fraction p of a pixel is covered, n samples all miss it and n others all hit it
+    /// with the probability p^n (1 - p)^n, which is at most 1 / 4^n.
     pub opposite_by_chance: Option<f64>,
 }
 
-/// CIEDE2000 (CIE 142:2001) of colors as a screen shows them: brought to Rec.709 and clipped to 0..1. The film's
-/// (1, 1, 1) is L* = 100 under D65.
+/// The CIEDE2000 difference (CIE 142:2001) of the colors as a screen shows them: converted to Rec.709 and clipped to
+/// 0..1. The film's (1, 1, 1) is L* = 100 under D65.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColorDifference {
-    /// Over all pixels.
+    /// The mean over all pixels.
     pub mean: f64,
-    /// The largest.
+    /// The largest difference.
     pub worst: f64,
-    /// The share of pixels of which a value was clipped in either image.
+    /// The fraction of pixels with a value that was clipped in either image.
     pub clipped: f64,
 }
 
@@ -85,17 +83,18 @@ pub struct ColorDifference {
 pub struct WorstPixel {
     /// Column and row in the full image.
     pub at: [i64; 2],
-    /// Those of the first and of the second image.
+    /// The values of the first and of the second image.
     pub values: [Vec<f64>; 2],
 }
 
-/// Compares a layer of two files, without a name the beauty; of mattes such as `CryptoObject`, of which
-/// `CryptoObject00` holds some, or one of them such as `CryptoObject.ball`, the coverage. `shown` are the files' names
-/// in messages. Of a crop or an overscan beside the image, the pixels that both have are compared.
+/// Compares a layer of two files, or the beauty if no layer is named. For mattes, compares the coverage. Mattes are
+/// named as a whole, by `CryptoObject` or one of their layers such as `CryptoObject00`, or individually by
+/// `CryptoObject.ball`. `shown` are the files' names in messages. If one image is cropped or has overscan, compares the
+/// pixels that both have.
 ///
 /// # Errors
-/// [`Error::Arguments`] if one of them has no such layer, or their sizes, channels or color spaces differ, or they
-/// have no pixel in common.
+/// [`Error::Arguments`] if one of the files has no such layer, if sizes, channels or color spaces differ, or if the
+/// images have no pixel in common.
 pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> Result<Difference> {
     let mattes = layer.map(|wanted| files.map(|file| Mattes::within(file, wanted)));
     let layer = mattes.and_then(|[a, b]| a.filter(|_| a == b)).or(layer);
@@ -116,7 +115,7 @@ pub fn compare(files: [&ExrFile; 2], layer: Option<&str>, shown: [&str; 2]) -> R
     Ok(found)
 }
 
-/// Compares mattes; `missing` is the error if there is no such matte either.
+/// Compares mattes. If there is no such matte, the error is `missing`, or lists the mattes of a file that lacks it.
 fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing: Error) -> Result<Difference> {
     let all = files.map(Mattes::all);
     let [Some((a, one)), Some((b, _))] = all.each_ref().map(|all| Mattes::named(all, wanted)) else {
@@ -134,7 +133,7 @@ fn compare_mattes(files: [&ExrFile; 2], wanted: &str, shown: [&str; 2], missing:
     of_layers(files, &[layer(a.part, &channels[0]), layer(b.part, &channels[1])], Some(wanted), shown)
 }
 
-/// Compares the pixels that both files have, if one of them has others as well.
+/// Compares the pixels that both files have, if one of the files has others as well.
 fn of_common(
     files: [&ExrFile; 2],
     bounds: [PixelBounds; 2],
@@ -147,7 +146,7 @@ fn of_common(
     Some(compare([&a, &b], layer, shown).map(|found| Difference { is_part: true, ..found }))
 }
 
-/// Compares two layers of the same pixels.
+/// Compares two layers that cover the same pixels.
 fn of_layers(
     files: [&ExrFile; 2],
     layers: &[ExrLayer; 2],
@@ -179,7 +178,7 @@ fn of_layers(
     Ok(found)
 }
 
-/// What the first file has and the second has not: layers, and channels of layers that both have.
+/// Lists what the first file has and the second one lacks: layers, and channels of common layers.
 fn only_in([own, other]: [&ExrFile; 2]) -> Vec<String> {
     let others = other.layers();
     let mut only = Vec::new();
@@ -194,7 +193,7 @@ fn only_in([own, other]: [&ExrFile; 2]) -> Vec<String> {
     by_kind(own, only)
 }
 
-/// Names of layers, those of mattes by what they are asked for.
+/// Replaces the names of matte layers by the names of their mattes.
 fn by_kind(file: &ExrFile, names: Vec<String>) -> Vec<String> {
     let mattes = Mattes::all(file);
     let kind = |name: String| mattes.iter().find(|kind| kind.is_in(&name)).map_or(name, |kind| kind.name().to_owned());
@@ -203,7 +202,7 @@ fn by_kind(file: &ExrFile, names: Vec<String>) -> Vec<String> {
     told
 }
 
-/// The layers of both files that have other values in the channels and the pixels that both have.
+/// Lists the layers that differ between the files, in the channels and pixels that both have.
 fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     let [first, second] = files.map(ExrFile::layers);
     let mut apart = Vec::new();
@@ -223,7 +222,7 @@ fn layers_apart(files: [&ExrFile; 2]) -> Vec<String> {
     by_kind(files[0], apart)
 }
 
-/// Refuses images that do not show the same pixels in the same way.
+/// Refuses images that differ in their pixels, their channels or their color space.
 fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) -> Result<()> {
     let refuse = |what: [String; 2], help: &str| {
         Error::refuse(format!("{} has {}, {} {}", shown[0], what[0], shown[1], what[1]), help)
@@ -253,12 +252,12 @@ fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) ->
     Ok(())
 }
 
-/// Whether two values are the same; those that are no numbers are.
+/// Returns whether two values are equal. NaN counts as equal to NaN.
 fn is_same(a: f64, b: f64) -> bool {
     a == b || a.is_nan() && b.is_nan()
 }
 
-/// All that the values alone say.
+/// Measures everything that depends on the values alone.
 fn measured([a, b]: [&[&Channel]; 2], bounds: PixelBounds) -> Difference {
     let (mut sums, mut squares, mut values, mut most) = ([0.0; 2], 0.0, 0usize, 0.0);
     let mut found = Difference {
@@ -337,14 +336,14 @@ fn color_difference(files: [&ExrFile; 2], colors: [&[&Channel]; 2], measured: &D
         let seen = [0, 1].map(|i| apply(&matrices[i], values[i]));
         let difference = delta_e_2000(seen);
         (sum, worst, count) = (sum + difference, worst.max(difference), count + 1);
-        // Matrices carry white to 1 but for rounding.
+        // The matrices map white to 1 only up to rounding.
         clipped += usize::from(seen.as_flattened().iter().any(|x| !(-1e-6..=1.0 + 1e-6).contains(x)));
     }
     let count = count.max(1) as f64;
     ColorDifference { mean: sum / count, worst, clipped: clipped as f64 / count }
 }
 
-/// CIEDE2000 of two linear Rec.709 colors that are clipped to 0..1.
+/// Returns the CIEDE2000 difference of two linear Rec.709 colors, which are clipped to 0..1.
 fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
     let [a, b] = colors.map(|color| {
         let [red, green, blue] = color.map(shown);
@@ -354,18 +353,19 @@ fn delta_e_2000(colors: [[f64; 3]; 2]) -> f64 {
 }
 
 impl AlphaDifference {
-    /// Whether chance makes this many pixels opposite in at most one of a hundred pairs of images: no number that is
-    /// never negative is a hundred times its mean more often (Markov's inequality).
+    /// Returns whether chance makes this many pixels opposite in at most one of a hundred pairs of images. By Markov's
+    /// inequality, a nonnegative random number exceeds a hundred times its mean no more often.
     pub fn contradicts(&self) -> bool {
         self.opposite_by_chance.is_some_and(|by_chance| FAMILY * self.opposite as f64 > by_chance)
     }
 }
 
 impl Difference {
-    /// Whether the images agree: equal values do, unless other layers differ; otherwise a tolerance of the relative
-    /// mean squared error decides, if there is one, or else whether both differ by more than their noise. Without
-    /// either, what differs does not agree, nor does alpha where nothing else differs, as nobody knows its noise, or
-    /// where more pixels are empty in one image and full in the other than chance makes.
+    /// Returns whether the images agree. Equal values do, unless other layers differ. Otherwise the relative mean
+    /// squared error must be within the tolerance, if there is one, or else the difference must be within the noise of
+    /// both images. Without tolerance and known noise, images that differ do not agree. Without tolerance, they also do
+    /// not agree if only alpha differs, as its noise is unknown, or if more pixels are empty in one image and full in
+    /// the other than chance makes. Images with torn pixels never agree.
     pub fn agrees(&self, tolerance: Option<f64>) -> bool {
         if self.is_equal {
             return tolerance.is_some() || self.layers_apart.is_empty();
@@ -383,8 +383,8 @@ impl Difference {
         within && alpha_fits && self.torn == 0
     }
 
-    /// The largest difference of each pixel as a gray picture, and the difference that is white in it: the 99th
-    /// percentile, or the largest where that is 0. It is 0 where nothing differs but what is not finite.
+    /// Returns the largest difference of each pixel as a gray picture, and the difference that is shown as white: the
+    /// 99th percentile, or the largest one if that is 0. It is 0 if only values that are not finite differ.
     pub fn picture(&self) -> (Picture, f64) {
         let finite: Vec<f64> = self.absolute.iter().copied().filter(|x| x.is_finite()).collect();
         let largest = finite.iter().copied().fold(0.0, f64::max);

@@ -4,26 +4,26 @@ use super::picture::Picture;
 use crate::error::{Error, Result, nearest};
 use crate::film::{Channel, ExrFile, ExrLayer, Part, id};
 
-/// Most names that are listed where one is not known.
+/// The maximum number of names that are listed if one is unknown.
 const MOST_LISTED: usize = 20;
 
-/// The mattes of one kind in a file, such as `CryptoObject`: what every pixel shows, and how much of it.
+/// The mattes of one kind in a file, such as `CryptoObject`: the names that each pixel shows, and the coverage of each.
 ///
-/// Cryptomatte specification 1.2.0: layers `CryptoObject00`, `CryptoObject01` .. hold pairs of a name's number and its
+/// Cryptomatte specification 1.2.0: layers `CryptoObject00`, `CryptoObject01` .. hold pairs of a name's ID and its
 /// coverage, and an attribute holds the names.
 #[derive(Debug)]
 pub struct Mattes<'f> {
     name: &'f str,
-    /// The part in which they are.
+    /// The part that contains the mattes.
     pub(super) part: &'f Part,
-    /// Channels with the number of a name, and its coverage.
+    /// Pairs of channels with the ID of a name, and its coverage.
     ranks: Vec<[&'f Channel; 2]>,
-    /// Names and their numbers; none in a file that keeps them elsewhere.
+    /// The names and their IDs. Empty if the file keeps them elsewhere.
     names: BTreeMap<String, u32>,
 }
 
 impl<'f> Mattes<'f> {
-    /// All mattes of a file.
+    /// Returns all kinds of mattes in a file.
     pub fn all(file: &'f ExrFile) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         let layers = file.layers();
@@ -45,24 +45,24 @@ impl<'f> Mattes<'f> {
         all
     }
 
-    /// What the kind is called, such as `CryptoObject`.
+    /// Returns the name of the kind, such as `CryptoObject`.
     pub fn name(&self) -> &'f str {
         self.name
     }
 
-    /// Whether a layer holds some of them, such as `CryptoObject00`.
+    /// Returns whether a layer, such as `CryptoObject00`, holds some of these mattes.
     pub(super) fn is_in(&self, layer: &str) -> bool {
         let number = layer.strip_prefix(self.name);
         number.is_some_and(|number| number.len() == 2 && number.bytes().all(|digit| digit.is_ascii_digit()))
     }
 
-    /// What the mattes are called of which a layer of a file holds some, such as `CryptoObject` of `CryptoObject00`:
-    /// its values are numbers of names, which are no colors.
+    /// Returns the kind of mattes that a layer of a file holds, such as `CryptoObject` for `CryptoObject00`. The values
+    /// of such a layer are IDs of names, not colors.
     pub fn within(file: &'f ExrFile, layer: &str) -> Option<&'f str> {
         Self::all(file).iter().find(|mattes| mattes.is_in(layer)).map(Self::name)
     }
 
-    /// Every name in a color of its own, weighted by its coverage; black where there is nothing.
+    /// Returns a picture of every name in its own color, weighted by its coverage, and black where there is nothing.
     pub fn picture(&self) -> Picture {
         let pixel = |at: usize| {
             self.ranks.iter().fold([0.0; 3], |sum: [f64; 3], [numbers, covered]| {
@@ -73,10 +73,10 @@ impl<'f> Mattes<'f> {
         Picture::of_light(self.width(), (0..self.part.bounds.pixels()).map(pixel))
     }
 
-    /// The coverage of one name, black where it is not and white where nothing else is.
+    /// Returns a picture of one name's coverage, black where it is absent and white where nothing else is.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there is no such name, with the nearest one. `shown` is the file's name in messages.
+    /// [`Error::Arguments`] if there is no such name, suggesting the closest one. `shown` names the file in messages.
     pub fn matte(&self, wanted: &str, shown: &str) -> Result<Picture> {
         let known = match self.names.get(wanted) {
             Some(number) => *number,
@@ -86,7 +86,7 @@ impl<'f> Mattes<'f> {
         Ok(Picture::of_grays(self.width(), (0..self.part.bounds.pixels()).map(|at| self.covered(known, at))))
     }
 
-    /// Those of several that are asked for, and the name of a single one of them: of `CryptoObject.ball` it is `ball`.
+    /// Finds the requested kind of mattes, and the name of a single matte: for `CryptoObject.ball` it is `ball`.
     pub fn named<'m, 'w>(all: &'m [Self], wanted: &'w str) -> Option<(&'m Self, Option<&'w str>)> {
         all.iter().find_map(|mattes| {
             let rest = wanted.strip_prefix(mattes.name)?;
@@ -94,7 +94,8 @@ impl<'f> Mattes<'f> {
         })
     }
 
-    /// How much of each pixel a name covers in two images of one size; without a name, that which is furthest apart.
+    /// Returns the coverage of a name in each pixel of two images of the same size. Without a name, uses for each pixel
+    /// the name whose coverage differs most.
     ///
     /// # Errors
     /// [`Error::Arguments`] if neither image has such a name.
@@ -117,7 +118,7 @@ impl<'f> Mattes<'f> {
         Ok([first, second].map(|values| Channel::of_values(one.unwrap_or("coverage"), values)))
     }
 
-    /// How much of a pixel a number covers.
+    /// Returns the coverage of an ID in a pixel.
     fn covered(&self, known: u32, at: usize) -> f64 {
         let of_it = self.ranks.iter().filter(|[numbers, _]| number(numbers, at) == known);
         of_it.map(|[_, covered]| coverage(covered, at)).sum::<f64>().min(1.0)
@@ -142,7 +143,7 @@ impl<'f> Mattes<'f> {
     }
 }
 
-/// Number and coverage, twice in a layer.
+/// Returns the two pairs of ID and coverage in a layer.
 fn pairs<'f>(layer: &ExrLayer<'f>) -> [[&'f Channel; 2]; 2] {
     let channels = &layer.channels;
     [[channels[0], channels[1]], [channels[2], channels[3]]]
@@ -152,14 +153,14 @@ fn same_size(a: &ExrLayer, b: &ExrLayer) -> bool {
     a.part.bounds.size == b.part.bounds.size
 }
 
-/// The names of a manifest: a JSON object of names and numbers of eight hexadecimal digits.
+/// Parses a manifest: a JSON object of names and IDs of eight hexadecimal digits.
 fn names(manifest: &str) -> BTreeMap<String, u32> {
     let entries: BTreeMap<String, String> = serde_json::from_str(manifest).unwrap_or_default();
     let number = |(name, digits): (String, String)| Some((name, u32::from_str_radix(&digits, 16).ok()?));
     entries.into_iter().filter_map(number).collect()
 }
 
-/// The number of a name; 0 stands for nothing.
+/// Returns the ID of a name. 0 stands for nothing.
 fn number(channel: &Channel, at: usize) -> u32 {
     (channel.at(at) as f32).to_bits()
 }
@@ -169,14 +170,14 @@ fn coverage(channel: &Channel, at: usize) -> f64 {
     if covered.is_nan() { 0.0 } else { covered.clamp(0.0, 1.0) }
 }
 
-/// A color, in linear light, that hardly any other number has. Names' numbers are hashes, so their bits are as good as
-/// random: the upper half is the hue, the lower the brightness.
+/// Returns a color in linear light that hardly any other ID has. IDs are hashes of names, so their bits are as good as
+/// random: the upper half is the hue, the lower half the brightness.
 fn color(number: u32) -> [f64; 3] {
     if number == 0 {
         return [0.0; 3];
     }
     let [hue, bright] = [number >> 16, number & 0xffff].map(|bits| f64::from(bits) / 65536.0);
-    // From red by way of green and blue to red again.
+    // The hue goes from red through green and blue back to red.
     [0.0, 2.0, 4.0].map(|peak| {
         let apart = (6.0 * hue - peak).rem_euclid(6.0);
         let apart = apart.min(6.0 - apart);

@@ -2,28 +2,28 @@ use super::picture::{Exposure, to_rec709};
 use crate::film::{ExrFile, ExrLayer, Film};
 use crate::spectrum::apply;
 
-/// A picture that shows nearly nothing but white, or nearly nothing, though there is light in the image.
+/// A picture that is nearly all white or nearly all black, although there is light in the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Misexposure {
-    /// What it shows.
+    /// What the picture shows.
     pub shows: Shows,
-    /// The exposure, in stops, by which most of that is neither white nor black.
+    /// The exposure, in stops, at which most of the picture is neither white nor black.
     pub stops: i32,
 }
 
-/// What a picture shows that is exposed too much or too little.
+/// What an overexposed or underexposed picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// Nothing but white.
+    /// Only white.
     White,
-    /// Nothing of objects but white, before a sky that is not.
+    /// Only white where there are objects, in front of a sky that is not white.
     WhiteObjects,
-    /// Nothing, though there is light.
+    /// Only black, although there is light.
     Black,
 }
 
 impl Shows {
-    /// What is wrong with a picture of that name, as the beginning of a sentence.
+    /// Describes what is wrong with a picture of the given name, as the beginning of a sentence.
     pub fn told_of(self, picture: &str) -> String {
         match self {
             Self::White => format!("nearly all of {picture} is brighter than white"),
@@ -33,18 +33,18 @@ impl Shows {
     }
 }
 
-/// Times of white from which on a pixel counts as cut off: noise about white is none.
+/// The multiple of white from which a pixel counts as clipped. Noise around white does not.
 const CUT_OFF: f64 = 1.02;
-/// Light of which a screen shows less than five steps of 255 above black.
+/// Light that a screen shows less than five steps of 255 above black.
 const SEEN: f64 = 0.0015;
-/// The brightness of most of a picture, in stops: about that of middle gray, 0.18.
+/// The brightness that most of a picture should have, in stops: about that of middle gray, 0.18.
 const MIDDLE: i32 = -2;
-/// Stops of a pixel's luminance that are distinguished.
+/// The range of a pixel's luminance, in stops, that is distinguished.
 const STOPS: std::ops::RangeInclusive<i32> = -126..=127;
 
 impl Misexposure {
-    /// Of the picture that is written of a film, brightened by 2^`stops` and cut off at white; none of a film that is a
-    /// part of an image.
+    /// Checks the picture that is written of a film, brightened by 2^`stops` and clipped at white. Returns none for a
+    /// film that is only a part of an image.
     pub fn of_film(film: &Film, stops: f64) -> Option<Self> {
         if film.width < film.full[0] || film.height < film.full[1] {
             return None;
@@ -55,7 +55,7 @@ impl Misexposure {
             .misexposure()
     }
 
-    /// Of a picture of a layer of a file; none if the layer has no colors.
+    /// Checks a picture of a layer of a file. Returns none if the layer has no colors.
     pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> Option<Self> {
         let (color, (to_rec709, _)) = (layer.color()?, to_rec709(file));
         let alpha = layer.channel("a");
@@ -66,21 +66,21 @@ impl Misexposure {
     }
 }
 
-/// How many pixels there are of each sort.
+/// The number of pixels of each kind.
 struct Counts {
     all: u64,
     lit: Lit,
-    /// Those of them that show objects.
+    /// The lit pixels that show objects.
     covered: Lit,
     /// Pixels in which a screen shows light.
     seen: u64,
 }
 
-/// Pixels with light.
+/// The number of pixels with light.
 struct Lit {
     all: u64,
     white: u64,
-    /// How many there are of each luminance.
+    /// The number of pixels at each luminance.
     by_stops: Vec<u64>,
 }
 
@@ -98,7 +98,7 @@ impl Lit {
         100 * self.white >= 85 * self.all
     }
 
-    /// The exposure by which three quarters of them are of middle gray at most.
+    /// Returns the exposure at which three quarters of the pixels have at most middle gray.
     fn fitting(&self) -> i32 {
         let below = self.by_stops.iter().scan(0, |sum, count| {
             *sum += count;
@@ -109,7 +109,7 @@ impl Lit {
 }
 
 impl Counts {
-    /// Of linear Rec.709 and alpha of all pixels.
+    /// Counts pixels, given in linear Rec.709 with alpha.
     fn of(exposure: Exposure, pixels: impl Iterator<Item = ([f64; 3], f32)>) -> Self {
         let mut counts = Self { all: 0, lit: Lit::new(), covered: Lit::new(), seen: 0 };
         let gain = libm::exp2(exposure.stops);
@@ -130,8 +130,8 @@ impl Counts {
         counts
     }
 
-    /// What is wrong with the picture, if it is clear: where a white sky is meant, objects before it are not white;
-    /// where black is, something is seen.
+    /// Returns what is wrong with the picture, if that is clear. If a white sky is intended, the objects in front of it
+    /// are not white. If black is intended, something is visible.
     fn misexposure(&self) -> Option<Misexposure> {
         let (lit, covered) = (&self.lit, &self.covered);
         let (shows, of) = match covered.is_white() {
@@ -148,7 +148,7 @@ impl Counts {
 mod tests {
     use super::*;
 
-    /// A picture of grays, each with its alpha.
+    /// Checks a picture of grays, each with its alpha.
     fn told(grays: &[(f64, f32)], stops: f64) -> Option<Misexposure> {
         let exposure = Exposure { stops, ..Exposure::default() };
         Counts::of(exposure, grays.iter().map(|&(gray, alpha)| ([gray; 3], alpha))).misexposure()
@@ -173,7 +173,7 @@ mod tests {
             all.push((other, alpha));
             told(&all, 0.0)
         };
-        // A thing before a white sky, a white furnace, a lamp and a star in the dark, no light at all.
+        // An object in front of a white sky, a white furnace, a lamp and a star in the dark, no light at all.
         assert_eq!(mostly(3.0, (0.4, 1.0)), None);
         assert_eq!(told(&[(1.01, 1.0), (1.0, 1.0)], 0.0), None);
         assert_eq!(mostly(0.0, (50.0, 1.0)), None);

@@ -1,4 +1,4 @@
-//! Floor 3: images that are looked at and compared, whoever made them.
+//! Floor 3: shows and compares images, whoever made them.
 
 mod difference;
 mod mattes;

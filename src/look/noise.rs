@@ -3,46 +3,46 @@ use smallvec::SmallVec;
 use super::significance::{normal_equivalent, sidak_threshold};
 use crate::film::{Channel, ExrFile, ExrLayer, TELL_VARIANCE};
 
-/// Probability with which two images of the same thing are said to differ.
+/// The probability of a false alarm: that two images of the same thing are said to differ.
 pub(super) const FAMILY: f64 = 0.01;
-/// Values so near to each other are the same but for rounding, whatever their variance; in half floats, so near.
+/// The relative difference up to which values count as equal, whatever their variance, and the same for half floats.
 const ROUNDING: f64 = 1e-5;
 const ROUNDING_OF_HALF: f64 = 1.0 / 1024.0;
 
 /// Whether two images differ by more than their noise.
 ///
-/// Of each value, z is the difference over its standard deviation sqrt(va + vb), by the `variance` layers of both
-/// files. Where `samples.V`, `render/samples` or how many replicates there were says how little these rest on, z is the
-/// normal number that is as improbable, by the degrees of freedom of Welch 1947. A variance that is negative or no
-/// number counts as 0.
+/// For each value, z is the difference divided by its standard deviation sqrt(va + vb), taken from the `variance`
+/// layers of both files. If `samples.V`, `render/samples` or the number of replicates shows how few values the
+/// variances are estimated from, z is the equally improbable normal deviate, with the degrees of freedom of Welch 1947.
+/// A variance that is negative or NaN counts as 0.
 ///
-/// Few samples that happen to agree tell far too little: a variance counts as half the median of the pixel and those
-/// around it, or more. Where all samples of a pixel are the same beside an edge, another one might have shown what a
-/// neighbor shows: n of them tell the mean no better than to 1 / n of the difference.
+/// If few samples happen to agree, their variance is far too small. A variance therefore counts as at least half the
+/// median over the pixel and its neighbors. If all samples of a pixel beside an edge are equal, another one might have
+/// shown what a neighbor shows: n samples determine the mean only to 1 / n of the difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noise {
-    /// The z of either sign that all values together exceed by chance in 1 of 100 pairs of images.
+    /// The |z| that the largest of all values exceeds by chance in 1 of 100 pairs of images.
     pub threshold: f64,
     /// The z that is farthest from 0.
     pub worst: f64,
-    /// Its pixel, row by row, and the number of its channel.
+    /// The pixel with the worst z, counted row by row, and the index of its channel.
     pub at: [usize; 2],
-    /// How many values are beyond the threshold.
+    /// The number of values beyond the threshold.
     pub beyond: usize,
-    /// How many values without any variance in both images differ by more than rounding.
+    /// The number of values that have no variance in either image, but differ by more than rounding.
     pub changed: usize,
     /// The z of each channel's mean over the image.
     pub means: Vec<f64>,
 }
 
-/// What is needed of one image.
+/// The data that is needed from one image.
 pub(super) struct Noisy<'f> {
     colors: Vec<&'f Channel>,
     variance: Vec<&'f Channel>,
     samples: Option<&'f Channel>,
-    /// Samples of each pixel, if the file says so.
+    /// The number of samples per pixel, if the file states it.
     taken: Option<f64>,
-    /// Renders that the variance is of, where it is not that of samples.
+    /// The number of renders from which the variance is estimated, if not from samples.
     replicates: Option<f64>,
     /// Columns and rows.
     size: [usize; 2],
@@ -50,7 +50,8 @@ pub(super) struct Noisy<'f> {
 }
 
 impl<'f> Noisy<'f> {
-    /// Of the colors of a file that says their variance, unless it says that too few samples tell it.
+    /// Selects the colors of a file and their variance. Returns none if the file has no variance, or states that there
+    /// were too few samples to estimate it.
     pub(super) fn new(file: &'f ExrFile, beauty: &ExrLayer<'f>) -> Option<Self> {
         let said = |name: &str| file.attribute(name).and_then(|count| count.parse::<f64>().ok());
         let (taken, replicates) = (said("render/samples"), said("render/replicates"));
@@ -71,13 +72,13 @@ impl<'f> Noisy<'f> {
     }
 
     fn variance(&self, channel: usize, pixel: usize) -> f64 {
-        // Not `clamp`, which would keep what is no number.
+        // Not `clamp`, which would keep NaN.
         self.variance[channel].at(pixel).max(0.0)
     }
 
-    /// The variance of a pixel, or what stands in for it where few samples that happen to agree tell far too little:
-    /// half the median around it, or where no sample differs from the others, that of one that shows what the most
-    /// different neighbor does.
+    /// Returns the variance of a pixel, or a substitute if few samples happen to agree and it is far too small: half
+    /// the median around the pixel, or, if all samples are equal, the variance if one sample showed what the most
+    /// different neighbor shows.
     fn variance_beside_neighbors(&self, channel: usize, pixel: usize) -> f64 {
         let told = self.variance(channel, pixel);
         let [columns, rows] = self.size;
@@ -96,20 +97,20 @@ impl<'f> Noisy<'f> {
         (apart / taken) * (apart / taken)
     }
 
-    /// The samples of a pixel, or of each on the average, where the file says so.
+    /// Returns the number of samples of a pixel, or else the average number per pixel, if the file states it.
     pub(super) fn taken(&self, pixel: usize) -> Option<f64> {
         self.samples.map(|samples| samples.at(pixel)).or(self.taken).filter(|taken| *taken >= 1.0)
     }
 
-    /// How many independent values beyond the first its variance rests on; endless where it is not said.
+    /// Returns how many independent values beyond the first the variance rests on. Infinite if that is not stated.
     fn freedom(&self, pixel: usize) -> f64 {
         let values = self.replicates.or_else(|| self.taken(pixel));
         values.map_or(f64::INFINITY, |values| (values - 1.0).max(1.0))
     }
 }
 
-/// The degrees of freedom of a sum of two variances. Welch 1947, *The Generalization of "Student's" Problem when
-/// Several Different Population Variances are Involved*, equation 28.
+/// Returns the degrees of freedom of a sum of two variances. Welch 1947, *The Generalization of "Student's" Problem
+/// when Several Different Population Variances are Involved*, equation 28.
 fn freedom(variances: [f64; 2], of_each: [f64; 2]) -> f64 {
     let sum = variances[0] + variances[1];
     let parts: f64 = (0..2).map(|i| (variances[i] / sum) * (variances[i] / sum) / of_each[i]).sum();
@@ -117,7 +118,7 @@ fn freedom(variances: [f64; 2], of_each: [f64; 2]) -> f64 {
 }
 
 impl Noise {
-    /// Of two images of one size; `is_left_out` tells pixels that are not compared.
+    /// Compares two images of the same size, except for pixels that `is_left_out` excludes.
     pub(super) fn new(noisy: [&Noisy; 2], is_left_out: impl Fn(usize) -> bool) -> Self {
         let rounding = noisy[0].rounding.max(noisy[1].rounding);
         let same = |a: f64, b: f64| (a - b).abs() <= rounding * a.abs().max(b.abs());
@@ -156,7 +157,7 @@ impl Noise {
         found
     }
 
-    /// Whether nothing is beyond what chance makes.
+    /// Returns whether nothing exceeds what chance makes.
     pub fn agrees(&self) -> bool {
         self.beyond == 0 && self.changed == 0 && self.means.iter().all(|z| z.abs() <= self.threshold)
     }

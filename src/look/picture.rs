@@ -5,33 +5,34 @@ use crate::error::Result;
 use crate::film::{Channel, ExrFile, ExrLayer, png, replace_file};
 use crate::spectrum::{IDENTITY, Matrix, apply, encode_srgb, matrix_of_file};
 
-/// Depths and the like from here on stand for nothing at all.
+/// The value from which depths and the like stand for nothing at all.
 const NOTHING: f64 = 1e9;
 
-/// How bright colors are shown.
+/// The brightness at which colors are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Exposure {
-    /// Light is multiplied by 2 to the power of this.
+    /// The exponent of the power of 2 by which light is multiplied.
     pub stops: f64,
-    /// Then it goes through this curve.
+    /// The tone curve that is applied afterwards.
     pub tone: Tone,
 }
 
-/// What a screen is to show.
+/// A picture for a screen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: usize,
     /// Red, green and blue from 0 to 1, row by row.
     pixels: Vec<[f32; 3]>,
-    /// Whether they are linear light, or numbers that are to be shown as they are.
+    /// Whether the pixels are linear light, or else values that are shown as they are.
     is_light: bool,
 }
 
 impl Picture {
-    /// A layer as a picture, and what is to be said of it.
+    /// Converts a layer to a picture. Also returns remarks on how it is shown.
     ///
-    /// Colors are brought to Rec.709 and exposed. Of directions (`N`, `Nd`), -1 becomes 0 and 1 becomes 1. Of any other
-    /// layer the first three channels are stretched from their 1st to their 99th percentile; one alone is gray.
+    /// Colors are converted to Rec.709 and exposed. In directions (`N`, `Nd`), -1 becomes 0 and 1 becomes 1. In any
+    /// other layer, the first three channels are stretched from their 1st to their 99th percentile; a single channel is
+    /// shown as gray.
     pub fn of_layer(file: &ExrFile, layer: &ExrLayer, exposure: Exposure) -> (Self, Vec<String>) {
         let width = layer.part.bounds.size[0];
         if let Some(color) = layer.color() {
@@ -63,28 +64,28 @@ impl Picture {
         (Self { width, pixels, is_light: false }, said)
     }
 
-    /// Linear light of Rec.709 up to 1, row by row.
+    /// Creates a picture from linear Rec.709 light up to 1, row by row.
     pub fn of_light(width: usize, light: impl IntoIterator<Item = [f64; 3]>) -> Self {
         let pixels = light.into_iter().map(|rgb| rgb.map(|x| shown(x) as f32)).collect();
         Self { width, pixels, is_light: true }
     }
 
-    /// Gray numbers from 0 to 1, row by row.
+    /// Creates a picture from gray values between 0 and 1, row by row.
     pub fn of_grays(width: usize, grays: impl IntoIterator<Item = f64>) -> Self {
         Self { width, pixels: grays.into_iter().map(|gray| [gray as f32; 3]).collect(), is_light: false }
     }
 
-    /// Pixels of a row.
+    /// Returns the number of pixels per row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> usize {
         self.pixels.len() / self.width
     }
 
-    /// The picture in as many pixels, each the mean of the area that it covers.
+    /// Resamples the picture to the given size. Each pixel is the mean over the area that it covers.
     #[must_use]
     pub fn scaled(&self, width: usize, height: usize) -> Self {
         let [across, down] = [shares(self.width, width), shares(self.height(), height)];
@@ -101,21 +102,21 @@ impl Picture {
         Self { width, pixels, is_light: self.is_light }
     }
 
-    /// Red, green and blue of 8 bits, row by row.
+    /// Returns 8-bit red, green and blue, row by row.
     pub fn bytes(&self) -> Vec<[u8; 3]> {
         let plain = |pixel: [f32; 3]| pixel.map(|x| (255.0 * x).round() as u8);
         self.pixels.iter().map(|pixel| if self.is_light { encode_srgb(*pixel) } else { plain(*pixel) }).collect()
     }
 
-    /// Writes it as an 8-bit PNG.
+    /// Writes the picture as an 8-bit PNG.
     ///
     /// # Errors
-    /// If the file cannot be written; nothing is left behind then.
+    /// If the file cannot be written. Nothing is then left behind.
     pub fn write_png(&self, path: &Path) -> Result<()> {
         replace_file(path, &self.encoded(path)?)
     }
 
-    /// The bytes of such a PNG.
+    /// Encodes the picture as an 8-bit PNG.
     ///
     /// # Errors
     /// If the encoder refuses the size.
@@ -123,13 +124,13 @@ impl Picture {
         self.encoded(Path::new("the picture"))
     }
 
-    /// The same; `path` is what it is called if it cannot be made.
+    /// Encodes the picture as an 8-bit PNG; `path` names it in errors.
     fn encoded(&self, path: &Path) -> Result<Vec<u8>> {
         png(self.bytes().as_flattened(), [self.width as u32, self.height() as u32], path)
     }
 }
 
-/// Which of `from` pixels each of `to` covers, and the share that each of them has in it.
+/// Returns, for each of `to` pixels, which of `from` pixels it covers and how large a share each of these has in it.
 fn shares(from: usize, to: usize) -> Vec<Vec<(usize, f32)>> {
     let step = from as f64 / to as f64;
     let share = |i: usize| {
@@ -141,13 +142,13 @@ fn shares(from: usize, to: usize) -> Vec<Vec<(usize, f32)>> {
     (0..to).map(share).collect()
 }
 
-/// Whether a layer holds unit vectors: normals of any kind, by the names that renderers give them.
+/// Returns whether a layer holds unit vectors: normals of any kind, recognized by the names that renderers give them.
 fn is_direction(layer: &ExrLayer) -> bool {
     let last = layer.name.rsplit('.').next().unwrap_or_default().to_lowercase();
     layer.channels.len() == 3 && (matches!(&*last, "n" | "nd" | "ns" | "ng") || last.contains("normal"))
 }
 
-/// The matrix from the colors of a file to linear Rec.709, and what is to be said if it is not known.
+/// Returns the matrix from the colors of a file to linear Rec.709, and a remark if it is unknown.
 pub(super) fn to_rec709(file: &ExrFile) -> (Matrix, Option<String>) {
     match matrix_of_file(file.attribute("colorInteropID"), file.chromaticities) {
         Ok(matrix) => (matrix, None),
@@ -155,20 +156,20 @@ pub(super) fn to_rec709(file: &ExrFile) -> (Matrix, Option<String>) {
     }
 }
 
-/// The 1st and 99th percentile of the finite values of a channel that do not stand for nothing.
+/// Returns the 1st and 99th percentile of the finite values of a channel, without those that stand for nothing.
 fn span(channel: &Channel) -> (f64, f64) {
     let values: Vec<f64> = channel.values().filter(|x| x.is_finite() && *x < NOTHING).collect();
     let [low, high] = [1, 99].map(|percent| percentile(values.clone(), percent));
     (low.unwrap_or(0.0), high.unwrap_or(1.0))
 }
 
-/// The value at a percentile, 0 to 100; none of no values.
+/// Returns the value at a percentile, 0 to 100, or none if there are no values.
 pub(super) fn percentile(mut values: Vec<f64>, percent: usize) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
     Some(*values.select_nth_unstable_by((last * percent + 50) / 100, f64::total_cmp).1)
 }
 
-/// Values from 0, at `low`, to 1, at `high`; the middle where both are the same.
+/// Maps values linearly, so that `low` becomes 0 and `high` becomes 1. If both are equal, they become the middle.
 fn stretched(channel: &Channel, low: f64, high: f64) -> Vec<f32> {
     let of = |x: f64| if high > low { (x - low) / (high - low) } else { x - low + 0.5 };
     channel.values().map(|x| shown(of(x)) as f32).collect()
@@ -185,11 +186,11 @@ mod tests {
     #[test]
     fn a_scaled_picture_has_the_mean_of_each_area_in_linear_light() {
         let checker = light(2, &[0.0, 1.0, 1.0, 0.0]);
-        // sRGB of 0.5 (IEC 61966-2-1).
+        // The sRGB encoding of 0.5 (IEC 61966-2-1).
         assert_eq!(checker.scaled(1, 1).bytes(), [[188; 3]]);
         let row = light(3, &[0.0, 0.6, 1.0]);
         let two: Vec<f32> = row.scaled(2, 1).pixels.iter().map(|pixel| pixel[0]).collect();
-        // One and a half pixels each: (0 + 0.3) / 1.5 and (0.3 + 1) / 1.5.
+        // Each covers one and a half pixels: (0 + 0.3) / 1.5 and (0.3 + 1) / 1.5.
         assert!((two[0] - 0.2).abs() < 1e-6 && (two[1] - 1.3 / 1.5).abs() < 1e-6, "{two:?}");
         assert_eq!(row.scaled(3, 1), row);
     }

@@ -1,15 +1,15 @@
-//! How large a deviation chance makes.
+//! How large a deviation can be by chance.
 
 use std::f64::consts::SQRT_2;
 
-/// The deviation, in standard deviations of either sign, that the largest of `count` independent normal numbers
-/// exceeds with the probability `family`. Šidák 1967, *Rectangular Confidence Regions for the Means of Multivariate
-/// Normal Distributions*: each may exceed it with 1 - (1 - family)^(1 / tests).
+/// Returns the deviation, in standard deviations of either sign, that the largest of `tests` independent normal
+/// deviates exceeds with the probability `family`. Šidák 1967, *Rectangular Confidence Regions for the Means of
+/// Multivariate Normal Distributions*: each may exceed it with the probability 1 - (1 - family)^(1 / tests).
 ///
-/// The normal distribution is inverted by halving an interval over its complementary error function.
+/// Inverts the normal distribution by bisection, using the complementary error function.
 pub(super) fn sidak_threshold(tests: usize, family: f64) -> f64 {
     let each = -libm::expm1(libm::log1p(-family) / tests.max(1) as f64);
-    // Beyond 38 standard deviations the error function is 0 in 64 bits.
+    // Beyond 38 standard deviations the complementary error function is 0 in 64 bits.
     let (mut low, mut high) = (0.0, 38.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -22,10 +22,10 @@ pub(super) fn sidak_threshold(tests: usize, family: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The normal number that is as improbable as a number of Student's distribution. Wallace 1959, *Bounds on Normal
+/// Returns the normal deviate as improbable as a number of Student's distribution. Wallace 1959, *Bounds on Normal
 /// Approximations to Student's and the Chi-Square Distributions*: z = (8 v + 1) / (8 v + 3) sqrt(v ln(1 + t^2 / v)).
 ///
-/// A standard deviation that is estimated from few samples is often too small; this is what it makes of deviations.
+/// A standard deviation that is estimated from few samples is often too small. This corrects deviations for that.
 pub(super) fn normal_equivalent(t: f64, freedom: f64) -> f64 {
     if freedom.is_infinite() {
         return t;

@@ -1,7 +1,7 @@
-/// How light becomes what a screen can show, on each of red, green and blue alike.
+/// A tone curve, which maps light to what a screen can show. It is applied to red, green and blue separately.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// Light beyond 1 is cut off; all below it stays as it is.
+    /// Clips light beyond 1, and leaves darker light unchanged.
     #[default]
     Srgb,
     /// A filmic curve: a soft toe, and a shoulder that reaches white at 5.6. Hable 2010, *Uncharted 2: HDR Lighting*,
@@ -11,10 +11,10 @@ pub enum Tone {
 }
 
 impl Tone {
-    /// Every one.
+    /// All curves.
     pub const ALL: [Self; 2] = [Self::Srgb, Self::Hable];
 
-    /// Its name on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Srgb => "srgb",
@@ -22,7 +22,7 @@ impl Tone {
         }
     }
 
-    /// What a screen shows, 0 to 1 and linear; what is no number is black.
+    /// Returns the linear value that a screen shows, 0 to 1. NaN becomes black.
     pub fn shown(self, light: f64) -> f64 {
         shown(match self {
             Self::Srgb => light,
@@ -31,18 +31,18 @@ impl Tone {
     }
 }
 
-/// What is between 0 and 1; 0 for what is no number.
+/// Clamps a value to 0 to 1. NaN becomes 0.
 pub(super) fn shown(value: f64) -> f64 {
     if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) }
 }
 
-/// The light before the bias that is white.
+/// The argument of the curve, with the bias included, that is shown as white.
 const WHITE: f64 = 11.2;
-/// White whatever the curve makes of it; the curve of infinity would be no number.
+/// Light that is white whatever the curve. Anything beyond it is clamped, as the curve of infinity would be NaN.
 const BEYOND_WHITE: f64 = 1e6;
 
-/// The curve with its six constants: shoulder strength, linear strength, linear angle, toe strength, toe numerator and
-/// toe denominator.
+/// Evaluates the curve with its six constants: shoulder strength, linear strength, linear angle, toe strength, toe
+/// numerator and toe denominator.
 fn hable(x: f64) -> f64 {
     const A: f64 = 0.15;
     const B: f64 = 0.50;
@@ -57,8 +57,8 @@ fn hable(x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// By the listing: x = 2 light, (0.15 x^2 + 0.05 x + 0.004) / (0.15 x^2 + 0.5 x + 0.06) - 1/15, divided by its
-    /// value at 11.2.
+    /// From the listing, with x = 2 light: (0.15 x^2 + 0.05 x + 0.004) / (0.15 x^2 + 0.5 x + 0.06) - 1/15, divided by
+    /// its value at 11.2.
     #[test]
     fn the_curve_of_hable_has_its_published_values() {
         let white = 19.38 / 24.476 - 1.0 / 15.0;

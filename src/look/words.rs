@@ -1,11 +1,11 @@
-//! Numbers as people read them.
+//! Numbers formatted for people.
 
-/// Five digits, without a power of ten where that is as short.
+/// Formats a number with five digits, without a power of ten if that is as short.
 pub fn number(value: f64) -> String {
     number_of_digits(value, 5)
 }
 
-/// A number of so many significant digits, without a power of ten where that is as short.
+/// Formats a number with the given count of significant digits, without a power of ten if that is as short.
 fn number_of_digits(value: f64, digits: i32) -> String {
     let size = value.abs();
     let scientific = || format!("{value:.*e}", digits as usize - 1);
@@ -20,7 +20,7 @@ fn number_of_digits(value: f64, digits: i32) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// A share as people say it.
+/// Formats a fraction as a percentage.
 pub fn percent(share: f64) -> String {
     format!("{} %", number_of_digits(100.0 * share, 2))
 }

@@ -2,28 +2,28 @@ use std::f64::consts::TAU;
 
 use crate::math::DVec3;
 
-/// A share of the light that meets a rough surface, as a table over the cosine to the normal, from which directions can
-/// be drawn if it is nowhere negative.
+/// A share of the light that meets a rough surface, tabulated over the cosine to the normal. Directions can be sampled
+/// from the table if no value is negative.
 ///
-/// The table has evenly spaced places w in 0..1, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z: the
-/// energy missing from facets whose slopes are as wide as alpha changes as z log z near 0, most where z is about alpha,
-/// and as 1 / z^2 beyond.
+/// Its places w in 0..1 are evenly spaced, with z = alpha ((1 + 1 / alpha)^(w w) - 1) for the cosine z. The energy
+/// missing from facets with slopes of width alpha changes as z log z near 0, most where z is about alpha, and as
+/// 1 / z^2 beyond.
 #[derive(Clone, Debug)]
 pub(super) struct AlbedoTable {
     alpha: f64,
     /// ln(1 + 1 / alpha).
     span: f64,
     values: Vec<f64>,
-    /// Their mean over the hemisphere, by cosine: the share of light that comes evenly from all around.
+    /// Cosine-weighted mean over the hemisphere: the share for diffuse light.
     pub(super) mean: f64,
-    /// Density of the places of the drawn directions, linear between them.
+    /// Density of the places of sampled directions, linear between the table's places.
     lobe: Vec<f64>,
-    /// The part of the lobe below each place.
+    /// Cumulative distribution of the lobe at each place.
     below: Vec<f64>,
 }
 
 impl AlbedoTable {
-    /// The table of `value` in a number of steps, for facets as wide as `alpha`; it is asked once for each, in order.
+    /// Tabulates `value` in a number of steps, for facets of width `alpha`. `value` is called once per place, in order.
     pub(super) fn new(alpha: f64, steps: usize, mut value: impl FnMut(f64) -> f64) -> Self {
         let zeros = vec![0.0; steps + 1];
         let span = libm::log1p(1.0 / alpha);
@@ -37,7 +37,7 @@ impl AlbedoTable {
             let area = 0.5 * (table.lobe[step - 1] + table.lobe[step]) / steps as f64;
             table.below[step] = table.below[step - 1] + area;
         }
-        // Of a share that is 0 everywhere, no direction is ever drawn.
+        // From a share that is 0 everywhere, no direction is ever drawn.
         let all = if table.below[steps] > 0.0 { table.below[steps] } else { 1.0 };
         table.lobe.iter_mut().chain(&mut table.below).for_each(|x| *x /= all);
         table.mean = table.integral();
@@ -48,24 +48,24 @@ impl AlbedoTable {
         self.values.len() - 1
     }
 
-    /// The cosine at a place of the table.
+    /// Returns the cosine at a place of the table.
     pub(super) fn cosine(&self, place: f64) -> f64 {
         (self.alpha * libm::expm1(self.span * place * place)).min(1.0)
     }
 
-    /// The place of a cosine in 0..1, the same in all tables of as wide facets.
+    /// Returns the place of a cosine in 0..1, equal in all tables of facets of this width.
     pub(super) fn place(&self, z: f64) -> f64 {
         (libm::log1p(z / self.alpha) / self.span).clamp(0.0, 1.0).sqrt()
     }
 
-    /// How fast the cosine grows with the place.
+    /// Returns the derivative of the cosine with respect to the place.
     fn slope(&self, place: f64, z: f64) -> f64 {
         2.0 * self.span * place * (z + self.alpha)
     }
 
-    /// Twice the integral of the table times cosine over the cosine, exact for its linear pieces but for 1e-8.
+    /// Returns twice the integral of the table times cosine over the cosine, within 1e-8 of that of its linear pieces.
     fn integral(&self) -> f64 {
-        /// Places and half weights of the Gauss-Legendre rule of order 6.
+        /// Nodes and half weights of the Gauss-Legendre rule of order 6.
         const GAUSS: [[f64; 2]; 3] =
             [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
         let (mut sum, steps) = (0.0, self.steps() as f64);
@@ -79,31 +79,31 @@ impl AlbedoTable {
         sum / steps
     }
 
-    /// The share at the cosine `z`.
+    /// Returns the share at the cosine `z`.
     pub(super) fn value(&self, z: f64) -> f64 {
         self.at(self.place(z))
     }
 
-    /// The share at a place.
+    /// Returns the share at a place.
     pub(super) fn at(&self, place: f64) -> f64 {
         between(&self.values, place)
     }
 
-    /// The share at the place of the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`] draws
-    /// directions there.
+    /// Returns the share at the place of the cosine `z`, and the density per steradian with which [`AlbedoTable::draw`]
+    /// draws directions there.
     pub(super) fn value_and_density(&self, place: f64, z: f64) -> [f64; 2] {
         let place = place.max(f64::MIN_POSITIVE);
         [self.at(place), between(&self.lobe, place) / (TAU * self.slope(place, z))]
     }
 
-    /// A direction in the frame in which +z is the normal, drawn by nearly the share times the cosine: its place is
-    /// drawn from a density that is linear between the places of the table.
+    /// Samples a direction in the frame in which +z is the normal, nearly in proportion to the share times the cosine:
+    /// its place is drawn from a density that is linear between the places of the table.
     pub(super) fn draw(&self, u: [f64; 2]) -> DVec3 {
         let steps = self.steps();
         let step = self.below.partition_point(|&below| below <= u[1]).clamp(1, steps) - 1;
         let [low, high] = [self.lobe[step], self.lobe[step + 1]];
         let area = (u[1] - self.below[step]).max(0.0) * steps as f64;
-        // The root of low x + (high - low) x^2 / 2 = area that does not cancel.
+        // The root of low x + (high - low) x^2 / 2 = area, in the form that does not cancel.
         let root = (low * low + 2.0 * (high - low) * area).max(0.0).sqrt();
         let x = if area > 0.0 { (2.0 * area / (low + root)).min(1.0) } else { 0.0 };
         let z = self.cosine((step as f64 + x) / steps as f64);
@@ -112,13 +112,13 @@ impl AlbedoTable {
     }
 }
 
-/// A table, linear between its places.
+/// Interpolates a table linearly between its places.
 fn between(table: &[f64], place: f64) -> f64 {
     let (step, part) = step_at(place, table.len() - 1);
     table[step] + part * (table[step + 1] - table[step])
 }
 
-/// The step in which a place of 0..1 lies, and the part of it that lies below.
+/// Returns the step in which a place in 0..1 lies, and the fraction of the step below the place.
 pub(super) fn step_at(place: f64, steps: usize) -> (usize, f64) {
     let place = place * steps as f64;
     let step = (place as usize).min(steps - 1);

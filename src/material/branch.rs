@@ -1,85 +1,86 @@
-//! Light that leaves a surface: by ways of its own, or straight on.
+//! Light that leaves a surface: in a scattered direction, or straight through.
 
 use super::{ScatterContext, reflect};
 use crate::math::{DVec3, Ray};
 use crate::spectrum::{LaneSet, Lanes};
 
-/// One way light came to the surface, and the lanes that came by it.
+/// A direction from which light came to the surface, and the lanes that came from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branch<const N: usize> {
     /// Unit vector toward where the light came from.
     pub wi: DVec3,
-    /// Factor on each lane's throughput; 0 for lanes that did not come this way.
+    /// Factor on each lane's throughput; 0 for lanes that did not come from this direction.
     pub share: Lanes<N>,
-    /// Density per steradian with which `wi` was drawn, none for the one direction a smooth surface allows.
+    /// Density per steradian with which `wi` was drawn; None for the single direction that a smooth surface allows.
     pub pdf: Option<f64>,
     /// Whether the light came from beyond the surface.
     pub crosses: bool,
     /// The part of `share` that only converts radiance between media, (n_incident / n_beyond)^2 of the ray's indices.
     pub eta_scale: f64,
-    /// Largest degree |s - p| / (s + p), of any lane, to which unpolarized light that comes by this one direction
-    /// leaves polarized; 0 where it does not, and of directions that were drawn: see
+    /// Largest degree |s - p| / (s + p) over all lanes to which unpolarized light from this single direction leaves
+    /// polarized. 0 if it leaves unpolarized, and for directions drawn with a density: see
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub polarization: f32,
 }
 
-/// From where light arrives that leaves a surface to the viewer.
+/// Where light comes from before it leaves a surface toward the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Incoming {
-    /// Unit vector toward it.
+    /// Unit vector toward where it comes from.
     pub wi: DVec3,
-    /// Whether it is beyond the surface.
+    /// Whether it comes from beyond the surface.
     pub crosses: bool,
-    /// Whether it is the one direction that a smooth surface allows.
+    /// Whether this is the single direction that a smooth surface allows.
     pub single: bool,
-    /// The lanes in which it arrives. What becomes of others has no meaning.
+    /// The lanes in which light arrives. Results for other lanes have no meaning.
     pub lanes: LaneSet,
 }
 
 impl<const N: usize> Branch<N> {
-    /// The mirror image of the viewer's direction; `polarization` is the degree that it gives to unpolarized light.
+    /// Makes the branch in the mirror direction; `polarization` is the degree to which unpolarized light leaves
+    /// polarized.
     pub(super) fn mirrored(context: &ScatterContext<N>, share: Lanes<N>, polarization: f32) -> Self {
         let wi = reflect(context.wo, context.normal);
         Self { wi, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
     }
 
-    /// A way on the viewer's side that was drawn with a density.
+    /// Makes a branch on the viewer's side that was drawn with the density `pdf`.
     pub fn drawn(wi: DVec3, share: Lanes<N>, pdf: f64) -> Self {
         Self { wi, share, pdf: Some(pdf), crosses: false, eta_scale: 1.0, polarization: 0.0 }
     }
 
-    /// From where its light arrives, of the lanes that are present on the ray.
+    /// Returns where its light arrives from, for the lanes that are present on the ray.
     #[inline(always)]
     pub fn incoming(&self, present: &Lanes<N>) -> Incoming {
         let lanes = (self.share * *present).not_zero();
         Incoming { wi: self.wi, crosses: self.crosses, single: self.pdf.is_none(), lanes }
     }
 
-    /// The way of a ray that goes straight on, with the light that comes by it.
+    /// Makes the branch of a ray that passes straight through, with the light that it carries.
     pub fn through(ray: &Ray, straight: &Straight<N>) -> Self {
         let (share, polarization) = (straight.share(), straight.polarization);
         Self { wi: ray.direction, share, pdf: None, crosses: false, eta_scale: 1.0, polarization }
     }
 
-    /// The same way with a share of its light.
+    /// Returns the branch with its light multiplied by `share`.
     pub(super) fn scaled(&self, share: Lanes<N>) -> Self {
         Self { share: self.share * share, ..*self }
     }
 
-    /// Whether both are the same single direction.
+    /// Returns whether both are the same single direction.
     pub(super) fn is_same_way(&self, other: &Self) -> bool {
         let single = self.pdf.is_none() && other.pdf.is_none();
         single && self.wi == other.wi && self.crosses == other.crosses
     }
 
-    /// Takes in the light of another branch that goes the same way.
+    /// Adds the light of another branch in the same direction.
     pub(super) fn join(&mut self, other: &Self) {
         self.polarization = self.polarization.max(other.polarization);
         self.share += other.share;
     }
 }
 
-/// What goes straight on through a surface, as a share of each lane.
+/// What passes straight through a surface, as a share of each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Straight<const N: usize> {
     /// Through holes, where nothing is hit.
@@ -94,18 +95,18 @@ impl<const N: usize> Straight<N> {
     /// Nothing.
     pub(super) const NONE: Self = Self { holes: Lanes::ZERO, panes: Lanes::ZERO, polarization: 0.0 };
 
-    /// All that goes straight on.
+    /// Returns all that passes straight through.
     pub fn share(&self) -> Lanes<N> {
         self.holes + self.panes
     }
 
-    /// What goes through holes, without what goes through panes.
+    /// Returns what passes through holes, without what passes through panes.
     #[must_use]
     pub fn through_holes(self) -> Self {
         Self { panes: Lanes::ZERO, ..self }
     }
 
-    /// What two materials let through that each cover a share of a surface.
+    /// Combines what two materials let pass, each of which covers a share of a surface.
     pub(super) fn of_both(parts: [Option<Self>; 2], shares: [Lanes<N>; 2]) -> Option<Self> {
         if parts.iter().all(Option::is_none) {
             return None;

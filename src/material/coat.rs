@@ -9,68 +9,70 @@ use super::fresnel::diffuse_transmittance;
 use super::{Block, Facets, Interface, RoughSurface, Roughness, reflect};
 use crate::math::DVec3;
 
-/// The clear surface of an opaque body, smooth or rough: what of the light it lets in, and out again.
+/// The clear surface of an opaque body, smooth or rough: how much light it lets in, and out again.
 ///
-/// A rough one's share is the smooth one's and a difference read from a table, which is computed when it is first
-/// needed: row by row for the relative index m, evenly in the square root of ln m, near which 1 changes most.
+/// The share of a rough coat is that of a smooth one plus a difference from a table. The table's rows are computed when
+/// first needed. They are evenly spaced in the square root of ln m for the relative index m, since the difference
+/// changes most near 1.
 #[derive(Clone, Debug)]
 pub struct Coat {
     roughness: Roughness,
-    /// What a rough one reflects once, beyond a smooth one.
+    /// What a rough coat reflects once, minus what a smooth one reflects.
     rows: Rows,
-    /// By how much that is polarized.
+    /// The polarization, s minus p, of light that a rough coat reflects once, minus that of a smooth one.
     polarized: Rows,
-    /// What a film adds to what a rough one reflects.
+    /// What a film adds to the reflection of a rough coat.
     kernel: Arc<OnceLock<FilmKernel>>,
 }
 
-/// Rows of a table, by the relative index.
+/// Rows of a table, by relative index.
 type Rows = Arc<[OnceLock<AlbedoTable>; ROWS]>;
 
-/// Rows of the table on each side of a relative index of 1.
+/// Number of rows on each side of a relative index of 1.
 const SIDE: usize = 76;
 const ROWS: usize = 2 * SIDE + 1;
-/// Square root of the logarithm of a relative index of 10.1, more than any two indices of a scene have.
+/// Square root of the logarithm of a relative index of 10.1, larger than that of any two indices in a scene.
 const WIDEST: f64 = 1.52;
 
-/// Steps of a row over the cosine.
+/// Number of steps of a row over the cosine.
 const STEPS: usize = 64;
 
 /// The transmittance of a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CoatTransmittance {
-    /// Share of the light from the direction of one cosine that gets in.
+    /// Share of the light from a direction with the first cosine that gets in.
     pub(super) from: f64,
-    /// From the direction of the other.
+    /// Share of the light from a direction with the second cosine that gets in.
     pub(super) to: f64,
-    /// Share of the light from all around that gets in.
+    /// Share of diffuse light that gets in.
     pub(super) around: f64,
-    /// Of the energy that single scattering by a rough coat's facets would lose if they were perfect mirrors, the share
-    /// that is reflected by multiple scattering.
+    /// Share reflected by multiple scattering, of the energy that single scattering by a rough coat's facets would lose
+    /// if they were perfect mirrors.
     pub(super) multiple: f64,
     /// Square of the relative index.
     squared: f64,
-    /// Of diffuse light from inside, what a film absorbs, times that.
+    /// Share of diffuse light from inside that a film absorbs, times `squared`.
     lost: f64,
 }
 
 impl CoatTransmittance {
-    /// BRDF times pi of a diffuse base of reflectance `r` under the coat: T T' r / (m^2 (1 - r R)), where R is the
-    /// coat's reflectance of diffuse light from inside.
+    /// Returns BRDF times pi of a diffuse base of reflectance `r` under the coat, T T' r / (m^2 (1 - r R)), where R is
+    /// the coat's reflectance of diffuse light from inside.
     ///
-    /// The radiance is 1 / m^2 times as large outside, and the geometric series sums what the coat sends back to the
-    /// base. With T from all around outside, 1 - R = T / m^2 (Duntley 1942, *The Optical Properties of Diffusing
+    /// Radiance is 1 / m^2 times as large outside, and the geometric series sums what the coat sends back to the base.
+    /// With T for diffuse light from outside, 1 - R = T / m^2 (Duntley 1942, *The Optical Properties of Diffusing
     /// Materials*, equations 42 to 45), so a white base under a clear coat loses nothing.
     pub(super) fn base(&self, r: f64) -> f64 {
         self.from * self.to * r / self.unabsorbed(r)
     }
 
-    /// Shares of the light from the first direction that the coat and the base reflect.
+    /// Returns the shares of the light from the first direction that the coat and the base reflect.
     pub(super) fn reflected(&self, r: f64) -> [f64; 2] {
         [1.0 - self.from, self.from * self.around * r / self.unabsorbed(r)]
     }
 
-    /// What crosses under a film, of which a smooth one lets these shares through from the two directions.
+    /// Returns the transmittance under a film. On a smooth coat, `from` and `to` are what both transmit from the two
+    /// directions.
     pub(super) fn under(&self, averages: &FilmAverages, [from, to]: [f64; 2]) -> Self {
         Self { from, to, around: averages.mean[1], lost: self.squared * averages.lost_inside, ..*self }
     }
@@ -80,21 +82,21 @@ impl CoatTransmittance {
     }
 }
 
-/// The energy that single scattering by the facets of a rough coat loses, of light from two directions: the same for
-/// all lanes.
+/// The energy that single scattering by the facets of a rough coat loses, for light from two directions. It is equal
+/// for all lanes.
 pub(super) struct CoatMissingEnergy<'a> {
     surface: &'a RoughSurface,
-    /// If they were perfect mirrors.
+    /// The missing energy if the facets were perfect mirrors.
     by_mirrors: [f64; 2],
-    /// Of what a film changes, and of that from all around.
+    /// The missing energy of a film's changes: from the two directions, and of diffuse light.
     by_hats: [HatWeights; 2],
     by_hats_around: &'a HatWeights,
 }
 
 impl CoatMissingEnergy<'_> {
-    /// The transmittance of the coat and a film, where `bare` is that of the coat alone.
+    /// Returns the transmittance of the coat with a film; `bare` is that of the coat alone.
     ///
-    /// Of light that the coat would reflect more than once, what is not reflected gets in.
+    /// Of light that the coat would reflect more than once, the part that is not reflected gets in.
     pub(super) fn transmittance_under(&self, averages: &FilmAverages, bare: &CoatTransmittance) -> CoatTransmittance {
         let multiple = self.surface.multiply_reflected(averages.mean[0]);
         let less = bare.multiple - multiple;
@@ -109,18 +111,18 @@ impl CoatMissingEnergy<'_> {
 }
 
 impl Coat {
-    /// A coat of a roughness, 0 to 1.
+    /// Makes a coat of a roughness from 0 to 1.
     pub fn new(roughness: f64) -> Self {
         let [rows, polarized] = array::from_fn(|_| Arc::new(array::from_fn(|_| OnceLock::new())));
         Self { roughness: Roughness::new(roughness), rows, polarized, kernel: Arc::default() }
     }
 
-    /// How rough it is.
+    /// Returns its roughness.
     pub fn roughness(&self) -> &Roughness {
         &self.roughness
     }
 
-    /// What crosses into index `n2` under `n1`, from two directions of the given cosines.
+    /// Returns the transmittance from index `n1` into index `n2`, from two directions of the given cosines.
     pub(super) fn transmittance(&self, [n1, n2]: [f64; 2], [from, to]: [f64; 2]) -> CoatTransmittance {
         let m = n2 / n1;
         let squared = m * m;
@@ -148,7 +150,8 @@ impl Coat {
         }
     }
 
-    /// The energy that single scattering by a rough one loses, of light from two directions; none of a smooth one.
+    /// Returns the energy that single scattering by a rough coat loses, for light from two directions, or None for a
+    /// smooth coat.
     pub(super) fn missing_energy(&self, cosines: [f64; 2]) -> Option<CoatMissingEnergy<'_>> {
         let surface = self.roughness.surface()?;
         let kernel = self.kernel.get_or_init(|| kernel(surface));
@@ -160,12 +163,11 @@ impl Coat {
         })
     }
 
-    /// The degree to which light that crosses from a direction of a cosine is polarized, across the plane of incidence
-    /// less along it, 0 to 1 either way.
+    /// Returns the degree of polarization, (s - p) / (s + p), of light that crosses from a direction with cosine `cos`.
     ///
-    /// Light from all around is reflected and let through so that as much leaves unpolarized as came, as in a closed
-    /// room of one temperature. So what crosses, a `share` of the light, is polarized as much as what facets reflect
-    /// once, the other way.
+    /// Unpolarized light from all around leaves unpolarized in total, reflected and transmitted together, as in a
+    /// closed room of one temperature. So the light that crosses, a `share` of it all, is polarized as much as the
+    /// light that facets reflect once, with the opposite sign.
     pub(super) fn degree_crossing(&self, [n1, n2]: [f64; 2], cos: f64, share: f64) -> f64 {
         if n1 == n2 {
             return 0.0;
@@ -181,7 +183,7 @@ impl Coat {
     }
 }
 
-/// The rows on both sides of a relative index, and how much of each is taken.
+/// Returns the rows on both sides of a relative index, and the weight of each.
 fn around_index(rows: &Rows, m: f64, row: impl Fn(f64) -> AlbedoTable) -> [(f64, &AlbedoTable); 2] {
     let log = libm::log(m);
     let at = (log.abs().sqrt().copysign(log) / WIDEST + 1.0) * SIDE as f64;
@@ -196,9 +198,10 @@ fn around_index(rows: &Rows, m: f64, row: impl Fn(f64) -> AlbedoTable) -> [(f64,
     [(1.0 - part, numbered(below)), (part, numbered(below + 1))]
 }
 
-/// What a rough surface reflects once and no facet shadows, beyond a smooth one of the same relative index m.
+/// Tabulates what a rough surface reflects once and unshadowed, minus what a smooth one of the same relative index m
+/// reflects.
 fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
-    // At the very horizon a rough surface still lets light in, which a smooth one does not.
+    // Exactly at the horizon a rough surface still lets light in, unlike a smooth one.
     let (facets, visible) = (surface.facets(), surface.facets().visible(m));
     AlbedoTable::new(facets.alpha(), STEPS, |z| {
         let z = z.max(HORIZON);
@@ -206,7 +209,7 @@ fn row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     })
 }
 
-/// The share that facets of relative index m reflect and no facet shadows.
+/// The share that facets of relative index m reflect and no other facet shadows.
 struct ReflectedOnce {
     facets: Facets,
     m: f64,
@@ -220,8 +223,8 @@ impl OfFacet for ReflectedOnce {
     }
 }
 
-/// By how much what a rough surface reflects once of light from all around is polarized across the plane of
-/// incidence, beyond a smooth one of the same relative index m.
+/// Tabulates the polarization, s minus p, of diffuse light that a rough surface reflects once, minus that of a smooth
+/// one of the same relative index m.
 fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     let (facets, visible) = (surface.facets(), surface.facets().visible(m));
     AlbedoTable::new(facets.alpha(), STEPS, |z| {
@@ -230,7 +233,7 @@ fn polarized_row(surface: &RoughSurface, m: f64) -> AlbedoTable {
     })
 }
 
-/// By how much what such facets reflect and no facet shadows is polarized across the plane of incidence.
+/// The polarization, s minus p, of light that facets of relative index m reflect and no other facet shadows.
 struct ReflectedPolarization {
     facets: Facets,
     m: f64,
@@ -239,7 +242,7 @@ struct ReflectedPolarization {
 impl OfFacet for ReflectedPolarization {
     #[inline(always)]
     fn of(&self, wo: DVec3, h: DVec3) -> f64 {
-        // Across the surface's plane of incidence is y.
+        // The direction perpendicular to the surface's plane of incidence is y.
         let across = wo.cross(h);
         let cos_squared = if across == DVec3::ZERO { 0.5 } else { across.y * across.y / across.length_squared() };
         let of_facet = Block::at_boundary([1.0, self.m, wo.dot(h)], false).d;
@@ -247,10 +250,10 @@ impl OfFacet for ReflectedPolarization {
     }
 }
 
-/// The energy that is missing of light that facets would reflect, and all that they would let through.
+/// Tabulates the energy missing from the light that facets reflect. All light that they transmit counts as missing.
 fn kernel(surface: &RoughSurface) -> FilmKernel {
     let (facets, visible) = (surface.facets(), surface.facets().visible(1.0));
-    // As if the body were denser than what is around it, which it nearly always is.
+    // This takes the body to be denser than its surroundings, which it nearly always is.
     FilmKernel::new(facets.alpha(), 1.0, STEPS, |z, add| {
         for ([wo, h], weight) in visible.from(z.max(HORIZON)) {
             let [_, missing] = facets.unshadowed_and_shadowed(wo, reflect(wo, h));
@@ -259,5 +262,5 @@ fn kernel(surface: &RoughSurface) -> FilmKernel {
     })
 }
 
-/// Cosine taken for the horizon's.
+/// The cosine that stands for the horizon.
 const HORIZON: f64 = 1e-9;

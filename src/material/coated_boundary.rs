@@ -1,4 +1,4 @@
-//! The smooth coated surface of a clear body, lane by lane.
+//! The smooth coated surface of a clear body, evaluated lane by lane.
 
 use super::coating::LocalCoating;
 use super::degree::of_all_lanes;
@@ -8,8 +8,9 @@ use super::stack::StackShares;
 use super::{Block, Branch, Coating, Interface, ScatterContext};
 use crate::spectrum::{Lanes, Table};
 
-/// One reflected branch, and one refracted branch for each distinct pair of indices that refract: those of the bare
-/// surface, for layers with flat faces turn no ray. `factors` are on what it reflects and lets through.
+/// Adds one reflected branch, and one refracted branch for each distinct pair of refracting indices. The directions are
+/// those of the bare surface, since layers with flat faces turn no ray. `factors` apply to the reflected and the
+/// transmitted light.
 pub(super) fn scatter<const N: usize>(
     coating: &Coating<Table>,
     factors: [&Table; 2],
@@ -45,7 +46,7 @@ pub(super) fn scatter<const N: usize>(
     }
 }
 
-/// What a coated boundary, or a facet of it, does with a lane whose ray meets it at an angle with cosine `cos`.
+/// Returns the shares of a lane whose ray meets a coated boundary, or a facet of it, at an angle with cosine `cos`.
 pub(super) fn shares_at<const N: usize>(
     local: &LocalCoating<N>,
     context: &ScatterContext<N>,
@@ -57,7 +58,7 @@ pub(super) fn shares_at<const N: usize>(
     shares_of_lane(context, lane, cos, goes_on, |n1, n2, q1| local.shares(lane, n1, n2.into(), q1))
 }
 
-/// What becomes of polarized radiance there.
+/// Returns the Mueller block of radiance at a coated boundary, or a facet of it.
 pub(super) fn block_at<const N: usize>(
     local: &LocalCoating<N>,
     context: &ScatterContext<N>,
@@ -70,8 +71,9 @@ pub(super) fn block_at<const N: usize>(
     if crosses { refracted.block().times(ratio * ratio) } else { reflected.block() }
 }
 
-/// What a coated boundary does with a lane whose ray meets it at an angle with cosine `cos`, by the lane's own indices
-/// n1 and n2 and the cosine times n1 that it has on the ray: see [`SharedRay`]. What has no way on is reflected.
+/// Returns the shares of a lane at a coated boundary that its ray meets at an angle with cosine `cos`. `of_stack` gets
+/// the lane's own indices n1 and n2, and n1 times its cosine on the ray: see [`SharedRay`]. Unless the ray `goes_on`,
+/// what would cross is reflected.
 pub(super) fn shares_of_lane<const N: usize>(
     context: &ScatterContext<N>,
     lane: usize,

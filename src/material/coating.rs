@@ -11,12 +11,12 @@ use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 
 /// Thin layers on a surface, in which light interferes: what makes lenses dark, titanium blue and soap colorful.
 ///
-/// Between the layers and on both sides, waves add up by Abeles' matrices: see [`Stack`]. A rough surface carries them
-/// on its facets (Belcour & Barla 2017, *A Practical Extension to Microfacet Theory for the Modeling of Varying
-/// Iridescence*, without its integration over the eye's curves: lanes do that). Beyond
-/// [`COHERENT_NM`](super::COHERENT_NM) a lane sees the mean over all phases; lines and heroes see every fringe.
+/// Inside the layers and on both sides, waves are summed by Abeles' matrices: see [`Stack`]. On a rough surface, the
+/// facets carry the layers (Belcour & Barla 2017, *A Practical Extension to Microfacet Theory for the Modeling of
+/// Varying Iridescence*, without its integration over the eye's curves, which the lanes do). Beyond
+/// [`COHERENT_NM`](super::COHERENT_NM) a lane gets the mean over all phases; lines and heroes see every fringe.
 ///
-/// Layers bend no ray, and are flat where one hits them. A rough surface between equal indices shows none.
+/// Layers do not bend rays, and are flat at the point of the hit. A rough surface between equal indices shows none.
 ///
 /// ```toml
 /// coating = [{ index = 1.38, thickness_nm = 99.6 }]     # from the outside inward, at most 32
@@ -27,9 +27,9 @@ use crate::spectrum::{Lanes, MAX_LANES, Quantity, Table};
 pub struct Coating<S> {
     /// From the outside inward.
     pub layers: Vec<CoatingLayer<S>>,
-    /// From outside and from inside, what the film makes of light from many directions, by the indices around it.
+    /// Averages of the film over directions, from outside and from inside, by the indices around it.
     known: [LaneCache<[f64; 4], FilmAverages>; 2],
-    /// What the film makes of light, by the thickness of the only layer that varies over the surface.
+    /// Tables of these averages by thickness, if a single layer varies over the surface.
     by_thickness: [LaneCache<[f64; 4], FilmTable>; 2],
 }
 
@@ -40,14 +40,14 @@ pub struct CoatingLayer<S> {
     pub index: S,
     /// Extinction coefficient.
     pub k: S,
-    /// Whether its index and extinction are those of a metal.
+    /// Whether the layer is metal, with the index and extinction of one.
     pub is_metal: bool,
     /// Thickness in nm.
     pub thickness: S,
 }
 
 impl<S> Coating<S> {
-    /// Layers from the outside inward.
+    /// Makes a coating from layers in order from the outside inward.
     pub fn new(layers: Vec<CoatingLayer<S>>) -> Self {
         let known = [LaneCache::new(), LaneCache::new()];
         Self { layers, known, by_thickness: [LaneCache::new(), LaneCache::new()] }
@@ -65,12 +65,12 @@ impl<S> Coating<S> {
 }
 
 impl Coating<Table> {
-    /// Whether no layer absorbs.
+    /// Returns whether no layer absorbs.
     pub(super) fn is_clear(&self) -> bool {
         self.layers.iter().all(|layer| layer.k.is_flat() && layer.k.bins()[0] == 0.0)
     }
 
-    /// The coating where light arrives; `inside`: at its inner side.
+    /// Returns the coating at the point where light arrives; `inside` selects its inner side.
     pub(super) fn local<'a, const N: usize>(
         &'a self,
         context: &'a ScatterContext<'a, N>,
@@ -85,7 +85,7 @@ impl Coating<Table> {
     }
 }
 
-/// What [`Stack::shares`] answered.
+/// A result of [`Stack::shares`], and what it was computed for.
 struct Answer {
     /// The indices on both sides, and the cosine times the first.
     boundary: [f64; 4],
@@ -93,7 +93,7 @@ struct Answer {
     shares: StackShares,
 }
 
-/// The last two answers for a lane: a coat is crossed in two directions, of which one stays the same.
+/// The last two results for a lane: a coat is crossed in two directions, one of which stays the same.
 struct Answers {
     kept: [Option<Answer>; 2],
     newest: usize,
@@ -104,11 +104,11 @@ thread_local! {
         const { RefCell::new([const { Answers { kept: [const { None }; 2], newest: 0 } }; MAX_LANES]) };
 }
 
-/// What a film makes of light from many directions, large enough not to be copied.
+/// Averages of a film over directions, borrowed or boxed, since they are too large to copy.
 pub(super) enum Averages<'a> {
-    /// It is the same everywhere.
+    /// Averages that are equal everywhere.
     Known(&'a FilmAverages),
-    /// It is that of one place or one sample.
+    /// Averages for one place or one sample.
     Made(Box<FilmAverages>),
 }
 
@@ -123,22 +123,22 @@ impl Deref for Averages<'_> {
     }
 }
 
-/// A coating where light arrives.
+/// A coating at the point where light arrives.
 pub(super) struct LocalCoating<'a, const N: usize> {
     coating: &'a Coating<Table>,
     context: &'a ScatterContext<'a, N>,
     /// Whether it is hit from inside.
     pub(super) inside: bool,
-    /// Of each layer, where any varies over the surface.
+    /// Thicknesses of each layer, if any layer varies over the surface.
     thicknesses: Vec<Lanes<N>>,
-    /// The layer that alone varies.
+    /// The only layer that varies, if it is a single one.
     varying: Option<usize>,
 }
 
 impl<'a, const N: usize> LocalCoating<'a, N> {
-    /// What a film makes of light from many directions, between `indices`: made once where it is the same everywhere
-    /// and in every sample, and read from a table where one layer's thickness varies. `inside`: of light that comes
-    /// from inside.
+    /// Returns the averages of a film over directions, between `indices`. They are computed once if they are equal
+    /// everywhere and in every sample, and read from a table if the thickness of a single layer varies. `inside`
+    /// selects light that comes from inside.
     pub(super) fn averages(
         &self,
         lane: usize,
@@ -169,9 +169,10 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
         Averages::Made(Box::new(read().unwrap_or_else(make_here)))
     }
 
-    /// What the layers do with a lane between index `n1` and `n2` beyond: [`Stack::shares`].
+    /// Returns what the layers do to a lane between index `n1` and `n2` beyond: [`Stack::shares`].
     ///
-    /// A surface asks up to four times, for what goes straight on, what is mirrored and how each is polarized.
+    /// Results are cached, since a surface needs them up to four times: for light that passes straight through, for
+    /// mirrored light, and for the polarization of each.
     pub(super) fn shares(&self, lane: usize, n1: f64, n2: Complex, q1: f64) -> StackShares {
         let boundary = [n1, n2.re, n2.im, q1];
         LAST.with_borrow_mut(|last| {
@@ -192,12 +193,12 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
         })
     }
 
-    /// The shares of light that meets the layers at an angle with cosine `cos`.
+    /// Returns the shares of light that meets the layers at an angle with cosine `cos`.
     pub(super) fn at_cosine(&self, lane: usize, n1: f64, n2: impl Into<Complex>, cos: f64) -> StackShares {
         self.shares(lane, n1, n2.into(), n1 * cos.clamp(0.0, 1.0))
     }
 
-    /// The layers for a lane, the viewer's side first.
+    /// Returns the layers for a lane, the viewer's side first.
     pub(super) fn stack(&self, lane: usize) -> Stack {
         Stack::new(self.context.wave(lane), self.layers(lane))
     }
@@ -206,7 +207,7 @@ impl<'a, const N: usize> LocalCoating<'a, N> {
         self.in_order().map(move |number| self.layer(number, lane))
     }
 
-    /// The numbers of the layers, the viewer's side first.
+    /// Returns the numbers of the layers, the viewer's side first.
     fn in_order(&self) -> impl Iterator<Item = usize> {
         let count = self.coating.layers.len();
         (0..count).map(move |place| if self.inside { count - 1 - place } else { place })

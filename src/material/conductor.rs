@@ -27,16 +27,16 @@ pub struct Conductor<S> {
     pub n: S,
     /// Extinction coefficient.
     pub k: S,
-    /// How rough its surface is; below 0.01 it is taken as smooth.
+    /// Roughness of its surface; below 0.01 the surface counts as smooth.
     pub roughness: Roughness,
-    /// Layers on it in which light interferes.
+    /// Thin layers on it in which light interferes.
     pub coating: Option<Coating<S>>,
-    /// Of an uncoated one, [`RoughSurface::multiply_reflected`], by its indices.
+    /// [`RoughSurface::multiply_reflected`] of an uncoated metal, by its indices.
     multiple: LaneCache<[f64; 3], f64>,
 }
 
 impl<S> Conductor<S> {
-    /// The metal of index n - i k, as rough and coated as given.
+    /// Makes a metal of index n - i k with a roughness and a coating.
     pub fn new([n, k]: [S; 2], roughness: Roughness, coating: Option<Coating<S>>) -> Self {
         Self { n, k, roughness, coating, multiple: LaneCache::new() }
     }
@@ -49,7 +49,7 @@ impl<S> Conductor<S> {
 }
 
 impl Conductor<Table> {
-    /// The way on, backward; none where it leads into the metal.
+    /// Samples a direction backward from the viewer. Returns None if it leads into the metal.
     pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, u: [f64; 2]) -> Option<Branch<N>> {
         let Some(surface) = self.roughness.surface() else { return Some(self.mirror(context)) };
         let frame = Frame::about(context.normal);
@@ -64,7 +64,7 @@ impl Conductor<Table> {
         LocalConductor { context, n, k, coating }
     }
 
-    /// Of a smooth metal.
+    /// Returns the branch of a smooth metal.
     fn mirror<const N: usize>(&self, context: &ScatterContext<N>) -> Branch<N> {
         let (local, cos) = (self.local(context), context.wo.dot(context.normal));
         let reflected = local.reflected(cos);
@@ -82,7 +82,7 @@ impl Conductor<Table> {
         Some((self.reflected(context, surface, &reflection, 1.0), reflection.pdf))
     }
 
-    /// The BRDF times cosine of each lane, times a factor.
+    /// Returns BRDF times cosine of each lane, times a factor.
     fn reflected<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -107,7 +107,7 @@ impl Conductor<Table> {
         })
     }
 
-    /// The degree by the facet that mirrors light from `wi`:
+    /// Returns the degree for the facet that mirrors light from `wi`:
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let Some(h) = (context.wo + wi).try_normalize() else { return 0.0 };
@@ -115,7 +115,8 @@ impl Conductor<Table> {
         largest((0..N).step_by(N.div_ceil(LANES)).map(|lane| degree(local.reflected_of(lane, cos))))
     }
 
-    /// By the facet that mirrors the light; what is reflected more than once leaves unpolarized.
+    /// Sets the Mueller matrix of the facet that mirrors the light. What is reflected more than once leaves
+    /// unpolarized.
     pub(super) fn mueller<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -140,7 +141,7 @@ impl Conductor<Table> {
     }
 }
 
-/// A metal where light arrives.
+/// A metal at the point where light arrives.
 struct LocalConductor<'a, const N: usize> {
     context: &'a ScatterContext<'a, N>,
     n: [f64; N],
@@ -149,12 +150,12 @@ struct LocalConductor<'a, const N: usize> {
 }
 
 impl<const N: usize> LocalConductor<'_, N> {
-    /// The index of the medium before it, and its own, n - i k, for a lane.
+    /// Returns the index of the medium in front of the metal and the metal's index, n - i k, for a lane.
     fn indices(&self, lane: usize) -> [f64; 3] {
         [self.context.incident_of(lane), self.n[lane], self.k[lane]]
     }
 
-    /// What it reflects of each lane on the ray, (s, p), of light that meets it at an angle of a cosine.
+    /// Returns the reflectances (s, p) of each lane on the ray, at an angle with cosine `cos`.
     fn reflected(&self, cos: f64) -> [[f64; 2]; N] {
         let is_here = |lane: usize| self.context.present[lane] != 0.0;
         if self.coating.is_some() {
@@ -165,7 +166,7 @@ impl<const N: usize> LocalConductor<'_, N> {
         array::from_fn(|lane| if is_here(lane) { [s[lane], p[lane]] } else { [0.0; 2] })
     }
 
-    /// Reflectances (s, p) of one lane, on the ray or not.
+    /// Returns the reflectances (s, p) of one lane, whether or not it is on the ray.
     fn reflected_of(&self, lane: usize, cos: f64) -> [f64; 2] {
         match self.coated(lane, cos) {
             Some(PolarizedShare { s, p, .. }) => [s, p],
@@ -176,19 +177,19 @@ impl<const N: usize> LocalConductor<'_, N> {
         }
     }
 
-    /// What layers on the metal reflect of one lane, if it has any.
+    /// Returns the reflectance of the coated metal for one lane, or None without a coating.
     fn coated(&self, lane: usize, cos: f64) -> Option<PolarizedShare> {
         let [n1, n, k] = self.indices(lane);
         Some(self.coating.as_ref()?.at_cosine(lane, n1, Complex::new(n, -k), cos).reflected)
     }
 }
 
-/// Of unpolarized light, the share that is reflected where (s, p) are.
+/// Returns the reflectance of unpolarized light from those of s and p.
 fn mean_of([s, p]: [f64; 2]) -> f64 {
     0.5 * (s + p)
 }
 
-/// A coated metal's reflectance of diffuse light.
+/// Returns a coated metal's reflectance of diffuse light.
 fn coated_mean<const N: usize>(local: &LocalCoating<N>, lane: usize, [n1, n, k]: [f64; 3]) -> f64 {
     let averages = local.averages(lane, false, [n1, n, k, 0.0], |stack| {
         let at = |cos: f64| stack.shares(n1, Complex::new(n, -k), n1 * cos.clamp(0.0, 1.0)).reflected.mean();
@@ -197,9 +198,9 @@ fn coated_mean<const N: usize>(local: &LocalCoating<N>, lane: usize, [n1, n, k]:
     averages.mean[0]
 }
 
-/// A metal's reflectance of diffuse light: twice the integral of reflectance times cosine over the cosine.
+/// Returns a metal's reflectance of diffuse light: twice the integral of reflectance times cosine over the cosine.
 ///
-/// The Gauss rule of order 10 for this weight.
+/// Uses the Gauss rule of order 10 for this weight.
 fn mean_reflectance([n1, n, k]: [f64; 3]) -> f64 {
     const RULE: [[f64; 2]; 5] = [
         [0.098_535_085_798_826_43, 0.031_495_829_043_383_45],

@@ -9,13 +9,12 @@ use super::{
 use crate::math::DVec3;
 use crate::spectrum::{Draw, Lanes, Quantity, Table};
 
-/// A clear body, smooth or rough: light is reflected and refracted by Snell's law and Fresnel's equations.
+/// A clear body, smooth or rough. Light is reflected and refracted by Snell's law and Fresnel's equations. The facets
+/// of a rough surface do so: see [`RoughInterface`](super::RoughInterface).
 ///
-/// Rough, its facets do so: see [`RoughInterface`](super::RoughInterface).
-///
-/// It fills the space behind its surface's front. The classic tracer's {r, t, g, n} are its reflectance, transmittance,
-/// emission and index. Its emission shines from both sides of the surface by being met, never by being aimed at: a lamp
-/// is `emissive`.
+/// The body fills the space behind its surface's front. The classic tracer's {r, t, g, n} are its reflectance,
+/// transmittance, emission and index. Its emission shines from both sides of the surface. Only paths that hit the
+/// surface find it, since it is never sampled as a light: a lamp is `emissive`.
 ///
 /// ```toml
 /// dielectric = { index = "N-SF11" }
@@ -35,12 +34,12 @@ pub struct Dielectric<S> {
     pub emission: S,
     /// Absorption coefficient inside, per scene unit, base e (Beer 1852).
     pub absorption: S,
-    /// Where bodies overlap, the one of higher priority is there; of equal ones, the one whose material is used later
-    /// in the file. Bodies of one material merge.
+    /// Where bodies overlap, the one of higher priority fills the space; of equal ones, the one whose material is used
+    /// later in the file. Bodies of one material merge.
     pub priority: i32,
-    /// How rough its surface is; below 0.01 it is taken as smooth.
+    /// Roughness of its surface; below 0.01 the surface counts as smooth.
     pub roughness: Roughness,
-    /// Layers on its surface in which light interferes.
+    /// Thin layers on its surface in which light interferes.
     pub coating: Option<Coating<S>>,
 }
 
@@ -60,7 +59,7 @@ impl<S> Dielectric<S> {
 }
 
 impl Dielectric<Table> {
-    /// The ways on, backward.
+    /// Samples directions backward from the viewer and adds them to `branches`.
     pub(super) fn scatter<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -88,7 +87,7 @@ impl Dielectric<Table> {
         RoughBoundary { interface, coating: self.coating.as_ref(), reflectance, transmittance }
     }
 
-    /// Whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
+    /// Returns whether lanes that cross the surface part there: a pure function of the surface and the arriving light.
     pub(super) fn parts<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
         match self.roughness.interface() {
             Some(interface) => parts(interface, context),
@@ -96,8 +95,8 @@ impl Dielectric<Table> {
         }
     }
 
-    /// The degree by the facet of rough glass that light from `wi` meets: Walter et al. 2007, *Microfacet Models for
-    /// Refraction through Rough Surfaces*, equations 13 and 16.
+    /// Returns the degree for the facet of rough glass that light from `wi` meets: Walter et al. 2007, *Microfacet
+    /// Models for Refraction through Rough Surfaces*, equations 13 and 16.
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let (mut last, mut most) = (None, 0.0_f64);
         let local = self.coating.as_ref().map(|coating| coating.local(context, context.from_inside));
@@ -122,9 +121,9 @@ impl Dielectric<Table> {
         most as f32
     }
 
-    /// One reflected branch with all lanes, and one refracted branch per distinct pair of indices that refract: here
-    /// lanes part, and only those go on that are there for it. Lanes that share a direction have their own Fresnel
-    /// shares.
+    /// Adds one reflected branch with all lanes, and one refracted branch per distinct pair of refracting indices. If
+    /// the pairs differ, lanes part and only those of `Draw::parting` continue. Lanes that share a direction have their
+    /// own Fresnel shares.
     fn scatter_smooth<const N: usize>(&self, context: &ScatterContext<N>, branches: &mut Vec<Branch<N>>) {
         let [tint, reflectance] = [&self.transmittance, &self.reflectance].map(|table| context.read_tint(table));
         let parts = context.parts();
@@ -157,7 +156,7 @@ impl Dielectric<Table> {
         }
     }
 
-    /// One reflected and one refracted branch, in which each lane has its own shares.
+    /// Adds one reflected and one refracted branch, in which each lane has its own shares.
     fn scatter_as_one<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -173,7 +172,7 @@ impl Dielectric<Table> {
                 branches.push(Branch { wi, share, pdf: None, crosses, eta_scale, polarization });
             }
         };
-        // Between equal indices nothing happens at all, even along the surface.
+        // Between equal indices nothing happens at all, even at grazing incidence.
         let straight = here == beyond;
         if straight && n1 == n2 {
             push(-context.wo, tint, true, 1.0, 0.0);
@@ -193,7 +192,7 @@ impl Dielectric<Table> {
         push(wi, share, false, 1.0, interface.polarization_reflected);
     }
 
-    /// By the surface, or the facet that light meets.
+    /// Sets the Mueller matrix of the surface, or of the facet that light meets.
     pub(super) fn mueller<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -234,7 +233,7 @@ impl Dielectric<Table> {
         self.absorption.is_flat() && self.absorption.bins()[0] == 0.0
     }
 
-    /// The share of each lane that is left after a distance inside, e^(-absorption * distance).
+    /// Returns the transmittance of each lane over a distance inside, e^(-absorption * distance).
     pub fn transmission<const N: usize>(&self, draw: &Draw<N>, distance: f64) -> Lanes<N> {
         if self.is_clear() {
             return Lanes::ONE;

@@ -4,7 +4,7 @@ use super::{Branch, Fluorescence, ScatterContext};
 use crate::math::{DVec3, Frame, cosine_hemisphere, unit};
 use crate::spectrum::{Lanes, Quantity, Table};
 
-/// A matte surface: the same radiance in every direction, on both sides (Lambert 1760).
+/// A matte surface: equal radiance in every direction, on both sides (Lambert 1760).
 ///
 /// ```toml
 /// diffuse = { reflectance = { rgb = [0.7, 0.7, 0.7] } }
@@ -13,7 +13,7 @@ use crate::spectrum::{Lanes, Quantity, Table};
 pub struct Diffuse<S> {
     /// Share of the arriving light that leaves again.
     pub reflectance: S,
-    /// A dye, by the key `fluorescence`, if it has one.
+    /// A dye, given by the key `fluorescence`.
     pub fluorescence: Option<Fluorescence<S>>,
 }
 

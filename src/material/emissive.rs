@@ -1,7 +1,8 @@
 use crate::shape::Sides;
 use crate::spectrum::Quantity;
 
-/// A surface that shines the same in all directions and reflects nothing. Finite ones light the scene as area lights.
+/// A surface that emits equal radiance in all directions and reflects nothing. Finite ones light the scene as area
+/// lights.
 ///
 /// ```toml
 /// emissive = { radiance = 10, sides = "both" }     # or "front"; "both" if absent
@@ -9,9 +10,9 @@ use crate::spectrum::Quantity;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Emissive<S> {
-    /// The radiance it shows.
+    /// Emitted radiance.
     pub radiance: S,
-    /// The sides that show it.
+    /// The sides that emit.
     pub sides: Sides,
 }
 

@@ -3,17 +3,17 @@
 use super::{Facets, Interface, reflect};
 use crate::math::DVec3;
 
-/// The BSDF times cosine between two directions, and the density with which
-/// [`FacetSides::draw`](super::FacetSides::draw) draws one for the other.
+/// BSDF times cosine between two directions, and the density with which [`FacetSides::draw`](super::FacetSides::draw)
+/// draws one for the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BsdfValue {
     /// BSDF times cosine.
     pub value: f64,
     /// Density per steradian.
     pub pdf: f64,
-    /// What facets would add to `value` that reflect, or let through, all light.
+    /// The part of `value` from single scattering, if facets reflected, or transmitted, all light.
     pub facet: f64,
-    /// Cosine of the angle at which light meets them.
+    /// Cosine of the angle at which light meets the facets.
     pub cos: f64,
 }
 
@@ -25,25 +25,25 @@ impl std::ops::Add for BsdfValue {
     }
 }
 
-/// What a visible facet does with light.
+/// What a visible facet does to light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
     pub(super) h: DVec3,
-    /// Where it reflects and where it refracts light.
+    /// The directions in which it reflects and refracts light.
     pub(super) ways: [DVec3; 2],
-    /// The shares of the light that leave by these.
+    /// Shares of the light that leave in these directions.
     pub(super) single: [f64; 2],
-    /// The shares that would leave by these if it reflected, or let through, all light.
+    /// Shares that would leave in these directions if it reflected, or transmitted, all light.
     pub(super) all: [f64; 2],
-    /// The share that meets a second facet.
+    /// Share that meets a second facet.
     pub(super) multiple: f64,
-    /// Cosines of the angles at which light meets it and goes on beyond it.
+    /// Cosines of the angles to the facet's normal at which light meets it and continues beyond it.
     pub(super) cos: [f64; 2],
 }
 
 impl Facet {
-    /// The facet of normal `h` between two indices, seen from `wo`. `known` is one of the two ways, if it is known
-    /// already.
+    /// Makes the facet with normal `h` between two indices, seen from `wo`. `known` is one of its two directions, if
+    /// that is known already.
     #[inline(always)]
     pub(super) fn new(
         facets: &Facets,
@@ -69,7 +69,8 @@ impl Facet {
         }
     }
 
-    /// What it sends one of its two ways, where facets that do so are drawn with a density.
+    /// Returns its contribution in one of its two directions. `pdf` is the density of that direction over the visible
+    /// facets.
     pub(super) fn flow(&self, side: usize, pdf: f64) -> BsdfValue {
         let (value, all) = (pdf * self.single[side], pdf * self.all[side]);
         BsdfValue { value, pdf: pdf * (self.single[0] + self.single[1]), facet: all, cos: self.cos[0] }

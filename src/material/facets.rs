@@ -3,64 +3,65 @@ use std::f64::consts::{PI, TAU};
 use crate::math::DVec3;
 use crate::shape::{Computation, Instructions, Vectors};
 
-/// Microscopic mirrors whose slopes are distributed as GGX, in the frame in which +z is the surface's normal.
+/// Microscopic mirrors with GGX-distributed slopes, in the frame in which +z is the surface's normal.
 ///
-/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*; masking and shadowing as correlated
-/// by height, Heitz 2014, *Understanding the Masking-Shadowing Function*, equation 99. Where a direction meets them is
-/// measured by [`Facets::slant`], never by a tangent: nothing overflows along the surface.
+/// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*, with height-correlated masking and
+/// shadowing: Heitz 2014, *Understanding the Masking-Shadowing Function*, equation 99. [`Facets::slant`] takes the
+/// place of tangents, so that nothing overflows at grazing angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facets {
     alpha: f64,
 }
 
 impl Facets {
-    /// Facets whose slopes spread as wide as `alpha`, above 0 and up to 1.
+    /// Makes facets with slopes of width `alpha`, above 0 and up to 1.
     pub fn new(alpha: f64) -> Self {
         Self { alpha }
     }
 
-    /// How wide the slopes are.
+    /// Returns the width of the slopes.
     pub fn alpha(&self) -> f64 {
         self.alpha
     }
 
-    /// Area of the facets of unit normal `h`, per steradian and per area of the surface.
+    /// Returns the area of the facets with unit normal `h`, per steradian and per area of the surface.
     ///
-    /// Walter et al. 2007, equation 33, divided by cos^4: both terms are squares, and nothing cancels.
+    /// Walter et al. 2007, equation 33, divided by cos^4. Both terms are squares, so nothing cancels.
     pub fn density(&self, h: DVec3) -> f64 {
         let a2 = self.alpha * self.alpha;
         let stretched = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
         1.0 / (PI * a2 * stretched * stretched)
     }
 
-    /// S = sqrt(alpha^2 (x^2 + y^2) + z^2), of which Smith's masking is G1 = 2 z / (z + S).
+    /// Returns S = sqrt(alpha^2 (x^2 + y^2) + z^2). Smith's masking is G1 = 2 z / (z + S).
     #[inline(always)]
     pub fn slant(&self, w: DVec3) -> f64 {
         (self.alpha * self.alpha * (w.x * w.x + w.y * w.y) + w.z * w.z).sqrt()
     }
 
-    /// Density per steradian of `wi`, the mirror image of `wo` about a visible facet of normal `h`: D G1 / (4 cos).
+    /// Returns the density per steradian of `wi`, the mirror image of `wo` about a visible facet of normal `h`:
+    /// D G1 / (4 cos).
     pub fn pdf(&self, wo: DVec3, h: DVec3) -> f64 {
         self.density(h) / (2.0 * (wo.z + self.slant(wo)))
     }
 
-    /// BRDF of perfect mirrors times the cosine: D G2 / (4 cos cos) cos, for `wi` above the surface.
+    /// Returns the BRDF of perfect mirrors times the cosine, D G2 / (4 cos cos) cos, for `wi` above the surface.
     pub fn reflection(&self, wo: DVec3, wi: DVec3, h: DVec3) -> f64 {
         self.density(h) / (2.0 * (wo.z * self.slant(wi) / wi.z + self.slant(wo)))
     }
 
-    /// Density per steradian of `wi`, into which a visible facet of normal `h` refracts `wo` from index `n1` to a
-    /// different index `n2`; `cos` are those of both directions to the facet.
+    /// Returns the density per steradian of `wi`, the direction into which a visible facet of normal `h` refracts `wo`
+    /// from index `n1` to a different index `n2`. `cos` are the cosines of both directions to the facet.
     ///
-    /// D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17,
-    /// without the difference n1 cos - n2 cos, which keeps its digits for nearly equal indices.
+    /// It is D G1 cos / z, times the steradians of facets per steradian of directions: Walter et al. 2007, equation 17,
+    /// but without the difference n1 cos - n2 cos, so that it is precise for nearly equal indices.
     pub(super) fn refraction_pdf(&self, wo: DVec3, h: DVec3, [n1, n2]: [f64; 2], cos: [f64; 2]) -> f64 {
         let turn = (n1 * cos[0] + n2 * cos[1]) / ((n2 - n1) * (n2 + n1));
         let visible = self.density(h) * 2.0 * cos[0] / (wo.z + self.slant(wo));
         visible * n2 * n2 * cos[1] * turn * turn
     }
 
-    /// Smith's masking G1 of a direction above or below the surface, and 1 - G1 with all its digits.
+    /// Returns Smith's masking G1 of a direction above or below the surface, and 1 - G1, both at full precision.
     #[inline(always)]
     pub fn masking(&self, w: DVec3) -> [f64; 2] {
         let (z, slant) = (w.z.abs(), self.slant(w));
@@ -68,12 +69,12 @@ impl Facets {
         [2.0 * z / (z + slant), excess / (z + slant)]
     }
 
-    /// The share of the light that a visible facet refracts from `wo` toward `wi`, beyond the surface, that leaves that
-    /// way; and what is left of it, with all its digits.
+    /// Returns the share of the light refracted by a visible facet from `wo` toward `wi`, beyond the surface, that
+    /// leaves unshadowed, and the rest of it, at full precision.
     ///
-    /// Both directions see a facet as often as G1 G1 if they do so by chance each, and as often as min(G1, G1) if what
-    /// one sees the other does as far as it can (the two ends between which Ashikhmin, Premoze & Shirley 2000, *A
-    /// Microfacet-Based BRDF Generator*, blend). `straight` is the share of the latter.
+    /// Both directions see a facet with probability G1 G1 if their visibilities are independent, and min(G1, G1) if
+    /// they are correlated as strongly as possible (the two ends between which Ashikhmin, Premoze & Shirley 2000, *A
+    /// Microfacet-Based BRDF Generator*, blend). `straight` is the weight of the latter.
     #[inline(always)]
     pub fn passed(&self, wo: DVec3, wi: DVec3, straight: f64) -> [f64; 2] {
         let ([seen, hidden], [from, _]) = (self.masking(wi), self.masking(wo));
@@ -81,8 +82,8 @@ impl Facets {
         [seen + straight * (most - seen), hidden + straight * (least - hidden)]
     }
 
-    /// The share of the light from a visible facet toward `wi` that leaves that way, G2 / G1, and the share that meets
-    /// another facet; both with all their digits, by S^2 - z^2 = alpha^2 (x^2 + y^2).
+    /// Returns the share of the light from a visible facet toward `wi` that leaves, G2 / G1, and the share that meets
+    /// another facet. Both are precise, by S^2 - z^2 = alpha^2 (x^2 + y^2).
     #[inline(always)]
     pub fn unshadowed_and_shadowed(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
         if wi.z <= 0.0 {
@@ -93,16 +94,16 @@ impl Facets {
         [wi.z * (wo.z + from), wo.z * excess].map(|share| share / (wo.z * to + wi.z * from))
     }
 
-    /// The normal of a facet that is visible from `wo`.
+    /// Samples the normal of a facet that is visible from `wo`.
     ///
-    /// Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*. `u[1]` goes from facets that mirror
-    /// straight up, after stretching to a hemisphere, down to upright ones.
+    /// Dupuy & Benyoub 2023, *Sampling Visible GGX Normals with Spherical Caps*. As `u[1]` grows, the facets go from
+    /// those that mirror straight up, after stretching to a hemisphere, down to upright ones.
     pub fn visible_normal(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
         let (sin, cos) = libm::sincos(TAU * u[0]);
         self.visible_normal_from_end(wo, [cos, sin], 1.0 - u[1])
     }
 
-    /// As `visible_normal`, for `left` = 1 - `u[1]`, with all its digits where few facets are left.
+    /// Computes `visible_normal` from `left` = 1 - `u[1]`, precise even among the last facets, where `left` is small.
     #[inline(always)]
     fn visible_normal_from_end(&self, wo: DVec3, around: [f64; 2], left: f64) -> DVec3 {
         let slant = self.slant(wo);
@@ -115,7 +116,7 @@ impl Facets {
         DVec3::new(self.alpha * cap.x, self.alpha * cap.y, cap.z).normalize()
     }
 
-    /// The visible facets for a quadrature, where the index beyond is `ratio` times that on this side.
+    /// Returns the visible facets for a quadrature, where the index beyond is `ratio` times that on this side.
     pub(super) fn visible(&self, ratio: f64) -> VisibleFacets {
         VisibleFacets {
             facets: *self,
@@ -124,16 +125,16 @@ impl Facets {
     }
 }
 
-/// What a mean over visible facets is of.
+/// A function of a facet, to be averaged over visible facets.
 ///
-/// Vectors hold several facets where nothing is called and nothing is read but values that are there: implementations
-/// are `#[inline(always)]`, which closures cannot be, and hold no references.
+/// Vector instructions process several facets at once if nothing is called and only values at hand are read. So
+/// implementations are `#[inline(always)]`, which closures cannot be, and hold no references.
 pub(super) trait OfFacet {
-    /// What it is of the facet of normal `h`, seen from `wo`.
+    /// Returns its value for the facet of normal `h`, seen from `wo`.
     fn of(&self, wo: DVec3, h: DVec3) -> f64;
 }
 
-/// So many visible facets are looked at at once.
+/// Number of visible facets that are processed at once.
 const ROW: usize = 16;
 
 /// Visible facets for a quadrature from any direction.
@@ -142,11 +143,11 @@ pub(super) struct VisibleFacets {
     rows: Vec<Row>,
 }
 
-/// What is the same of some of them from everywhere.
+/// A block of sample points for visible facets, independent of the viewing direction.
 struct Row {
     /// Cosine and sine of the angle around.
     around: [[f64; ROW]; 2],
-    /// The root of how many facets are left: dense among upright facets, which are few and shadow most.
+    /// Square root of `left` = 1 - `u[1]`. This is dense among upright facets, which are few and shadow most.
     v: [f64; ROW],
     /// Weights, which sum to 1 over all rows.
     weights: [f64; ROW],
@@ -157,7 +158,7 @@ impl Row {
         let places = f64::from(places(ratio));
         let mut row = Self { around: [[0.0; ROW]; 2], v: [0.0; ROW], weights: [0.0; ROW] };
         for (i, place) in (first..).take(ROW).map(f64::from).enumerate() {
-            // A lattice of the golden ratio, whose rows lie along no edge: total reflection sets in along a curve.
+            // A golden-ratio lattice: none of its rows can follow the curve along which total reflection sets in.
             (row.around[1][i], row.around[0][i]) = libm::sincos(TAU * (place * GOLDEN).fract());
             row.v[i] = (place + 0.5) / places;
             row.weights[i] = 2.0 * row.v[i] / places;
@@ -172,7 +173,8 @@ impl Row {
 }
 
 impl VisibleFacets {
-    /// Those from the cosine `z`: the direction they are seen from, their normals, and their weights.
+    /// Returns the facets visible from the cosine `z`: the direction they are seen from, their normals, and their
+    /// weights.
     pub(super) fn from(&self, z: f64) -> impl Iterator<Item = ([DVec3; 2], f64)> {
         let wo = direction(z);
         self.rows
@@ -180,18 +182,18 @@ impl VisibleFacets {
             .flat_map(move |row| (0..ROW).map(move |i| ([wo, row.normal(&self.facets, wo, i)], row.weights[i])))
     }
 
-    /// The mean over these of something that a facet does with light.
+    /// Returns the mean of a function over the facets visible from the cosine `z`.
     pub(super) fn mean(&self, z: f64, of: impl OfFacet) -> f64 {
         Instructions::best().run(Mean { facets: self.facets, rows: &self.rows, wo: direction(z), of })
     }
 }
 
-/// A direction of the cosine `z`.
+/// Returns a direction with the cosine `z`.
 fn direction(z: f64) -> DVec3 {
     DVec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z)
 }
 
-/// A mean over visible facets, seen from `wo`.
+/// The mean of a function over visible facets, seen from `wo`.
 struct Mean<'a, F> {
     facets: Facets,
     rows: &'a [Row],
@@ -222,17 +224,17 @@ impl<F: OfFacet> Computation for Mean<'_, F> {
 /// (sqrt(5) - 1) / 2.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// How many visible facets tell a mean over them where the index beyond is `ratio` times that on this side.
+/// Returns the number of visible facets in a mean, where the index beyond is `ratio` times that on this side.
 ///
-/// Shares are off by 1e-4 at most, and by 8e-4 where some facets reflect totally and others do not: beside those of
-/// half a million facets, at 13 cosines and 6 roughnesses.
+/// Shares are off by at most 1e-4, and by 8e-4 where some facets reflect totally and others do not, compared with half
+/// a million facets at 13 cosines and 6 roughnesses.
 fn places(ratio: f64) -> u32 {
     if ratio < 1.0 { 4096 } else { 2048 }
 }
 
-/// Two more random numbers, from the later digits of two: for what is decided after these have been used up.
+/// Makes two more random numbers from the later digits of `u`, for decisions after `u` has been used up.
 ///
-/// 4096 (sqrt(5) + 1) / 2 is no ratio of whole numbers: evenly spaced numbers stay even.
+/// The factor 4096 (sqrt(5) + 1) / 2 is irrational, so that evenly spaced numbers stay evenly spaced.
 pub(super) fn later_digits(u: [f64; 2]) -> [f64; 2] {
     u.map(|u| (u * 6_627.467_215_575_981).fract())
 }

@@ -1,24 +1,24 @@
-//! The energy that single scattering by facets loses, of the light that each hat of a film's differences stands for.
+//! The energy that single scattering by facets loses, for each of the hat functions that represent a film.
 
 use std::array;
 
 use super::albedo_table::{AlbedoTable, step_at};
 use super::film_averages::{HATS, HatWeights, hats};
 
-/// For each hat, two shares of the light from a cosine that meets facets at that hat's cosine: a table over the
-/// former.
+/// For each hat, two shares of the light that arrives from a cosine and meets facets at the cosine of the hat,
+/// tabulated over the former.
 #[derive(Clone, Debug)]
 pub(super) struct FilmKernel {
-    /// Tells where a cosine lies among the rows.
+    /// Locates a cosine among the rows.
     grid: AlbedoTable,
     rows: Vec<HatWeights>,
-    /// Their means over the hemisphere, by cosine.
+    /// Cosine-weighted means of the rows over the hemisphere.
     pub(super) mean: HatWeights,
 }
 
 impl FilmKernel {
-    /// The kernel of facets as wide as `alpha` to a relative index, in a number of steps; `facets` adds each facet that
-    /// is seen from a cosine: the cosine at which it is met, its weight, and the two shares.
+    /// Makes the kernel of facets of width `alpha` to a relative index, in a number of steps. For a cosine, `facets`
+    /// adds each facet that is seen from there: the cosine at which it is met, its weight, and the two shares.
     pub(super) fn new(
         alpha: f64,
         ratio: f64,
@@ -44,7 +44,7 @@ impl FilmKernel {
         Self { grid, rows, mean }
     }
 
-    /// The energy that is missing from a cosine, linear between the rows.
+    /// Returns the missing energy from a cosine, linear between the rows.
     pub(super) fn at(&self, cos: f64) -> HatWeights {
         let (below, part) = step_at(self.grid.place(cos), self.rows.len() - 1);
         let [low, high] = [&self.rows[below], &self.rows[below + 1]];

@@ -1,4 +1,4 @@
-//! What a film makes of light from many directions, by the thickness of one of its layers.
+//! Averages of a film over directions, as functions of the thickness of one of its layers.
 
 use std::array;
 use std::f64::consts::PI;
@@ -7,20 +7,21 @@ use std::sync::OnceLock;
 use super::film_averages::FilmAverages;
 use super::stack::Layer;
 
-/// Chebyshev polynomials in a part of the table.
+/// Number of Chebyshev polynomials in a part of the table.
 const TERMS: usize = 8;
-/// Parts to a fringe: of layers on glass every part is exact enough, of the oxides of metals more than half.
+/// Number of parts per fringe. For layers on glass every part is precise enough, for the oxides of metals more than
+/// half.
 const PARTS: f64 = 8.0;
-/// Most parts of a table, 64 fringes: 1.4 MB.
+/// Maximum number of parts of a table, 64 fringes: 1.4 MB.
 const MOST_PARTS: usize = 512;
-/// Largest difference between the table and the film at both ends of a part, where polynomials are worst. Parts that
+/// Maximum difference between the table and the film at the two ends of a part, where polynomials are worst. Parts that
 /// differ by more are left out.
 const TOLERANCE: f64 = 1e-5;
 
-/// A film's averages over the thickness of one layer: polynomials, found part by part when first asked for.
+/// A film's averages as polynomials in the thickness of one layer, computed part by part when first needed.
 ///
-/// They are interpolated at Chebyshev's places (Trefethen 2013, *Approximation Theory and Approximation Practice*,
-/// chapters 2 to 4). What a clear film reflects and lets through still adds up to 1.
+/// The polynomials interpolate at Chebyshev's points (Trefethen 2013, *Approximation Theory and Approximation
+/// Practice*, chapters 2 to 4). The reflected and transmitted shares of a clear film still add up to 1.
 #[derive(Clone, Debug)]
 pub(super) struct FilmTable {
     /// Width of a part in nm.
@@ -31,15 +32,15 @@ pub(super) struct FilmTable {
 type Polynomials = Box<[FilmAverages; TERMS]>;
 
 impl FilmTable {
-    /// Of a layer up to a thickness in nm, for light of a wavelength in nm.
+    /// Makes the table of a layer up to the thickness `thickest` in nm, for light of wavelength `nm`.
     pub(super) fn new(layer: &Layer, nm: f64, thickest: f64) -> Self {
         let width = 0.5 * nm / (PARTS * layer.index.norm_squared().sqrt());
         let parts = ((thickest / width) as usize + 1).min(MOST_PARTS);
         Self { width, parts: (0..parts).map(|_| OnceLock::new()).collect() }
     }
 
-    /// The averages at a thickness in nm, where `make` makes those of any; none where the table does not reach or
-    /// would not be exact.
+    /// Returns the averages at a thickness in nm, where `make` computes those at any thickness. Returns None beyond the
+    /// table and where it would not be precise.
     pub(super) fn read(&self, thickness: f64, make: impl Fn(f64) -> FilmAverages) -> Option<FilmAverages> {
         let place = thickness / self.width;
         let number = place as usize;
@@ -60,7 +61,7 @@ impl FilmTable {
     }
 }
 
-/// The sum of the polynomials at a place from -1 to 1.
+/// Returns the sum of the polynomials at a place from -1 to 1.
 fn at(part: &Polynomials, x: f64) -> FilmAverages {
     let mut terms = [1.0; TERMS];
     terms[1] = x;
@@ -74,7 +75,7 @@ mod tests {
     use crate::material::{Interface, Stack};
     use crate::math::Complex;
 
-    /// A layer of index `n` and extinction `k` on an index `n2`, in air, at 550 nm.
+    /// Makes a layer of index `n` and extinction `k` on an index `n2`, in air, at 550 nm.
     fn film([n, k]: [f64; 2], n2: f64, thickness_nm: f64) -> (Layer, FilmAverages) {
         let layer = Layer { index: Complex::new(n, -k), thickness_nm };
         let stack = Stack::new([550.0, 0.0], std::iter::once(layer));
@@ -104,7 +105,7 @@ mod tests {
         }
     }
 
-    /// In a mirror of two halves the layer between them passes narrow lines.
+    /// The layer between the two halves of a mirror passes narrow lines.
     #[test]
     fn what_eight_terms_do_not_follow_is_left_out() {
         let (layer, _) = film([1.5, 0.0], 1.5, 0.0);

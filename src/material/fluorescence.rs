@@ -1,7 +1,7 @@
 use crate::spectrum::{Curve, Dye, Quantity};
 
-/// A dye in a matte surface: it absorbs light and shines some of it again at other wavelengths, evenly in all
-/// directions and unpolarized.
+/// A dye in a matte surface. It absorbs light and emits part of it at other wavelengths, equally in all directions and
+/// unpolarized.
 ///
 /// ```toml
 /// [material.highlighter.diffuse]
@@ -12,11 +12,11 @@ use crate::spectrum::{Curve, Dye, Quantity};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Fluorescence<S> {
-    /// The share of the light that it absorbs, 0 to 1: no more than the surface's reflectance leaves.
+    /// Share of the light that it absorbs, 0 to 1; at most what the surface's reflectance leaves.
     pub absorption: S,
-    /// What it shines, in power per nm on any scale.
+    /// Emission spectrum, in power per nm on any scale.
     pub emission: S,
-    /// How many photons leave of one that is absorbed, 0 to 1.
+    /// Mean number of photons emitted per absorbed photon, 0 to 1.
     pub quantum_yield: f64,
 }
 
@@ -31,7 +31,7 @@ impl<S> Fluorescence<S> {
 }
 
 impl Fluorescence<Curve> {
-    /// What is known of it by wavelength.
+    /// Returns the dye's spectra and its quantum yield.
     pub fn dye(&self) -> Dye {
         let Self { absorption, emission, quantum_yield } = self.clone();
         Dye { absorption, emission, quantum_yield }

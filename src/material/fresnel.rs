@@ -1,4 +1,4 @@
-//! Exact Fresnel equations for unpolarized light: the mean of s and p.
+//! Exact Fresnel equations for unpolarized light, the mean of s and p.
 
 use crate::math::{DVec3, unit};
 
@@ -7,7 +7,7 @@ use crate::math::{DVec3, unit};
 pub struct Interface {
     /// Share of the light that is reflected.
     pub reflectance: f64,
-    /// Share that crosses; `reflectance + transmittance` is 1 to one rounding.
+    /// Share of the light that is transmitted; `reflectance + transmittance` is 1 to within one rounding.
     pub transmittance: f64,
     /// Cosine of the refracted ray's angle, 0 under total reflection.
     pub cos_beyond: f64,
@@ -19,12 +19,12 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The boundary from index `n1` to `n2` at an angle of incidence with cosine `c1` in 0..1. Between equal indices
-    /// nothing happens at all, even along the surface.
+    /// Makes the boundary from index `n1` to `n2` at an angle of incidence with cosine `c1` in 0..1. Between equal
+    /// indices nothing happens at all, even at grazing incidence.
     ///
-    /// Fresnel 1823, Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance has its own formula,
-    /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which keeps its digits at grazing angles; the
-    /// squared cosine beyond is (n2^2 - n1^2) / n2^2 + (n1 c1 / n2)^2, which keeps them for nearly equal indices.
+    /// Fresnel 1823; Born & Wolf 1999, *Principles of Optics*, section 1.5.2. The transmittance is computed as
+    /// 2 n1 n2 c1 c2 (1 / (n1 c1 + n2 c2)^2 + 1 / (n2 c1 + n1 c2)^2), which stays precise at grazing angles. The
+    /// squared cosine beyond is (n2^2 - n1^2) / n2^2 + (n1 c1 / n2)^2, which stays precise for nearly equal indices.
     #[inline(always)]
     pub fn new(n1: f64, n2: f64, c1: f64) -> Self {
         let c1 = c1.clamp(0.0, 1.0);
@@ -49,7 +49,7 @@ impl Interface {
         let (r_s, r_p) = ((n1 * c1 - n2 * c2) / s, (n2 * c1 - n1 * c2) / p);
         let (reflected_s, reflected_p) = (r_s * r_s, r_p * r_p);
         let (refracted_s, refracted_p) = (1.0 / (s * s), 1.0 / (p * p));
-        // The smaller one is computed and the larger one is what is left, so that both keep their digits and sum to 1.
+        // Compute the smaller of the two and take the other as the rest, so that both are precise and sum to 1.
         let mut reflectance = 0.5 * (reflected_s + reflected_p);
         let mut transmittance = 1.0 - reflectance;
         if transmittance < 0.5 {
@@ -67,7 +67,8 @@ impl Interface {
         }
     }
 
-    /// Direction of the refracted ray for a unit vector `wo` back to where the ray came from (Snell's law).
+    /// Returns the direction of the refracted ray, where the unit vector `wo` points back along the incident ray
+    /// (Snell's law).
     #[inline]
     pub fn refract(&self, wo: DVec3, normal: DVec3) -> DVec3 {
         let c1 = wo.dot(normal);
@@ -75,37 +76,38 @@ impl Interface {
     }
 }
 
-/// The mirror image of the unit vector `wo` about the unit `normal`, normalized so that bounces do not drift.
+/// Returns the mirror image of the unit vector `wo` about the unit `normal`, normalized so that bounces do not drift.
 #[inline]
 pub fn reflect(wo: DVec3, normal: DVec3) -> DVec3 {
     unit(normal * (2.0 * wo.dot(normal)) - wo)
 }
 
-/// A ray that lanes of other indices share, where it meets a smooth boundary.
+/// A ray at a smooth boundary, shared by lanes whose indices differ from its own.
 ///
-/// Flat surfaces conserve k = n sin i. What is less than 1 of it may come from vacuum, and is that of every lane: so
-/// plates have the shares that they would have if the lane went alone. More is that of light which never leaves a
-/// denser medium, such as that of a camera in a liquid. There a lane has what lies as far between 1 and its own index
-/// in the rarer medium, as squares: where the ray grazes the surface every lane does, and none jumps to total
-/// reflection. It is the same from both sides, so that light takes the same ways in and out.
+/// Flat surfaces conserve k = n sin i. A ray with k up to 1 may come from vacuum, and every lane takes on its k: plates
+/// then have the shares that they would have if each lane traveled alone. A ray with larger k never leaves a denser
+/// medium, such as that of a camera in a liquid. There the lane's k^2 divides the interval from 1 to the square of its
+/// own index in the rarer medium in the same proportion as the ray's: where the ray grazes the surface every lane does,
+/// and none jumps to total reflection. The rule is the same from both sides, so that light takes the same paths in and
+/// out.
 pub(super) struct SharedRay {
-    /// The ray's index on its own side, and the smaller one of both.
+    /// The ray's index on its own side, and the smaller index of the two sides.
     index: f64,
     least: f64,
-    /// (n cos)^2 of the ray on its own side, and in the rarer medium, where total reflection leaves nothing.
+    /// (n cos)^2 of the ray on its own side, and in the rarer medium, where it is not positive under total reflection.
     along: f64,
     beyond: f64,
 }
 
 impl SharedRay {
-    /// A ray that is refracted by the indices `direction` and meets the boundary at an angle with cosine `cos`.
+    /// Makes a ray that is refracted by the indices `direction` and meets the boundary at an angle with cosine `cos`.
     pub(super) fn new([d1, d2]: [f64; 2], cos: f64) -> Self {
         let (c, least) = (cos.clamp(0.0, 1.0), d1.min(d2));
         let along = (d1 * c) * (d1 * c);
         Self { index: d1, least, along, beyond: (least - d1) * (least + d1) + along }
     }
 
-    /// (n cos)^2 of a lane on both sides, if the ray goes on.
+    /// Returns (n cos)^2 of a lane on both sides, if the ray is not reflected totally.
     #[inline]
     fn crossing(&self, [n1, n2]: [f64; 2]) -> [f64; 2] {
         let trapped = (self.least - 1.0) * (self.least + 1.0);
@@ -118,7 +120,7 @@ impl SharedRay {
         [n1, n2].map(|n| (n - least) * (n + least) + there)
     }
 
-    /// n cos of a lane on the ray's side, between the lane's indices `own`; 0 where it has no way on of its own.
+    /// Returns n cos of a lane with indices `own` on the ray's side; 0 where the lane has no direction of its own.
     pub(super) fn normal_component(&self, own: [f64; 2]) -> f64 {
         if self.beyond > 0.0 {
             return self.crossing(own)[0].max(0.0).sqrt();
@@ -132,13 +134,14 @@ impl SharedRay {
     }
 }
 
-/// What crosses a smooth boundary of lanes that go one way though their indices differ; the rest is reflected.
+/// Returns the transmittance of a smooth boundary for lanes that share a direction though their indices differ. The
+/// rest is reflected.
 ///
-/// `own` are the indices of each lane on both sides, `direction` those by which their ray is refracted, which meets the
-/// boundary at an angle with cosine `cos` in 0..1. A lane has the ray's k = n sin i up to 1, and grazes the surface
-/// where the ray does. With q = n cos of the lane on each side and p = q1 q2, T = 2 p ((k^2 + p)^2 + (n1 n2)^2) /
-/// ((q1 + q2) (k^2 + p))^2 (Fresnel 1823, with Snell's law put in), in which nothing cancels. Nothing crosses where the
-/// ray is reflected totally.
+/// `own` are the indices of each lane on both sides, `direction` those that refract their shared ray, which meets the
+/// boundary at an angle with cosine `cos` in 0..1. A lane keeps the k = n sin i of the ray up to 1, and grazes the
+/// surface where the ray does. With q = n cos of the lane on each side and p = q1 q2,
+/// T = 2 p ((k^2 + p)^2 + (n1 n2)^2) / ((q1 + q2) (k^2 + p))^2 (Fresnel 1823, with Snell's law inserted), in which
+/// nothing cancels. Nothing crosses under total reflection of the ray.
 pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64; 2], cos: f64) -> [f64; N] {
     let ray = SharedRay::new(direction, cos);
     let mut crossing = [0.0; N];
@@ -158,10 +161,11 @@ pub fn shared_transmittance<const N: usize>(own: [&[f64; N]; 2], direction: [f64
     crossing
 }
 
-/// Share of diffuse light that crosses a smooth boundary to a relative index m.
+/// Returns the share of diffuse light that crosses a smooth boundary to a relative index m.
 ///
-/// 1 - R for the closed form of R by Walsh 1926, in Duntley 1942, equation 49. It cancels near 1, where R is
-/// (m - 1) / 3 - 3 (m - 1)^2 to 1e-7. Below 1, T(m) = m^2 T(1 / m), for light takes the same ways in and out.
+/// It is 1 - R with the closed form of R by Walsh 1926, in Duntley 1942, equation 49. The formula cancels near 1, where
+/// R is (m - 1) / 3 - 3 (m - 1)^2 to within 1e-7. Below 1, T(m) = m^2 T(1 / m), since light takes the same paths in and
+/// out.
 pub fn diffuse_transmittance(m: f64) -> f64 {
     if m < 1.0 {
         return m * m * diffuse_transmittance(1.0 / m);
@@ -180,7 +184,8 @@ pub fn diffuse_transmittance(m: f64) -> f64 {
     1.0 - reflected
 }
 
-/// Reflectances (s, p) of a metal n - i k under a medium of index `n1`, at an angle of incidence with cosine `c`.
+/// Returns the reflectances (s, p) of a metal n - i k under a medium of index `n1`, at an angle of incidence with
+/// cosine `c`.
 ///
 /// Born & Wolf 1999, section 14.4, in the real form of Lagarde 2013, *Memo on Fresnel equations*.
 #[inline]
@@ -192,14 +197,14 @@ pub fn conductor_reflectance(n1: f64, n: f64, k: f64, c: f64) -> [f64; 2] {
     let modulus = (t0 * t0 + 4.0 * eta * eta * kappa * kappa).sqrt();
     let a = (0.5 * (modulus + t0)).max(0.0).sqrt();
     let (t1, t2) = (modulus + c2, 2.0 * a * c);
-    // Without a branch, of many lanes several are computed at once.
+    // The code has no branches, so that several lanes can be computed at once.
     let (s, p) = ((t1 - t2) / (t1 + t2), [c2 * modulus + s2 * s2, t2 * s2]);
     let r_s = if t1 + t2 == 0.0 { 1.0 } else { s };
     let ratio = r_s * (p[0] - p[1]) / (p[0] + p[1]);
     [r_s, if p[0] + p[1] == 0.0 { 1.0 } else { ratio }]
 }
 
-/// [`conductor_reflectance`] of each lane, of s and of p.
+/// Returns [`conductor_reflectance`] of each lane, for s and for p.
 pub(super) fn conductor_reflectances<const N: usize>(n1: &[f64; N], [n, k]: [&[f64; N]; 2], cos: f64) -> [[f64; N]; 2] {
     let [mut s, mut p] = [[0.0; N]; 2];
     for i in 0..N {

@@ -1,5 +1,5 @@
-//! A material of any kind. A new kind is a file of its own and a variant here: the compiler then lists every place that
-//! has to know it.
+//! A material of any kind. A new kind needs a file of its own and a variant here; the compiler then lists every place
+//! that has to handle it.
 
 use super::{
     Branch, Coating, Conductor, Dielectric, Diffuse, Emissive, Fluorescence, Incoming, Lobes, Mask, Mirror, Mix,
@@ -19,24 +19,24 @@ pub enum Material<S> {
     Conductor(Conductor<S>),
     /// Reflects and refracts like glass.
     Dielectric(Dielectric<S>),
-    /// Reflects and lets through like a window pane.
+    /// Reflects and transmits like a window pane.
     Thin(Thin<S>),
-    /// Shines and absorbs.
+    /// Emits and absorbs.
     Emissive(Emissive<S>),
     /// Scatters evenly under a clear coat.
     Plastic(Plastic<S>),
-    /// Lets light through that is polarized along an axis.
+    /// Transmits light that is polarized along an axis.
     Polarizer(Polarizer),
     /// Shifts the phase of light that is polarized along an axis.
     Retarder(Retarder),
-    /// Does what two other materials do, each on a share of the surface.
+    /// Combines two other materials, each on a share of the surface.
     Mix(Mix<S, Self>),
-    /// Does what another material does, and lets the rest straight through.
+    /// Scatters like another material where it is opaque, and lets the rest of the light pass straight through.
     Mask(Mask<S, Self>),
 }
 
 impl<S> Material<S> {
-    /// The same material with every spectrum converted; `convert` gets the quantity that a spectrum describes.
+    /// Returns the material with every spectrum converted; `convert` gets the quantity that the spectrum describes.
     pub fn map<T>(&self, convert: &mut impl FnMut(Quantity, &S) -> T) -> Material<T> {
         match self {
             Self::Diffuse(diffuse) => Material::Diffuse(diffuse.map(convert)),
@@ -60,7 +60,7 @@ impl<S> Material<S> {
         }
     }
 
-    /// The index of the clear surface that light is reflected at or crosses, where it has one.
+    /// Returns the index of the clear surface that reflects and transmits light, if there is one.
     pub fn clear_index(&self) -> Option<&S> {
         match self {
             Self::Dielectric(dielectric) => Some(&dielectric.index),
@@ -71,7 +71,7 @@ impl<S> Material<S> {
         }
     }
 
-    /// The medium behind the surface's front, where there is one.
+    /// Returns the medium behind the surface's front, if there is one.
     pub fn medium(&self) -> Option<&Dielectric<S>> {
         match self {
             Self::Dielectric(dielectric) => Some(dielectric),
@@ -79,7 +79,7 @@ impl<S> Material<S> {
         }
     }
 
-    /// Its lobes; of what is made of other materials, those of all of them.
+    /// Returns its lobes, including those of the materials that it is made of.
     #[inline]
     pub fn lobes(&self) -> Lobes {
         match self {
@@ -96,8 +96,8 @@ impl<S> Material<S> {
         }
     }
 
-    /// Whether some of it is smooth, so that it mirrors or refracts. Rough glass is not, though between equal indices
-    /// it lets light go straight on.
+    /// Returns whether any part of it is smooth, so that it mirrors or refracts. Rough glass is not smooth, although
+    /// light passes straight through it between equal indices.
     pub fn is_smooth_somewhere(&self) -> bool {
         match self {
             Self::Dielectric(dielectric) => dielectric.roughness.is_smooth(),
@@ -106,7 +106,7 @@ impl<S> Material<S> {
         }
     }
 
-    /// Whether it answers alike to light that goes either way, but for what media make of radiance: exactly.
+    /// Returns whether its BSDF is exactly reciprocal, apart from the change of radiance between media.
     pub fn is_reciprocal(&self) -> bool {
         match self {
             Self::Diffuse(_) => true,
@@ -115,8 +115,8 @@ impl<S> Material<S> {
         }
     }
 
-    /// The least solid angle in steradians into which any of it spreads what a mirror would send in one direction: 0
-    /// where some of it is smooth.
+    /// Returns the smallest solid angle in steradians into which any part of it spreads light that a mirror would send
+    /// in one direction, or 0 if any part is smooth.
     pub fn spread(&self) -> f64 {
         let of_part = |part: &Self| match part.roughness() {
             _ if part.is_smooth_somewhere() => 0.0,
@@ -126,7 +126,7 @@ impl<S> Material<S> {
         self.with_parts().into_iter().map(of_part).fold(f64::INFINITY, f64::min)
     }
 
-    /// How rough it is, where it can be.
+    /// Returns its roughness, if it can be rough.
     pub fn roughness(&self) -> Option<&Roughness> {
         match self {
             Self::Conductor(conductor) => Some(&conductor.roughness),
@@ -137,13 +137,13 @@ impl<S> Material<S> {
         }
     }
 
-    /// Whether it lets light straight on: through holes, or as a pane does that bends nothing.
+    /// Returns whether light can pass straight through it: through holes, or through a pane that bends nothing.
     pub fn is_see_through(&self) -> bool {
         matches!(self, Self::Mask(_) | Self::Thin(_) | Self::Polarizer(_) | Self::Retarder(_))
             || self.parts().iter().any(|part| part.material().is_see_through())
     }
 
-    /// The materials it is made of.
+    /// Returns the materials that it is made of.
     pub fn parts(&self) -> &[Part<Self>] {
         match self {
             Self::Mix(mix) => &mix.materials,
@@ -154,13 +154,13 @@ impl<S> Material<S> {
         }
     }
 
-    /// The material and all that it is made of.
+    /// Returns the material and, recursively, all materials that it is made of.
     pub fn with_parts(&self) -> Vec<&Self> {
         let parts = self.parts().iter().flat_map(|part| part.material().with_parts());
         std::iter::once(self).chain(parts).collect()
     }
 
-    /// The axis of its own by which it polarizes light, if it has one.
+    /// Returns the axis by which it polarizes light, if it has one of its own.
     pub fn axis(&self) -> Option<DVec3> {
         match self {
             Self::Polarizer(polarizer) => Some(polarizer.axis),
@@ -169,12 +169,12 @@ impl<S> Material<S> {
         }
     }
 
-    /// Whether it polarizes light by an axis of its own.
+    /// Returns whether it polarizes light by an axis of its own.
     pub fn has_axis(&self) -> bool {
         self.axis().is_some()
     }
 
-    /// The dyes in it and in all that it is made of, in the order of `with_parts`.
+    /// Returns the dyes in it and in all materials that it is made of, in the order of `with_parts`.
     pub fn dyes(&self) -> Vec<&Fluorescence<S>> {
         let mut dyes = Vec::new();
         for material in self.with_parts() {
@@ -185,19 +185,19 @@ impl<S> Material<S> {
         dyes
     }
 
-    /// Whether it is made of the material of a name.
+    /// Returns whether a material of this name is part of it.
     pub fn is_made_of(&self, name: &str) -> bool {
         self.parts().iter().any(|part| part.name == name || part.material().is_made_of(name))
     }
 }
 
 impl Material<Curve> {
-    /// Whether it is matte and sends no light back.
+    /// Returns whether it is matte and reflects no light.
     pub fn is_black(&self) -> bool {
         matches!(self, Self::Diffuse(matte) if matte.reflectance.is_dark() && matte.fluorescence.is_none())
     }
 
-    /// The same, its axes turned with the object that it lies on.
+    /// Returns the material with its axes transformed together with the object that it lies on.
     #[must_use]
     pub fn turned(&self, map: &Transform) -> Self {
         match self {
@@ -210,7 +210,7 @@ impl Material<Curve> {
         }
     }
 
-    /// Whether any of its spectra is different at different places of a surface.
+    /// Returns whether any of its spectra varies over the surface.
     pub fn varies(&self) -> bool {
         let mut varies = false;
         self.map(&mut |_, curve| varies |= curve.varies());
@@ -219,7 +219,7 @@ impl Material<Curve> {
 }
 
 impl Material<Table> {
-    /// Whether it is a smooth clear surface that absorbs nothing: all that arrives is reflected or let through.
+    /// Returns whether it is a smooth clear surface without absorption, which reflects or transmits all light.
     pub fn absorbs_nothing(&self) -> bool {
         match self {
             Self::Dielectric(Dielectric { roughness, reflectance, transmittance, coating, .. }) => {
@@ -234,7 +234,8 @@ impl Material<Table> {
         }
     }
 
-    /// What share of the light that arrives meets each of its dyes, which stand in the order of `dyes`.
+    /// Appends the share of the arriving light that meets each of its dyes, in the order of `dyes`. `share` is what
+    /// arrives at this material.
     pub fn shares_of_dyes<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -256,13 +257,13 @@ impl Material<Table> {
         }
     }
 
-    /// Whether an arrival asks for none of its lobes.
+    /// Returns whether none of its lobes is requested.
     #[inline(always)]
     fn is_left_out<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
         context.lobes != Lobes::ALL && !self.lobes().intersects(context.lobes)
     }
 
-    /// Whether lanes part that cross the surface.
+    /// Returns whether lanes part when they cross the surface.
     pub fn parts_lanes<const N: usize>(&self, context: &ScatterContext<N>) -> bool {
         match self {
             Self::Dielectric(dielectric) => dielectric.parts(context),

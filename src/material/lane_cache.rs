@@ -2,20 +2,21 @@ use std::sync::{Arc, OnceLock};
 
 use crate::spectrum::{Draw, MAX_LANES};
 
-/// What a material works out once for each lane that stands for the same light in every sample, by numbers that are
-/// mostly the same wherever it is met, such as indices.
+/// A value that a material computes once for each lane that stands for the same light in every sample. It depends on a
+/// key, such as indices, that is mostly the same wherever the material is hit.
 #[derive(Clone, Debug)]
 pub(super) struct LaneCache<K, V>(Arc<OnceLock<OfLanes<K, V>>>);
 
 type OfLanes<K, V> = Box<[OnceLock<(K, V)>; MAX_LANES]>;
 
 impl<K: Copy + PartialEq, V> LaneCache<K, V> {
-    /// Nothing so far.
+    /// Makes an empty cache.
     pub(super) fn new() -> Self {
         Self(Arc::default())
     }
 
-    /// What `make` answered for a lane and the first `key`; none of another key, or where the lane's light changes.
+    /// Returns what `make` returned for a lane and its first `key`. Returns None for any other key, and for lanes whose
+    /// light changes between samples.
     pub(super) fn get<const N: usize>(
         &self,
         draw: &Draw<N>,

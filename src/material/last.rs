@@ -1,11 +1,11 @@
-/// What was worked out last: lanes side by side are often met by the same numbers, and then share it.
+/// A cache of the last result: neighboring lanes often have the same key, and then share the result.
 pub(super) struct Last<K, V>(Option<(K, V)>);
 
 impl<K: Copy + PartialEq, V: Copy> Last<K, V> {
-    /// Nothing so far.
+    /// The empty cache.
     pub(super) const NONE: Self = Self(None);
 
-    /// What `make` answers to `key`, which is asked unless it was the last one.
+    /// Returns `make(key)`, which is computed only if `key` differs from the last one.
     #[inline]
     pub(super) fn of(&mut self, key: K, make: impl FnOnce(K) -> V) -> V {
         match self.0 {

@@ -2,15 +2,15 @@ use super::{Branch, Incoming, Mueller, Part, Scatter, ScatterContext, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
-/// A material with holes, or one that is thinly spread: what it does not cover lets light go straight on, as if nothing
-/// were there.
+/// A material with holes, or one that is thinly spread: what it does not cover lets light pass straight through, as if
+/// nothing were there.
 ///
 /// ```toml
 /// mask = { material = "leaf", opacity = 0.5 }
 /// ```
 #[derive(Clone, Debug)]
 pub struct Mask<S, M> {
-    /// The material where it is opaque, by name: one that reflects or lets through.
+    /// The covering material, by name: one that reflects or transmits.
     pub material: Part<M>,
     /// Share of the light that meets the material, 0 to 1.
     pub opacity: S,
@@ -47,7 +47,7 @@ impl<M: Scatter> Mask<Table, M> {
         mueller.scale(context.read(&self.opacity));
     }
 
-    /// Holes change nothing.
+    /// Sets the Mueller matrix of light that passes straight through; holes leave its polarization unchanged.
     pub(super) fn mueller_of_straight<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
         let (opacity, mut hole) = (context.read(&self.opacity), Mueller::NONE);
         hole.set_unchanged(Lanes::from_fn(|i| 1.0 - opacity[i]));
@@ -56,11 +56,11 @@ impl<M: Scatter> Mask<Table, M> {
         mueller.add(&hole);
     }
 
-    /// The share that goes straight on.
+    /// Returns the share that passes straight through.
     pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Straight<N> {
         let opacity = context.read(&self.opacity);
         let within = self.material.material().straight(context).unwrap_or(Straight::NONE);
-        // 1 less what is met keeps its digits where all goes on.
+        // Computing 1 minus what is hit keeps full precision where everything passes through.
         let holes = Lanes::from_fn(|i| 1.0 - opacity[i] * (1.0 - within.holes[i]));
         Straight { holes, panes: within.panes * opacity, ..within }
     }

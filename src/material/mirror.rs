@@ -23,7 +23,7 @@ impl Mirror<Table> {
         Branch::mirrored(context, context.read(&self.reflectance), 0.0)
     }
 
-    /// That of a perfect metal: handedness turns around.
+    /// Sets the Mueller matrix of a perfect metal, which reverses handedness.
     pub(super) fn mueller<const N: usize>(&self, context: &ScatterContext<N>, mueller: &mut Mueller<N>) {
         let share = context.read(&self.reflectance);
         let block = Block { a: share, d: Lanes::ZERO, c: share * -1.0, q: Lanes::ZERO };

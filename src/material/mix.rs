@@ -2,34 +2,35 @@ use super::{Branch, Incoming, Mueller, Part, Scatter, ScatterContext, Straight};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
-/// Two materials in one place, finer than can be seen: patches of the second cover a share of the first.
+/// Two materials in one place, in patches too fine to be seen. The second covers a share of the surface.
 ///
 /// ```toml
 /// mix = { materials = ["steel", "rust"], amount = 0.3 }     # three tenths of rust
 /// ```
 #[derive(Clone, Debug)]
 pub struct Mix<S, M> {
-    /// The materials, by name: surfaces that reflect or let through, other mixes and masks among them.
+    /// The materials, by name: any that reflect or transmit, including other mixes and masks.
     pub materials: [Part<M>; 2],
-    /// Share of the surface that the second covers, 0 to 1.
+    /// Share of the surface that the second material covers, 0 to 1.
     pub amount: S,
 }
 
 impl<M: Scatter> Mix<Table, M> {
-    /// The share of each material, per lane.
+    /// Returns the share of each material, per lane.
     fn shares<const N: usize>(&self, context: &ScatterContext<N>) -> [Lanes<N>; 2] {
         let second = context.read(&self.amount);
         [Lanes::from_fn(|i| 1.0 - second[i]), second]
     }
 
-    /// Each material with its share, per lane.
+    /// Returns each material with its share, per lane.
     pub(super) fn parts<const N: usize>(&self, context: &ScatterContext<N>) -> [(&M, Lanes<N>); 2] {
         let [first, second] = self.shares(context);
         let [a, b] = self.materials.each_ref().map(Part::material);
         [(a, first), (b, second)]
     }
 
-    /// How often a direction is drawn from the second one, of those drawn from the two: its mean share.
+    /// Returns the probability with which a direction is drawn from the second material rather than the first: its mean
+    /// share.
     fn chance_of_second<const N: usize>(&self, context: &ScatterContext<N>) -> f64 {
         match self.materials.each_ref().map(|part| part.material().lobes().is_wide()) {
             [_, false] => 0.0,
@@ -41,8 +42,8 @@ impl<M: Scatter> Mix<Table, M> {
         }
     }
 
-    /// One branch for all that scatters widely, drawn from the materials' densities together, and one for each single
-    /// direction in which either of them sends light.
+    /// Adds one branch for everything that scatters widely, drawn from the mixture of both materials' densities, and
+    /// one branch for each single direction in which either material sends light.
     pub(super) fn scatter<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -83,7 +84,8 @@ impl<M: Scatter> Mix<Table, M> {
         }
     }
 
-    /// A branch that was drawn from one material, as if drawn from both, with what the other one sends the same way.
+    /// Turns a branch that was drawn from one material into one drawn from both, including what the other scatters
+    /// there.
     fn beside_other<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -95,7 +97,7 @@ impl<M: Scatter> Mix<Table, M> {
     ) -> Branch<N> {
         let other = 1 - number;
         let Some((light, other_pdf)) = self.materials[other].material().evaluate(context, drawn.wi) else {
-            // Where only one scatters widely, it is drawn for certain.
+            // If only one material scatters widely, it is always the one that is drawn.
             return Branch {
                 share: drawn.share * (1.0 / chances[number]) as f32,
                 pdf: Some(chances[number] * pdf),
@@ -149,7 +151,7 @@ impl<M: Scatter> Mix<Table, M> {
         mueller.add(&other);
     }
 
-    /// The share that goes straight on.
+    /// Returns the share that passes straight through.
     pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Straight<N>> {
         let parts = self.materials.each_ref().map(|part| part.material().straight(context));
         Straight::of_both(parts, self.shares(context))

@@ -1,7 +1,8 @@
 //! Floor 2: how light leaves a surface.
 //!
-//! `Material<S>` is written once and read twice: with `S = Curve` it is the scene file's vocabulary, with `S = Table`
-//! what the tracer reads; [`Material::map`] is the bridge. A material answers an [`ScatterContext`] with [`Branch`]es.
+//! `Material<S>` is written once and used twice: with `S = Curve` it holds what the scene file says, with `S = Table`
+//! what the tracer reads. [`Material::map`] converts one into the other. Given a [`ScatterContext`], a material returns
+//! [`Branch`]es.
 
 mod albedo_table;
 mod branch;

@@ -1,14 +1,14 @@
 //! What a surface does to the polarization of light.
 //!
-//! Light is described by its Stokes vector (S0, S1, S2, S3) in a frame whose z is the light's direction: S1 is what is
-//! polarized along x less what is along y = z x x, S2 the same at 45 degrees from x toward y, S3 what turns right less
-//! what turns left, seen looking toward the source (Hecht 2017, *Optics*, section 8.13; Born & Wolf 1999, *Principles
-//! of Optics*, section 1.4.2). Fields vary as e^(i omega t), and an absorbing index is n - i k.
+//! Light is described by its Stokes vector (S0, S1, S2, S3) in a frame whose z is the light's direction. S1 is the part
+//! polarized along x minus that along y = z x x, S2 the same at 45 degrees from x toward y, S3 the right-handed minus
+//! the left-handed part, seen looking toward the source (Hecht 2017, *Optics*, section 8.13; Born & Wolf 1999,
+//! *Principles of Optics*, section 1.4.2). Fields vary as e^(i omega t), and an absorbing index is n - i k.
 
 use crate::math::DVec3;
 use crate::spectrum::{LaneSet, Lanes};
 
-/// The Mueller matrix of light that meets one smooth boundary, or one facet:
+/// The Mueller matrix of a smooth boundary, or of one facet:
 ///
 /// ```text
 /// a  d  0  0
@@ -17,35 +17,35 @@ use crate::spectrum::{LaneSet, Lanes};
 /// 0  0  q  c
 /// ```
 ///
-/// Both frames have s as their x, the direction across the plane of incidence, so that p = z x s and r_p = -r_s of
-/// light that arrives along the normal. With what becomes of the intensities, S and P, and of the amplitudes, s and p,
-/// a = (S + P) / 2, d = (S - P) / 2 and c + i q = conj(s) p.
+/// Both frames have s as their x axis, perpendicular to the plane of incidence, so that p = z x s and r_p = -r_s at
+/// normal incidence. With the factors S and P on the intensities and s and p on the amplitudes, a = (S + P) / 2,
+/// d = (S - P) / 2 and c + i q = conj(s) p.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Block<T> {
-    /// What becomes of unpolarized light.
+    /// Factor on unpolarized light.
     pub a: T,
-    /// How much of that s is more than p, halved.
+    /// Half the excess of s over p.
     pub d: T,
-    /// What is left of light polarized at 45 degrees.
+    /// Factor on light polarized at 45 degrees.
     pub c: T,
-    /// What of it turns right.
+    /// Part of light polarized at 45 degrees that becomes right-handed.
     pub q: T,
 }
 
 impl Block<f64> {
-    /// Of a boundary that changes nothing.
+    /// The block of a boundary that changes nothing.
     pub const IDENTITY: Self = Self { a: 1.0, d: 0.0, c: 1.0, q: 0.0 };
 
-    /// Of amplitudes without a phase.
+    /// Returns the block of amplitudes without a phase.
     fn of_amplitudes(s: f64, p: f64) -> Self {
         Self { a: 0.5 * (s * s + p * p), d: 0.5 * (s * s - p * p), c: s * p, q: 0.0 }
     }
 
-    /// What the boundary from index `n1` to a different index `n2` reflects of light that meets it at an angle with
+    /// Returns the reflection of the boundary from index `n1` to a different index `n2`, at an angle of incidence with
     /// cosine `cos` in 0..1.
     ///
-    /// Fresnel 1823; beyond the critical angle p is ahead of s by delta, tan(delta / 2) = cos sqrt(sin^2 - n^2) /
-    /// sin^2, n = n2 / n1 (Born & Wolf 1999, section 1.5.4).
+    /// Fresnel 1823. Beyond the critical angle p is ahead of s by delta,
+    /// tan(delta / 2) = cos sqrt(sin^2 - n^2) / sin^2, n = n2 / n1 (Born & Wolf 1999, section 1.5.4).
     pub fn reflected(n1: f64, n2: f64, cos: f64) -> Self {
         match Fresnel::new(n1, n2, cos) {
             Ok(fresnel) => fresnel.reflected(),
@@ -56,13 +56,13 @@ impl Block<f64> {
         }
     }
 
-    /// What crosses it, as flux: radiance changes by (n1 / n2)^2 besides. Nothing beyond the critical angle.
+    /// Returns the transmission of flux; radiance also changes by (n1 / n2)^2. It is 0 beyond the critical angle.
     pub fn refracted(n1: f64, n2: f64, cos: f64) -> Self {
         Fresnel::new(n1, n2, cos).map_or(Self::default(), |fresnel| fresnel.refracted())
     }
 
-    /// What becomes of radiance at a smooth boundary between two indices, hit at an angle of a cosine, where it crosses
-    /// it or is reflected. Between equal indices nothing happens.
+    /// Returns what happens to radiance at a smooth boundary between the indices `n1` and `n2`, met at an angle with
+    /// cosine `cos`, if it crosses the boundary or is reflected. Between equal indices nothing happens.
     #[inline]
     pub(super) fn at_boundary([n1, n2, cos]: [f64; 3], crosses: bool) -> Self {
         match (n1 == n2, crosses) {
@@ -73,10 +73,10 @@ impl Block<f64> {
         }
     }
 
-    /// What a metal n - i k reflects under a medium of index `n1`.
+    /// Returns the reflection of a metal n - i k under a medium of index `n1`.
     ///
     /// With u - i b = sqrt((n - i k)^2 / n1^2 - sin^2), r_s = (cos - u + i b) / (cos + u - i b) and r_p / r_s =
-    /// -(u - i b - e) / (u - i b + e), e = sin^2 / cos (Born & Wolf 1999, section 14.4, in the signs of this module).
+    /// -(u - i b - e) / (u - i b + e), e = sin^2 / cos (Born & Wolf 1999, section 14.4, with the signs of this module).
     pub(super) fn of_metal(n1: f64, n: f64, k: f64, cos: f64) -> Self {
         let cos = cos.clamp(0.0, 1.0);
         let (eta, kappa) = (n / n1, k / n1);
@@ -98,27 +98,28 @@ impl Block<f64> {
         Self { a: 0.5 * (s + p), d: 0.5 * (s - p), c, q }
     }
 
-    /// A sheet that lets all light through that is polarized along its axis, which is s, and the share `extinction` of
-    /// light across it.
+    /// Returns the transmission of a sheet that transmits all light polarized along its axis, which is s, and the share
+    /// `extinction` of light polarized across it.
     pub fn of_polarizer(extinction: f64) -> Self {
         Self::of_amplitudes(1.0, extinction.sqrt())
     }
 
-    /// A sheet in which light along its fast axis, which is s, is ahead by a phase.
+    /// Returns the transmission of a sheet in which light along its fast axis, which is s, is ahead by a phase in
+    /// radians.
     pub(super) fn of_retarder(phase: f64) -> Self {
         let (sin, cos) = libm::sincos(phase);
         Self { a: 1.0, d: 0.0, c: cos, q: -sin }
     }
 
-    /// What goes through two parallel surfaces alike, of which each reflects `one` and lets `crossing` through, and
-    /// what comes back; `t` is left after one way between them. No phase is kept from surface to surface.
+    /// Returns the transmission and the reflection of two equal parallel surfaces, each of which reflects `one` and
+    /// transmits `crossing`; the share `t` is left after one way between them. The reflections add up incoherently.
     pub(super) fn of_pane(one: Self, crossing: Self, t: f64) -> [Self; 2] {
         if crossing.a <= 0.0 {
             return [Self::default(), one];
         }
         let [(r_s, x_s), (r_p, x_p)] = [1.0, -1.0].map(|sign| (one.a + sign * one.d, crossing.a + sign * crossing.d));
-        // (through, back) of what is multiplied by r at a reflection and by x at a crossing. 1 - r^2 is the sum of
-        // what crosses, so that nothing cancels.
+        // (through, back) of a component that is multiplied by r at a reflection and by x at a crossing. 1 - r^2 is
+        // passed as a sum of what crosses, so that nothing cancels.
         let series = |r: f64, x: f64, crosses: f64| {
             let through = x * x * t / ((1.0 - t * t) + t * t * crosses);
             [through, r + r * t * through]
@@ -128,18 +129,18 @@ impl Block<f64> {
         [0, 1].map(|way| Self { a: 0.5 * (s[way] + p[way]), d: 0.5 * (s[way] - p[way]), c: mixed[way], q: 0.0 })
     }
 
-    /// What it leaves of unpolarized light that is s less what is p, as a share of both; 0 if nothing is left.
+    /// Returns the degree (s - p) / (s + p) to which unpolarized light becomes polarized; 0 if no light is left.
     pub(super) fn degree(self) -> f64 {
         if self.a > 0.0 { self.d / self.a } else { 0.0 }
     }
 
-    /// Times a number.
+    /// Returns the block multiplied by a factor.
     pub fn times(self, factor: f64) -> Self {
         Self { a: self.a * factor, d: self.d * factor, c: self.c * factor, q: self.q * factor }
     }
 }
 
-/// Fresnel's equations of a boundary with one square root and one division.
+/// Fresnel's equations of a boundary, with one square root and one division.
 struct Fresnel {
     /// n1 c1, n2 c2, n2^2 c1 and n1 n2 c2, with the cosines c1 and c2 on both sides.
     s: [f64; 2],
@@ -150,7 +151,8 @@ struct Fresnel {
 }
 
 impl Fresnel {
-    /// At an angle with cosine `cos`; beyond the critical angle sin^2 and cos sqrt(sin^2 - n^2), both times n1.
+    /// Evaluates them at an angle with cosine `cos`. Beyond the critical angle, returns sin^2 and cos sqrt(sin^2 - n^2)
+    /// instead, both times n1.
     fn new(n1: f64, n2: f64, cos: f64) -> Result<Self, [f64; 2]> {
         let c1 = cos.clamp(0.0, 1.0);
         let along = n1 * c1;
@@ -178,7 +180,7 @@ impl Fresnel {
 }
 
 impl<const N: usize> Block<Lanes<N>> {
-    /// Of nothing.
+    /// The block that absorbs everything.
     const NONE: Self = Self { a: Lanes::ZERO, d: Lanes::ZERO, c: Lanes::ZERO, q: Lanes::ZERO };
 
     /// Sets a lane.
@@ -196,40 +198,40 @@ impl<const N: usize> Block<Lanes<N>> {
     }
 }
 
-/// Light that crosses a coat, loses its polarization below and crosses the coat again, as shares of what a surface does
-/// to unpolarized light that it polarizes on its way out, on its way in, and both.
+/// What a coat does to the polarization of light that crosses it, is depolarized below and crosses it again: matrix
+/// elements of the polarization that arises on the way out, on the way in, and on both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Base<const N: usize> {
-    /// The coat's unit normal: s is across it, for the light that leaves and for that which arrives.
+    /// The coat's unit normal; s is perpendicular to it, for both the leaving and the arriving light.
     pub normal: DVec3,
-    /// What light that leaves is polarized by.
+    /// From S0 of arriving light to S1 of leaving light.
     pub leaving: Lanes<N>,
-    /// What light that arrives is.
+    /// From S1 of arriving light to S0 of leaving light.
     pub arriving: Lanes<N>,
-    /// Both.
+    /// From S1 of arriving light to S1 of leaving light.
     pub both: Lanes<N>,
 }
 
-/// What a surface does to light that leaves it to the viewer, in the unit of its share or of BSDF times cosine.
+/// What a surface does to light that leaves it toward the viewer, in the unit of its share or of BSDF times cosine.
 ///
-/// The rest of that share, which is not in `block` nor in `base`, leaves unpolarized whatever it was. Matrices are
-/// large, so they are filled in their place.
+/// The rest of that share, in neither `block` nor `base`, leaves unpolarized however it arrives. Matrices are large, so
+/// they are filled in place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mueller<const N: usize> {
-    /// Across the plane of incidence of `block`, of any length; 0 where there is none.
+    /// Perpendicular to the plane of incidence of `block`, of any length; 0 if there is none.
     pub axis: DVec3,
-    /// What meets one boundary.
+    /// The light that meets one boundary.
     pub block: Block<Lanes<N>>,
-    /// What comes from below a coat. In a box: most surfaces have none, and matrices are handed on.
+    /// The light from below a coat. Boxed, since most surfaces have none and matrices are passed around.
     pub base: Option<Box<Base<N>>>,
 }
 
 impl<const N: usize> Mueller<N> {
-    /// Of a surface that leaves no polarization.
+    /// The matrix of a surface that leaves no polarization.
     pub const NONE: Self = Self { axis: DVec3::ZERO, block: Block::NONE, base: None };
 
-    /// Becomes that of a boundary that light meets in a plane; each of some lanes has its own block.
-    /// Where there is only one lane, the blocks of the others have no meaning.
+    /// Sets the matrix of a boundary, with a block for each of some lanes. If `lanes` is a single one, the blocks of
+    /// the others have no meaning.
     pub fn set_lanes(&mut self, axis: DVec3, lanes: LaneSet, mut of_lane: impl FnMut(usize) -> Block<f64>) {
         (self.axis, self.base) = (axis, None);
         if lanes.only().is_none() {
@@ -240,13 +242,13 @@ impl<const N: usize> Mueller<N> {
         }
     }
 
-    /// Becomes that of a share that is left as it is.
+    /// Sets the matrix of a share of light that stays as it is.
     pub(super) fn set_unchanged(&mut self, share: Lanes<N>) {
         let block = Block { a: share, d: Lanes::ZERO, c: share, q: Lanes::ZERO };
         (self.axis, self.block, self.base) = (DVec3::ZERO, block, None);
     }
 
-    /// Becomes a share of what it was.
+    /// Multiplies the matrix by a share.
     pub fn scale(&mut self, share: Lanes<N>) {
         self.block = self.block.map(|part| part * share);
         if let Some(base) = &mut self.base {
@@ -254,14 +256,15 @@ impl<const N: usize> Mueller<N> {
         }
     }
 
-    /// Becomes that of the way back, Q M^T Q with Q = diag(1, 1, -1, 1): of a block it is the same.
+    /// Turns it into the matrix of the reversed path, Q M^T Q with Q = diag(1, 1, -1, 1), which leaves a block
+    /// unchanged.
     pub fn turn_back(&mut self) {
         if let Some(base) = &mut self.base {
             (base.leaving, base.arriving) = (base.arriving, base.leaving);
         }
     }
 
-    /// Takes in another one; where both have a plane of incidence it is the same.
+    /// Adds another matrix. If both have a plane of incidence, it must be the same.
     pub fn add(&mut self, other: &Self) {
         if self.axis == DVec3::ZERO {
             self.axis = other.axis;

@@ -1,4 +1,4 @@
-/// A material that another one is made of: its name in the scene file, and what stands there under that name.
+/// A material that another one is made of: its name in the scene file, and the material that has this name.
 #[derive(Clone, Debug)]
 pub struct Part<M> {
     /// The name.
@@ -7,7 +7,7 @@ pub struct Part<M> {
 }
 
 impl<M> Part<M> {
-    /// The material that a name stands for.
+    /// Pairs a name with its material.
     pub fn new(name: &str, material: M) -> Self {
         Self { name: name.to_owned(), material: Box::new(material) }
     }
@@ -17,7 +17,7 @@ impl<M> Part<M> {
         &self.material
     }
 
-    /// The part after its material was converted.
+    /// Returns the part with its material converted.
     pub(super) fn map<T>(&self, convert: impl FnOnce(&M) -> T) -> Part<T> {
         Part::new(&self.name, convert(&self.material))
     }

@@ -14,8 +14,8 @@ use crate::spectrum::{Lanes, Quantity, Table};
 
 /// A matte body under a clear coat, smooth or rough: plastic, glazed earthenware, varnish.
 ///
-/// What the coat does not reflect is scattered by the base, in part sent back to it by the coat from inside, and leaves
-/// through the coat. A white one reflects all light.
+/// The base scatters the light that the coat does not reflect. The coat sends part of it back to the base, the rest
+/// leaves through the coat. A white plastic reflects all light.
 ///
 /// ```toml
 /// plastic = { reflectance = { rgb = [0.7, 0.1, 0.1] }, roughness = 0.2 }     # index = 1.5, roughness = 0 if absent
@@ -27,9 +27,9 @@ pub struct Plastic<S> {
     pub reflectance: S,
     /// Refractive index of the coat.
     pub index: S,
-    /// The coat; below a roughness of 0.01 it is taken as smooth.
+    /// The coat; below a roughness of 0.01 it counts as smooth.
     pub coat: Coat,
-    /// Layers on the coat in which light interferes.
+    /// Thin layers on the coat in which light interferes.
     pub coating: Option<Coating<S>>,
 }
 
@@ -45,7 +45,7 @@ impl<S> Plastic<S> {
 }
 
 impl Plastic<Table> {
-    /// The mirror image in a smooth coat, and one branch for all other light.
+    /// Adds the mirror image in a smooth coat, and one branch for all other light.
     pub(super) fn scatter<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -95,7 +95,7 @@ impl Plastic<Table> {
         Some((Lanes::from_fn(|i| light[i] as f32), pdf))
     }
 
-    /// What the base scatters through the coat.
+    /// Returns BRDF times cosine of the base, seen through the coat.
     pub(super) fn diffuse_part<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Lanes<N> {
         let cos = wi.dot(context.normal);
         if cos <= 0.0 {
@@ -106,7 +106,7 @@ impl Plastic<Table> {
         Lanes::from_fn(|i| light[i] as f32)
     }
 
-    /// What a smooth coat reflects.
+    /// Returns the mirror branch of a smooth coat.
     fn mirrored<const N: usize>(&self, context: &ScatterContext<N>) -> Option<Branch<N>> {
         let (index, cos) = (context.draw.read_exact(&self.index), context.wo.dot(context.normal));
         let local = self.coating.as_ref().map(|coating| coating.local(context, false));
@@ -129,7 +129,7 @@ impl Plastic<Table> {
         (!share.is_zero()).then(|| Branch::mirrored(context, share, degree as f32))
     }
 
-    /// BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
+    /// Returns BRDF times cosine of a rough coat and its base, and the density with which `scatter` draws the light's
     /// direction.
     fn rough<const N: usize>(
         &self,
@@ -153,20 +153,20 @@ impl Plastic<Table> {
         (pdf > 0.0).then(|| (lanes.map(|lane| lane.0), pdf))
     }
 
-    /// Whether a rough coat is asked for, and the base.
+    /// Returns whether a rough coat is requested, and whether the base is.
     fn asked<const N: usize>(&self, context: &ScatterContext<N>) -> [bool; 2] {
         [self.coat.roughness().reflection(), Lobes::DIFFUSE_REFLECTION].map(|lobe| context.lobes.intersects(lobe))
     }
 
-    /// How often a direction is drawn from a rough coat, and else from the base: by what each reflects of all lanes, if
-    /// both are asked for.
+    /// Returns the probability of drawing a direction from a rough coat rather than from the base, in proportion to
+    /// what each reflects of all lanes, if both are requested.
     fn chance_of_coat<const N: usize>(&self, context: &ScatterContext<N>, reflected: &[[f64; 2]; N]) -> f64 {
         let asked = self.asked(context).map(f64::from);
         let [coat, base] = [0, 1].map(|part| asked[part] * reflected.iter().map(|lane| lane[part]).sum::<f64>());
         if coat > 0.0 { coat / (coat + base) } else { 0.0 }
     }
 
-    /// Something of each lane on the ray, which crosses the coat from directions of two cosines.
+    /// Evaluates each lane on the ray, for light that crosses the coat from directions of two cosines.
     fn lanes<T: Default, const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -189,7 +189,8 @@ impl Plastic<Table> {
         })
     }
 
-    /// By the coat, which light crosses and is mirrored by. A rough one with a film is crossed as a smooth one is.
+    /// Sets the Mueller matrix of the coat, which light crosses and is mirrored by. If it is rough and has a film, it
+    /// is crossed like a smooth one.
     pub(super) fn mueller<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -207,7 +208,7 @@ impl Plastic<Table> {
         };
         let cos = context.wo.dot(context.normal);
         if incoming.single {
-            // A rough coat sends nothing in the single direction of what it is mixed with.
+            // A rough coat has no single direction; this one belongs to a material that it is mixed with.
             if !self.coat.roughness().is_smooth() {
                 return *mueller = Mueller::NONE;
             }
@@ -237,8 +238,8 @@ impl Plastic<Table> {
         mueller.base = Some(Box::new(self.polarized_base(context, [from, to], film)));
     }
 
-    /// What light between directions of two cosines, that which leaves first, is polarized by on its way through the
-    /// coat; `film` says what a film does to a lane at a cosine, if there is one.
+    /// Returns the polarization of light that crosses the coat between directions of two cosines, that of the leaving
+    /// light first. `film` returns what a film does to a lane at a cosine, if there is one.
     fn polarized_base<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -271,7 +272,7 @@ impl Plastic<Table> {
         }
     }
 
-    /// The degree by the coat, which light crosses and, where it is rough, is mirrored by:
+    /// Returns the degree for the coat, which light crosses and, if it is rough, is mirrored by:
     /// [`Scatter::degree_of_scattered`](super::Scatter::degree_of_scattered).
     pub(super) fn degree_of_scattered<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> f32 {
         let index = context.draw.read_exact(&self.index);
@@ -306,29 +307,29 @@ impl Plastic<Table> {
     }
 }
 
-/// What the light of a lane meets.
+/// Coat and base, as a lane meets them.
 struct CoatLane<'a, const N: usize> {
-    /// What crosses the coat from two directions.
+    /// Transmittance of the coat from two directions.
     transmittance: CoatTransmittance,
-    /// The base's reflectance.
+    /// Reflectance of the base.
     r: f64,
-    /// On both sides of the coat.
+    /// Indices on both sides of the coat.
     indices: [f64; 2],
     film: Option<PlasticFilm<'a, N>>,
 }
 
 impl<const N: usize> CoatLane<'_, N> {
-    /// BRDF times pi of the base.
+    /// Returns BRDF times pi of the base.
     fn base(&self) -> f64 {
         self.transmittance.base(self.r)
     }
 
-    /// Shares of the light from the first direction that the coat and the base reflect.
+    /// Returns the shares of the light from the first direction that the coat and the base reflect.
     fn reflected(&self) -> [f64; 2] {
         self.transmittance.reflected(self.r)
     }
 
-    /// BRDF times cosine of a rough coat.
+    /// Returns BRDF times cosine of a rough coat.
     fn coat(&self, reflection: &RoughReflection) -> f64 {
         let (cos, [n1, n2]) = (reflection.cos, self.indices);
         let single = match &self.film {
@@ -339,7 +340,7 @@ impl<const N: usize> CoatLane<'_, N> {
     }
 }
 
-/// The branch of a direction in the surface's frame.
+/// Makes the branch of a direction in the surface's frame.
 fn branch<const N: usize>(context: &ScatterContext<N>, wi: DVec3, share: [f64; N], pdf: f64) -> Branch<N> {
     let wi = unit(Frame::about(context.normal).to_world(wi));
     Branch::drawn(wi, Lanes::from_fn(|i| share[i] as f32), pdf)

@@ -7,7 +7,7 @@ use super::{Interface, Stack, StackShares};
 pub(super) struct PlasticFilm<'a, const N: usize> {
     local: &'a LocalCoating<'a, N>,
     lane: usize,
-    /// On the viewer's side, and of the coat.
+    /// Indices on the viewer's side and of the coat.
     indices: [f64; 2],
     pub(super) averages: Averages<'a>,
 }
@@ -19,14 +19,14 @@ impl<'a, const N: usize> PlasticFilm<'a, N> {
         Self { local, lane, indices, averages }
     }
 
-    /// What it reflects and lets through of the light from a cosine.
+    /// Returns what it reflects and transmits of light from a cosine.
     pub(super) fn shares(&self, cos: f64) -> StackShares {
         let [n1, n2] = self.indices;
         self.local.at_cosine(self.lane, n1, n2, cos)
     }
 
-    /// The transmittance of it and a coat from two directions, where `bare` is that of the coat alone, and single
-    /// scattering by a rough one is `missing` so much.
+    /// Returns the transmittance of film and coat together from two directions. `bare` is that of the coat alone,
+    /// `missing` what single scattering by a rough coat loses.
     pub(super) fn transmittance(
         &self,
         bare: &CoatTransmittance,
@@ -40,14 +40,14 @@ impl<'a, const N: usize> PlasticFilm<'a, N> {
     }
 }
 
-/// Of a smooth coat only the means are asked for.
+/// Averages a film over directions; for a smooth coat only the means are needed.
 fn averages(stack: &Stack, [n1, n2]: [f64; 2], is_rough: bool) -> FilmAverages {
     let film = |cos: f64| stack.shares(n1, n2.into(), n1 * cos).means();
     let bare = |cos: f64| {
         let crosses = Interface::new(n1, n2, cos).transmittance;
         [1.0 - crosses, crosses]
     };
-    // In a denser medium layers may reflect totally, from other angles on than the coat.
+    // In a denser medium, layers may reflect totally beyond another angle than the coat does.
     let is_slow = stack.is_slow() && n1 <= n2;
     let averages = match is_rough {
         true => FilmAverages::new(is_slow, [n1, n2], n1.max(n2), film, bare),

@@ -1,26 +1,27 @@
 use super::{Branch, Interface, ScatterContext};
 use crate::spectrum::Lanes;
 
-/// The refracted branches of a smooth surface: one for each pair of indices by which rays are refracted, or one for all
-/// lanes where these do not part.
+/// The refracted branches of a smooth surface: one for each pair of indices by which rays are refracted, or a single
+/// one if the lanes do not part.
 pub(super) struct Refractions<'a, const N: usize> {
     context: &'a ScatterContext<'a, N>,
     parts: bool,
     branches: &'a mut Vec<Branch<N>>,
-    /// The place of the first, behind branches of other surfaces.
+    /// Position of the first one, after the branches of other surfaces.
     first: usize,
-    /// Of each.
+    /// The pair of indices of each branch.
     pairs: [[f64; 2]; N],
 }
 
 impl<'a, const N: usize> Refractions<'a, N> {
-    /// None so far.
+    /// Starts without branches.
     pub(super) fn new(context: &'a ScatterContext<'a, N>, parts: bool, branches: &'a mut Vec<Branch<N>>) -> Self {
         let first = branches.len();
         Self { context, parts, branches, first, pairs: [[0.0; 2]; N] }
     }
 
-    /// That of a pair of indices, at first without light; `interface` is the boundary between them.
+    /// Returns the branch of a pair of indices; a new one starts without light. `interface` makes the boundary between
+    /// them.
     pub(super) fn branch(&mut self, pair: [f64; 2], interface: impl FnOnce() -> Interface) -> &mut Branch<N> {
         let count = self.branches.len() - self.first;
         let known = self.pairs[..count].iter().position(|of| !self.parts || *of == pair);

@@ -6,11 +6,11 @@ use super::{Block, Mueller, ScatterContext, Straight};
 use crate::math::DVec3;
 use crate::spectrum::Lanes;
 
-/// A sheet in which light polarized along its fast axis is ahead of light across it: a wave plate. All light goes
-/// straight on.
+/// A wave plate: a sheet in which light polarized along its fast axis is ahead of light polarized across it. All light
+/// passes straight through.
 ///
-/// Light that meets it aslant is taken to be ahead by as much as along the normal. It splits no rays, as a thick
-/// crystal does. Where its axis is along the normal, neither direction is ahead and nothing changes.
+/// At oblique incidence the phase difference is taken to be that along the normal. Unlike a thick crystal, the sheet
+/// splits no rays. If its axis is along the normal, neither polarization is ahead and nothing changes.
 ///
 /// ```toml
 /// retarder = { axis = [1, 1, 0], retardance = 90 }          # degrees at every wavelength: a quarter-wave plate
@@ -20,21 +20,21 @@ use crate::spectrum::Lanes;
 pub struct Retarder {
     /// The fast axis in the object's space, of any length.
     pub axis: DVec3,
-    /// By how much light along it is ahead.
+    /// How far light polarized along the fast axis is ahead.
     pub retardance: Retardance,
 }
 
-/// By how much light along the fast axis is ahead of light across it.
+/// How far light polarized along the fast axis is ahead of light polarized across it.
 #[derive(Clone, Copy, Debug)]
 pub enum Retardance {
     /// In degrees, the same at every wavelength.
     Phase(f64),
-    /// By a length.
+    /// As a length.
     Path(PathDifference),
 }
 
-/// The length by which one wave is ahead of another, the same at all wavelengths: how birefringence changes with them
-/// is left out.
+/// The length by which one wave is ahead of another, equal at all wavelengths: the dispersion of birefringence is
+/// neglected.
 #[derive(Clone, Copy, Debug)]
 pub struct PathDifference {
     /// In nm in vacuum, within -10^6 to 10^6.
@@ -42,8 +42,9 @@ pub struct PathDifference {
 }
 
 impl PathDifference {
-    /// c and q of light of a wavelength in nm and the relative width of its band: those of one phase, or where it
-    /// changes by more than [`PHASE_STEP`] over the band, the mean over it. A band of many orders is left unpolarized.
+    /// Returns the block for light at a wavelength in nm, in a band of a relative width. If the phase changes by more
+    /// than [`PHASE_STEP`] over the band, c and q are means over it, otherwise those of a single phase. A band of many
+    /// orders is left unpolarized.
     pub fn block(self, wave @ [wavelength_nm, _]: [f64; 2]) -> Block<f64> {
         let block = Block::of_retarder(TAU * self.nm / wavelength_nm);
         let step = self.phase_step(wave);
@@ -54,14 +55,15 @@ impl PathDifference {
         Block { c: left * block.c, q: left * block.q, ..block }
     }
 
-    /// How much the phase differs between both ends of a band, in radians, for its wavelength in nm and relative width.
+    /// Returns the difference of phase between the two ends of a band, in radians, from its wavelength in nm and
+    /// relative width.
     pub fn phase_step(self, [wavelength_nm, band]: [f64; 2]) -> f64 {
         TAU * self.nm.abs() / wavelength_nm * band
     }
 }
 
 impl Retarder {
-    /// All light goes straight on.
+    /// Returns the share that passes straight through: all light.
     pub(super) fn straight<const N: usize>(&self) -> Straight<N> {
         Straight { holes: Lanes::ZERO, panes: Lanes::ONE, polarization: 0.0 }
     }

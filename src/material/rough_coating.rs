@@ -1,5 +1,5 @@
-//! A rough coated boundary, lane by lane: facets reflect and let through as the film does, and the missing energy is
-//! given back as [`FacetSides`] does for the bare one, so that no light is lost or won.
+//! A rough coated boundary, evaluated lane by lane. Facets reflect and transmit as the film does, and the missing
+//! energy is restored as in [`FacetSides`] for the bare boundary, so that no energy is lost or gained.
 
 use std::f64::consts::PI;
 
@@ -9,23 +9,24 @@ use super::film_averages::{FilmAverages, HatWeights};
 use super::film_kernel::FilmKernel;
 use super::{BsdfValue, FacetSides, Interface, ScatterContext};
 
-/// The energy that single scattering loses between two directions, the second of which may lie beyond the boundary: the
-/// same for all lanes that are refracted alike.
+/// The energy that single scattering loses between two directions, the second of which may lie beyond the boundary. It
+/// is equal for all lanes with the same refracting indices.
 pub(super) struct MissingEnergy<'a> {
-    /// The side of the second direction: 0 is the viewer's, 1 beyond.
+    /// The side of the second direction: 0 is the viewer's, 1 is beyond.
     side: usize,
     /// Its cosine.
     to: f64,
-    /// Without a film, from both directions, and from all around on both sides.
+    /// Missing energy without a film: from both directions, and of diffuse light on both sides.
     bare: [f64; 2],
     bare_around: [f64; 2],
-    /// What a film adds, from both directions, and from all around on both sides.
+    /// What a film adds: from both directions, and of diffuse light on both sides.
     hats: [HatWeights; 2],
     hats_around: [&'a HatWeights; 2],
 }
 
 impl<'a> MissingEnergy<'a> {
-    /// Between directions of cosines `from` and `to`, of which the latter lies beyond where it `crosses`.
+    /// Computes the missing energy between directions of cosines `from` and `to`, the latter beyond where light
+    /// `crosses`.
     pub(super) fn new(sides: &FacetSides, kernels: [&'a FilmKernel; 2], [from, to]: [f64; 2], crosses: bool) -> Self {
         let (near, far, side) = (&sides.near, &sides.far, usize::from(crosses));
         Self {
@@ -38,15 +39,15 @@ impl<'a> MissingEnergy<'a> {
         }
     }
 
-    /// BSDF times cosine of a lane, times `square` where light crosses; of that which one facet sends on, `flow` knows
-    /// all but its share, `single`.
+    /// Returns BSDF times cosine of a lane, times `square` where light crosses. `single` is the lane's share of the
+    /// light that a facet sends on; `flow` holds the other factors of single scattering.
     pub(super) fn value(&self, averages: &[Averages; 2], flow: &BsdfValue, single: f64, square: f64) -> f64 {
         let Self { side, to, bare, bare_around, hats, hats_around } = self;
         let around = [0, 1].map(|i| (bare_around[i] + averages[i].added(hats_around[i])).max(f64::MIN_POSITIVE));
-        // What the film leaves of the missing energy, where it absorbs: on the viewer's side, and on the way across.
+        // Share of the missing energy that an absorbing film leaves: on the viewer's side, and on the way across.
         let left = [0, 1].map(|i| (averages[i].mean[0] + averages[i].mean[1]).min(1.0));
         let left_on_way = [left[0], (left[0] * left[1]).sqrt()][*side];
-        // The share of it that crosses in the end.
+        // Share of the missing energy that crosses in the end.
         let enters = averages[0].mean[1] / left[0].max(f64::MIN_POSITIVE);
         let crossing = (enters * around[1] / around[0].max(around[1])).min(1.0);
         let way = if *side == 1 { crossing * square } else { 1.0 - crossing };
@@ -57,7 +58,7 @@ impl<'a> MissingEnergy<'a> {
     }
 }
 
-/// What the film makes of a lane's light from many directions, on the viewer's side and beyond.
+/// Returns the averages of the film over directions for a lane, on the viewer's side and beyond.
 pub(super) fn averages<'a, const N: usize>(
     local: &LocalCoating<'a, N>,
     context: &ScatterContext<N>,

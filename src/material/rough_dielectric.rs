@@ -1,4 +1,4 @@
-//! A rough clear body, lane by lane.
+//! A rough clear body, evaluated lane by lane.
 
 use super::coated_boundary::{block_at, shares_at};
 use super::coating::LocalCoating;
@@ -11,22 +11,23 @@ use super::{
 use crate::math::{DVec3, Frame, unit};
 use crate::spectrum::{Lanes, Table};
 
-/// Lanes part whose refracted rays lie apart by more than this many times what a facet as steep as alpha turns them:
-/// the lobe is as wide to both sides. Together or apart, each lane gets its own light; only the noise differs.
+/// Lanes part if their refracted rays differ by more than this many times the angle by which a facet as steep as alpha
+/// turns them, since the lobe extends that far to both sides. In either case each lane gets its own light; only the
+/// noise differs.
 const WIDTHS: f64 = 2.0;
 
-/// A rough surface met by a ray: each lane's boundary, once for all lanes of the same indices that refract. Lanes of
-/// one direction share the facets and the energy that single scattering loses, and each has what they reflect and let
-/// through by its own indices.
+/// A rough surface where a ray meets it: the boundary of each lane, once for all lanes with the same refracting
+/// indices. Lanes of one direction share the facets and the missing energy, and each reflects and transmits by its own
+/// indices.
 struct LaneBoundaries<'a, 'b, const N: usize> {
     context: &'a ScatterContext<'b, N>,
     frame: Frame,
     wo: DVec3,
-    /// Each different boundary, and the lanes that meet it.
+    /// Each distinct boundary, and the lanes that meet it.
     kinds: Vec<Kind<'a, N>>,
     parts: bool,
     coating: Option<(&'a RoughInterface, LocalCoating<'a, N>)>,
-    /// Cosine of the direction that was asked for last, and whether it lies beyond the surface.
+    /// Cosine of the direction that was evaluated last, and whether it lies beyond the surface.
     cos: f64,
     crosses: bool,
 }
@@ -37,9 +38,9 @@ struct Kind<'a, const N: usize> {
     sides: FacetSides<'a>,
     present: Lanes<N>,
     count: f64,
-    /// What light of these lanes does in the direction that was asked for last.
+    /// BSDF of these lanes in the direction that was evaluated last.
     flow: BsdfValue,
-    /// How many of them count beyond the surface.
+    /// Number of these lanes that count beyond the surface.
     crossing: f64,
 }
 
@@ -69,8 +70,8 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         Self { context, wo: above(&frame, context.wo), frame, kinds, parts, coating, cos: 0.0, crosses: false }
     }
 
-    /// Asks every kind of lanes about a direction above the surface or beyond it, for the mean of the densities with
-    /// which they draw it. `drawn` is the kind that drew it, and the facet.
+    /// Evaluates every kind of lanes in a direction above the surface or beyond it, and returns the mean of the
+    /// densities with which they draw it. `drawn` is the kind that drew it, and the facet.
     fn ask(&mut self, wi: DVec3, drawn: Option<(usize, Facet)>) -> f64 {
         (self.cos, self.crosses) = (wi.z.abs(), wi.z < 0.0);
         let (mut pdf, mut lanes) = (0.0, 0.0);
@@ -90,22 +91,22 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         if lanes > 0.0 { pdf / lanes } else { 0.0 }
     }
 
-    /// The kinds of lanes that go on in the direction that was asked for last.
+    /// Returns the kinds of lanes that continue in the direction that was evaluated last.
     fn going(&self) -> impl Iterator<Item = &Kind<'a, N>> {
         self.kinds.iter().filter(|kind| kind.counted(self.crosses) > 0.0)
     }
 
-    /// The lanes of such a kind that do.
+    /// Returns the lanes of such a kind that continue.
     fn lanes(&self, kind: &Kind<N>) -> Lanes<N> {
         if self.crosses && self.parts { kind.present * self.context.draw.parting() } else { kind.present }
     }
 
-    /// What all lanes do there, the BSDF times the cosine, times a factor.
+    /// Returns BSDF times cosine of all lanes in that direction, times a factor.
     fn light(&self, factor: f64) -> Lanes<N> {
         self.going().fold(Lanes::ZERO, |sum, kind| sum + self.light_of(kind, factor))
     }
 
-    /// What those of a kind do, each by its own indices.
+    /// Returns BSDF times cosine of the lanes of a kind, each by its own indices, times a factor.
     fn light_of(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let light = match &self.coating {
             Some((interface, local)) => self.coated(interface, local, kind, factor),
@@ -114,7 +115,7 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         self.lanes(kind) * light
     }
 
-    /// What is scattered at a boundary without a coating, whether or not a lane goes on.
+    /// Returns what a boundary without a coating scatters, whether or not a lane continues.
     fn bare(&self, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let (BsdfValue { value, facet, cos, .. }, crosses) = (kind.flow, self.crosses);
         let Some(own) = self.context.own_transmittance(cos) else {
@@ -122,17 +123,17 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         };
         let [here, beyond] = kind.indices;
         let of_ray = Interface::new(here, beyond, cos);
-        // What crosses less is reflected.
+        // If less light of a lane crosses, more is reflected.
         let facet = if crosses { facet } else { -facet };
         Lanes::from_fn(|i| {
-            // Radiance changes by the lane's own indices, and `value` is that of the ray's.
+            // Radiance changes by the lane's own indices, while `value` contains the change by those of the ray.
             let ratio = (self.context.incident_of(i) / self.context.beyond_of(i)) * (beyond / here);
             let square = if crosses { ratio * ratio } else { 1.0 };
             ((value + (own[i] - of_ray.transmittance) * facet) * square * factor).max(0.0) as f32
         })
     }
 
-    /// What is scattered at a coated boundary.
+    /// Returns what a coated boundary scatters.
     fn coated(&self, interface: &RoughInterface, local: &LocalCoating<N>, kind: &Kind<N>, factor: f64) -> Lanes<N> {
         let ([here, beyond], crosses) = (kind.indices, self.crosses);
         let kernels = interface.film_kernels(here, beyond);
@@ -144,7 +145,7 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
             let shares = shares_at(local, self.context, lane, kind.flow.cos);
             let ratio = self.context.incident_of(lane) / self.context.beyond_of(lane);
             let square = if crosses { ratio * ratio } else { 1.0 };
-            // What one facet sends beyond is already converted by the ray's indices.
+            // The facets' part of radiance that crosses already contains the change by the ray's indices.
             let converted = if crosses { square * (beyond / here) * (beyond / here) } else { 1.0 };
             let single = converted * if crosses { shares.refracted.mean() } else { shares.reflected.mean() };
             let averages = rough_coating::averages(local, self.context, lane);
@@ -152,7 +153,7 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
         })
     }
 
-    /// The direction in the world; none where rounding has put it on the wrong side.
+    /// Returns the direction in world space, or None if rounding has put it on the wrong side.
     fn to_world(&self, wi: DVec3) -> Option<DVec3> {
         let world = unit(self.frame.to_world(wi));
         (world.dot(self.context.normal) * wi.z > 0.0).then_some(world)
@@ -160,18 +161,19 @@ impl<'a, 'b, const N: usize> LaneBoundaries<'a, 'b, N> {
 }
 
 impl<const N: usize> Kind<'_, N> {
-    /// How many of its lanes are asked about a direction on a side.
+    /// Returns how many of its lanes count for a direction on a side.
     fn counted(&self, crosses: bool) -> f64 {
         if crosses { self.crossing } else { self.count }
     }
 }
 
-/// Whether lanes that cross a rough surface go different ways. While their lobes overlap they go on together.
+/// Returns whether lanes that cross a rough surface take different directions. While their lobes overlap they stay
+/// together.
 ///
-/// The refracted ray turns by sin t dr / (r cos t) where the ratio of the indices, r, changes by dr, and by
-/// |r cos i - cos t| / cos t of what a facet is turned by. The lanes are asked that count while they are together:
-/// beside heroes the fixed ones, for if wavelengths drawn at random decided whether they count, some would count more
-/// often than others.
+/// The refracted ray turns by sin t dr / (r cos t) if the ratio of the indices, r, changes by dr, and by
+/// |r cos i - cos t| / cos t times the angle by which a facet turns. Only the lanes that count while they are together
+/// decide; if there are heroes, these are the fixed lanes. If wavelengths drawn at random decided whether they count,
+/// some would count more often than others.
 pub(super) fn parts<const N: usize>(interface: &RoughInterface, context: &ScatterContext<N>) -> bool {
     if !context.parts() {
         return false;
@@ -193,19 +195,19 @@ pub(super) fn parts<const N: usize>(interface: &RoughInterface, context: &Scatte
 pub(super) struct RoughBoundary<'a> {
     pub(super) interface: &'a RoughInterface,
     pub(super) coating: Option<&'a Coating<Table>>,
-    /// Factors on what it reflects and lets through.
+    /// Factors on the reflected and the transmitted light.
     pub(super) reflectance: &'a Table,
     pub(super) transmittance: &'a Table,
 }
 
 impl RoughBoundary<'_> {
-    /// One branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
+    /// Adds one branch by reflection, and one by refraction: where lanes part, one for each kind of lanes.
     ///
-    /// Lanes that are together share a direction drawn for one of them, chosen evenly, and each is divided by the mean
-    /// of all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a
-    /// density of its own, whose integral is what it is drawn as often as. Next-event estimation weighs a direction by
-    /// the same function, `evaluate`: the two weights sum to 1 in every direction, however many branches the tracer
-    /// follows, as one that is chosen with a probability is divided by it.
+    /// Lanes that are together share a direction drawn for one of them, chosen uniformly, and each is divided by the
+    /// mean of all their densities (the balance heuristic, Veach & Guibas 1995; Wilkie et al. 2014). Each branch has a
+    /// density of its own, which integrates to the probability that it is drawn. Next-event estimation weights a
+    /// direction by the same function, `evaluate`, so that the two weights sum to 1 in every direction. This holds for
+    /// any number of branches that the tracer follows, since one that is chosen with a probability is divided by it.
     pub(super) fn scatter<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -258,7 +260,7 @@ impl RoughBoundary<'_> {
         }
     }
 
-    /// Between equal indices nothing happens at all.
+    /// Adds the light that passes straight through between equal indices.
     fn pass_equal_indices<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -279,8 +281,8 @@ impl RoughBoundary<'_> {
         branches.push(Branch { wi, share, pdf: None, crosses: true, eta_scale: 1.0, polarization: 0.0 });
     }
 
-    /// By the facet that reflects or refracts the light of each kind of lanes. What meets a second facet leaves
-    /// unpolarized.
+    /// Sets the Mueller matrix of the facet that reflects or refracts the light of each kind of lanes. What meets a
+    /// second facet leaves unpolarized.
     pub(super) fn mueller<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -302,7 +304,7 @@ impl RoughBoundary<'_> {
                     None => Block::at_boundary(context.own_boundary(lane, kind.flow.cos), crosses),
                     Some((_, local)) => block_at(local, context, lane, kind.flow.cos, crosses),
                 };
-                // The facets' part of radiance that crosses is already changed by the ray's indices.
+                // The facets' part of radiance that crosses already contains the change by the ray's indices.
                 let [here, beyond] = kind.indices;
                 let square = if crosses { (beyond / here) * (beyond / here) } else { 1.0 };
                 mueller.block.set(lane, block.times(kind.flow.facet * square * f64::from(tint[lane])));
@@ -310,7 +312,7 @@ impl RoughBoundary<'_> {
         }
     }
 
-    /// BSDF times cosine of each lane, and the density of `wi` among the branches on its side.
+    /// Returns BSDF times cosine of each lane, and the density of `wi` among the branches on its side.
     pub(super) fn evaluate<const N: usize>(&self, context: &ScatterContext<N>, wi: DVec3) -> Option<(Lanes<N>, f64)> {
         let mut meeting = LaneBoundaries::new(self, context);
         let local = meeting.frame.to_local(wi);

@@ -8,29 +8,29 @@ use super::fresnel::diffuse_transmittance;
 use super::{BsdfValue, Facet, Facets};
 use crate::math::DVec3;
 
-/// A rough boundary between two clear media: single scattering by its facets, and lobes that give the missing energy
-/// back, as tables by the cosine and by the ratio of the indices.
+/// A rough boundary between two clear media: single scattering by its facets, and lobes that restore the missing
+/// energy, tabulated over the cosine and the ratio of the indices.
 ///
 /// Walter et al. 2007, *Microfacet Models for Refraction through Rough Surfaces*: a facet reflects and refracts by
-/// Fresnel's equations; reflected light is masked as correlated by height, refracted light on each side by itself. What
-/// is shadowed beyond the surface meets the boundary again, from the other side: as much as crosses both there and back
-/// from all around, T T', goes on as if it were not ([`Facets::passed`]), for facets turn it there as little as
-/// here. So glass in a liquid of nearly its index is as invisible rough as smooth. All other light that meets a second
-/// facet is given back after Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: see
-/// [`FacetSides`]. One row of the tables is computed when a ratio near it is first asked for.
+/// Fresnel's equations. Masking of reflected light is height-correlated; refracted light is masked on each side
+/// separately. Light that is shadowed beyond the surface meets the boundary again, from the other side. Of it, the
+/// share of diffuse light that crosses both there and back, T T', continues as if unshadowed ([`Facets::passed`]),
+/// since facets turn it there as little as here. So glass in a liquid of nearly its index is as invisible rough as
+/// smooth. All other light that meets a second facet is restored after Kulla & Conty 2017, *Revisiting Physically Based
+/// Shading at Imageworks*: see [`FacetSides`]. A row of the tables is computed when a ratio near it is first needed.
 #[derive(Clone, Debug)]
 pub struct RoughInterface {
     facets: Facets,
     rows: Box<[OnceLock<AlbedoTable>]>,
-    /// What films add to them.
+    /// What films add to the tables.
     kernels: Box<[OnceLock<FilmKernel>]>,
 }
 
-/// Steps between rows for ratios above 1, and as many below.
+/// Number of steps between rows for ratios above 1, and as many below.
 const RATIOS: usize = 160;
-/// The smallest |ln(n2 / n1)| of the rows and the largest, of the largest index there is to vacuum. Between them it
-/// grows by a sixteenth from row to row: light that grazes nearly equal indices is reflected below a cosine of about
-/// its root.
+/// The smallest and the largest |ln(n2 / n1)| of the rows; the largest is that of the highest possible index and
+/// vacuum. From row to row it grows by a sixteenth, since nearly equal indices reflect grazing light below a cosine of
+/// about its square root.
 const SPAN: [f64; 2] = [1e-4, LN_10];
 /// Steps of a row over the cosine.
 const STEPS: usize = 192;
@@ -38,7 +38,7 @@ const STEPS: usize = 192;
 const KERNEL_STEPS: usize = 64;
 
 impl RoughInterface {
-    /// The boundary whose facets have slopes as wide as `alpha`.
+    /// Makes a boundary whose facets have slopes of width `alpha`.
     pub fn new(alpha: f64) -> Self {
         let rows = (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect();
         let kernels = (0..2 * (RATIOS + 1)).map(|_| OnceLock::new()).collect();
@@ -50,12 +50,11 @@ impl RoughInterface {
         &self.facets
     }
 
-    /// The boundary as light meets it that comes from index `n1` and finds a different index `n2` beyond.
+    /// Returns the boundary for light that arrives in index `n1` and finds a different index `n2` beyond.
     pub fn between(&self, n1: f64, n2: f64) -> FacetSides<'_> {
         let (denser, place) = place(n1, n2);
         let [near, far] = [denser, !denser].map(|denser| self.side(denser, place));
-        // Light meets a boundary evenly as often from both sides if n^2 of it comes: what crosses is the same both
-        // ways.
+        // Diffuse light in equilibrium arrives in proportion to n^2 from each side, and equally much crosses both ways.
         let enters = diffuse_transmittance(n2 / n1);
         let leaves = enters * (n1 / n2) * (n1 / n2);
         let most = near.mean_missing_energy().max(far.mean_missing_energy());
@@ -63,7 +62,8 @@ impl RoughInterface {
         FacetSides { facets: &self.facets, indices: [n1, n2], near, far, crossing, straight: enters * leaves }
     }
 
-    /// What films add to the missing energy, on the viewer's side and beyond, of ratios near that of the indices.
+    /// Returns what films add to the missing energy, on the viewer's side and beyond, for the ratio nearest to that of
+    /// the indices.
     pub(super) fn film_kernels(&self, n1: f64, n2: f64) -> [&FilmKernel; 2] {
         let (denser, place) = place(n1, n2);
         [denser, !denser].map(|denser| {
@@ -73,7 +73,7 @@ impl RoughInterface {
         })
     }
 
-    /// The tables at a place in 0..RATIOS, of light that meets the denser medium or the rarer.
+    /// Returns the tables at a place in 0..RATIOS, for light that meets the denser medium or the rarer one.
     fn side(&self, denser: bool, place: f64) -> Side<'_> {
         let below = (place as usize).min(RATIOS - 1);
         let rows = [below, below + 1].map(|row| self.row(denser, row));
@@ -86,7 +86,7 @@ impl RoughInterface {
     }
 }
 
-/// Whether the medium beyond is denser, and the place of the indices among the rows.
+/// Returns whether the medium beyond is denser, and the place of the indices among the rows.
 fn place(n1: f64, n2: f64) -> (bool, f64) {
     let ratio = libm::log(n2 / n1);
     let [least, most] = SPAN;
@@ -94,14 +94,14 @@ fn place(n1: f64, n2: f64) -> (bool, f64) {
     (ratio > 0.0, place)
 }
 
-/// The ratio of the indices of a row.
+/// Returns the ratio of the indices of a row.
 fn ratio(denser: bool, row: usize) -> f64 {
     let [least, most] = SPAN;
     let size = least * libm::pow(most / least, row as f64 / RATIOS as f64);
     libm::exp(if denser { size } else { -size })
 }
 
-/// The energy that is missing of light that facets would reflect, all of it, or let through.
+/// Tabulates the energy that is missing if facets reflect all light, and if they transmit all light.
 fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
     FilmKernel::new(facets.alpha(), ratio, KERNEL_STEPS, |z, add| {
@@ -112,14 +112,14 @@ fn kernel(facets: &Facets, ratio: f64) -> FilmKernel {
     })
 }
 
-/// The share of the light from each cosine that meets a second facet: the mean over the visible facets, where the index
-/// beyond is `ratio` times that on this side.
+/// Tabulates the share of the light from each cosine that meets a second facet, the mean over the visible facets. The
+/// index beyond is `ratio` times that on this side.
 fn missing_energy(facets: &Facets, ratio: f64) -> AlbedoTable {
     let (straight, visible) = (straight(ratio), facets.visible(ratio));
     AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, SecondFacet { facets: *facets, ratio, straight }))
 }
 
-/// The share that meets a second facet.
+/// The share of light that meets a second facet.
 struct SecondFacet {
     facets: Facets,
     ratio: f64,
@@ -133,13 +133,13 @@ impl OfFacet for SecondFacet {
     }
 }
 
-/// The share of light from all around that crosses a boundary both there and back, the same from either side.
+/// Returns the share of diffuse light that crosses a boundary both there and back, which is equal from either side.
 fn straight(ratio: f64) -> f64 {
     let enters = diffuse_transmittance(ratio);
     enters * enters / (ratio * ratio)
 }
 
-/// A rough boundary as it is met from one side, between two rows of the tables.
+/// A rough boundary seen from one side, interpolated between two rows of the tables.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
     rows: [&'a AlbedoTable; 2],
@@ -152,31 +152,31 @@ impl Side<'_> {
         a + self.part * (b - a)
     }
 
-    /// The share of light from the cosine `z` that meets a second facet.
+    /// Returns the share of light from the cosine `z` that meets a second facet.
     pub fn missing_energy(&self, z: f64) -> f64 {
         let place = self.rows[0].place(z);
         self.mix(|row| row.at(place))
     }
 
-    /// The share of light from all around that meets a second facet.
+    /// Returns the share of diffuse light that meets a second facet.
     pub fn mean_missing_energy(&self) -> f64 {
         self.mix(|row| row.mean)
     }
 
-    /// The missing energy at the cosine `z`, and the density per steradian with which [`Side::draw`] draws directions
-    /// there.
+    /// Returns the missing energy at the cosine `z`, and the density per steradian with which [`Side::draw`] draws
+    /// directions there.
     fn missing_energy_and_density(&self, z: f64) -> [f64; 2] {
         let place = self.rows[0].place(z);
         let [[a, a_density], [b, b_density]] = self.rows.map(|row| row.value_and_density(place, z));
         [a + self.part * (b - a), a_density + self.often() * (b_density - a_density)]
     }
 
-    /// How often the second row is drawn from.
+    /// Returns the probability of drawing from the second row.
     fn often(&self) -> f64 {
         self.part * self.rows[1].mean / self.mean_missing_energy()
     }
 
-    /// A direction above the surface, drawn by nearly the missing energy times the cosine.
+    /// Samples a direction above the surface, nearly in proportion to the missing energy times the cosine.
     pub fn draw(&self, u: [f64; 2]) -> DVec3 {
         let often = self.often();
         let (row, left) = if u[0] < often { (1, u[0] / often) } else { (0, (u[0] - often) / (1.0 - often)) };
@@ -186,25 +186,25 @@ impl Side<'_> {
 
 /// A rough boundary between index n1, where the viewer is, and n2 beyond.
 ///
-/// What light loses that meets a second facet, M(z), is given back on the sides a and b by lobes M_a M_b k_ab / pi with
-/// k_11 m_1 + k_12 m_2 = 1, where m is the mean of M: no light is lost or won. They are reciprocal, as k_ab / n_b^2 is
-/// the same both ways; and as far as that allows, as much of the missing energy crosses as of light from all around
-/// smooth glass: k_12 m_2 = T_12 m_2 / max(m_1, m_2).
+/// The energy of light that meets a second facet, M(z), is restored on the sides a and b by lobes M_a M_b k_ab / pi
+/// with k_11 m_1 + k_12 m_2 = 1, where m is the mean of M: no energy is lost or gained. The lobes are reciprocal, as
+/// k_ab / n_b^2 is symmetric. As far as that allows, the share of the missing energy that crosses is that of diffuse
+/// light at smooth glass: k_12 m_2 = T_12 m_2 / max(m_1, m_2).
 #[derive(Clone, Copy, Debug)]
 pub struct FacetSides<'a> {
     facets: &'a Facets,
     indices: [f64; 2],
-    /// As met from the viewer's side.
+    /// The tables for light that arrives on the viewer's side.
     pub near: Side<'a>,
-    /// As met from beyond.
+    /// The tables for light that arrives from beyond.
     pub far: Side<'a>,
-    /// The share of the energy missing on each side that crosses in the end.
+    /// Share of the energy missing on each side that crosses in the end.
     pub crossing: [f64; 2],
-    /// The share of the light shadowed beyond the surface that goes on as if it were not.
+    /// Share of the light shadowed beyond the surface that continues as if unshadowed.
     pub straight: f64,
 }
 
-/// A direction drawn for the viewer, and the facet that sent light from there, if it met only one.
+/// A direction sampled for the viewer, and the facet that sent light from there, if it was a single one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetSample {
     /// Unit vector toward where the light came from.
@@ -214,11 +214,12 @@ pub struct FacetSample {
 }
 
 impl FacetSides<'_> {
-    /// A direction above the surface and one beyond it for the viewer's direction `wo`; none where no light comes from.
+    /// Samples a direction above the surface and one beyond it for the viewer's direction `wo`; None where no light
+    /// comes from.
     ///
-    /// A visible facet is drawn. As often as its light meets a second facet, both directions are drawn from the lobes;
-    /// else they are its own. So all that is drawn goes on as light does: what is evaluated there over the density is
-    /// at most 1 on each side and nearly 1 for both, and its product stays so along a path, however many surfaces that
+    /// A visible facet is sampled. With the probability that its light meets a second facet, both directions are drawn
+    /// from the lobes, otherwise they are its own. Sampling thus follows the light: the value over the density is at
+    /// most 1 on each side and nearly 1 for both. Along a path its product stays so, however many surfaces the path
     /// meets.
     pub fn draw(&self, wo: DVec3, u: [f64; 2]) -> [Option<FacetSample>; 2] {
         let facet = self.facet([wo, self.facets.visible_normal(wo, u)], None);
@@ -236,7 +237,7 @@ impl FacetSides<'_> {
         Facet::new(self.facets, self.indices, self.straight, directions, known)
     }
 
-    /// What is reflected from `wi`, above the surface, to `wo`. The facet is found where it is not given.
+    /// Returns what is reflected from `wi`, above the surface, to `wo`. The facet is computed if it is not given.
     pub fn reflected(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> BsdfValue {
         let multiple = self.near.missing_energy(wo.z);
         let [missing, lobe] = self.near.missing_energy_and_density(wi.z);
@@ -246,8 +247,8 @@ impl FacetSides<'_> {
         single + BsdfValue { value: lobes, pdf: multiple * lobe, ..BsdfValue::default() }
     }
 
-    /// What crosses from `wi`, beyond the surface, to `wo`: radiance, which changes by (n1 / n2)^2. The facet is found
-    /// where it is not given.
+    /// Returns what crosses from `wi`, beyond the surface, to `wo`, as radiance, which changes by (n1 / n2)^2. The
+    /// facet is computed if it is not given.
     pub fn crossed(&self, wo: DVec3, wi: DVec3, facet: Option<Facet>) -> BsdfValue {
         let multiple = self.near.missing_energy(wo.z);
         let [missing, lobe] = self.far.missing_energy_and_density(-wi.z);

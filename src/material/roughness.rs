@@ -6,33 +6,33 @@ use super::facets::OfFacet;
 use super::{Facets, Lobes, RoughInterface, ScatterContext, reflect};
 use crate::math::{DVec3, Frame};
 
-/// How rough a surface is, from 0 (smooth) to 1, and what follows from it.
+/// The roughness of a surface, from 0 (smooth) to 1, and what is computed from it.
 #[derive(Clone, Debug, Default)]
 pub struct Roughness {
     value: f64,
-    /// Computed once for all copies, when it is first needed.
+    /// Computed once for all copies, when first needed.
     surface: Arc<OnceLock<RoughSurface>>,
     interface: Arc<OnceLock<RoughInterface>>,
 }
 
-/// Width of the facets' slopes below which a surface is taken as smooth.
+/// Width of the facets' slopes, alpha, below which a surface counts as smooth.
 const SMOOTH: f64 = 1e-4;
-/// Width below which what it reflects or refracts is narrow: photons find the light that it sends on sooner than chance
-/// does, by twice or more where it is half as wide (`benches/README.md`).
+/// Alpha below which a lobe counts as narrow. Photons then find the light that the surface sends on faster than random
+/// scattering does, by a factor of two or more at half this width (`benches/README.md`).
 const NARROW: f64 = 0.1;
 
 impl Roughness {
-    /// A surface of roughness `value`: the slopes of its facets are as wide as its square.
+    /// Makes a surface of roughness `value`. The width alpha of its facets' slopes is the square of that.
     pub fn new(value: f64) -> Self {
         Self { value, surface: Arc::default(), interface: Arc::default() }
     }
 
-    /// As the scene file has it.
+    /// Returns the value in the scene file.
     pub fn value(&self) -> f64 {
         self.value
     }
 
-    /// The lobe by which the surface reflects.
+    /// Returns the kind of lobe in which the surface reflects.
     pub fn reflection(&self) -> Lobes {
         match self.alpha() {
             ..SMOOTH => Lobes::DELTA_REFLECTION,
@@ -41,8 +41,8 @@ impl Roughness {
         }
     }
 
-    /// The lobes by which a boundary between clear media reflects and refracts. Between equal indices light goes
-    /// straight on, however rough it is.
+    /// Returns the kinds of lobes in which a boundary between clear media reflects and refracts. Between equal indices
+    /// light passes straight through, however rough the boundary is.
     pub fn of_interface(&self) -> Lobes {
         match self.alpha() {
             ..SMOOTH => Lobes::DELTA,
@@ -51,55 +51,56 @@ impl Roughness {
         }
     }
 
-    /// The solid angle in steradians into which the surface spreads what a mirror would send in one direction: one over
-    /// the density there, weighed by itself. That is a third of 1 / (4 pi alpha^2), that of the mirror image.
+    /// Returns the solid angle in steradians into which the surface spreads light that a mirror would send in one
+    /// direction: one over the mean density of directions, weighted by the density itself. That mean is a third of
+    /// 1 / (4 pi alpha^2), the density in the mirror direction.
     pub fn spread(&self) -> f64 {
         if self.is_smooth() { 0.0 } else { 12.0 * PI * self.alpha() * self.alpha() }
     }
 
-    /// How wide the slopes of its facets are.
+    /// Returns the width of its facets' slopes.
     fn alpha(&self) -> f64 {
         self.value * self.value
     }
 
-    /// Whether the surface is too smooth to be distinguished from a mirror.
+    /// Returns whether the surface is too smooth to be distinguished from a mirror.
     pub fn is_smooth(&self) -> bool {
         self.alpha() < SMOOTH
     }
 
-    /// How the surface reflects; none if it is smooth.
+    /// Returns the reflecting surface, or None if it is smooth.
     pub fn surface(&self) -> Option<&RoughSurface> {
         (!self.is_smooth()).then(|| self.surface.get_or_init(|| RoughSurface::new(self.alpha())))
     }
 
-    /// How a boundary between clear media reflects and refracts; none if it is smooth.
+    /// Returns the boundary between clear media, or None if it is smooth.
     pub fn interface(&self) -> Option<&RoughInterface> {
         (!self.is_smooth()).then(|| self.interface.get_or_init(|| RoughInterface::new(self.alpha())))
     }
 }
 
-/// Facets that reflect once or more often: what light loses that meets a second facet is given back by a lobe of its
-/// own.
+/// Facets that reflect once or more often. Light that meets a second facet is lost to single scattering, and restored
+/// by a lobe of its own.
 ///
 /// Kulla & Conty 2017, *Revisiting Physically Based Shading at Imageworks*: the lobe is reciprocal, and perfect mirrors
 /// reflect all light. Vectors are unit vectors in the frame in which +z is the normal.
 #[derive(Clone, Debug)]
 pub struct RoughSurface {
     facets: Facets,
-    /// The share of light that meets a second facet, which single scattering loses.
+    /// Share of light that meets a second facet, which single scattering loses.
     missing_energy: AlbedoTable,
 }
 
-/// Directions of light at a rough surface, and what is reflected between them.
+/// A pair of directions at a rough surface, and what is reflected between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughReflection {
     /// Unit vector toward the light.
     pub wi: DVec3,
-    /// BRDF times cosine of light reflected once, by perfect mirrors.
+    /// BRDF times cosine of light that is reflected once, by perfect mirrors.
     pub single: f64,
-    /// BRDF times cosine of light reflected more than once.
+    /// BRDF times cosine of light that is reflected more than once, by perfect mirrors.
     pub multiple: f64,
-    /// Cosine of the angle at which a facet meets the light that is reflected once.
+    /// Cosine of the angle at which light that is reflected once meets its facet.
     pub cos: f64,
     /// Density per steradian with which `scatter` draws `wi`.
     pub pdf: f64,
@@ -119,26 +120,27 @@ impl RoughSurface {
         &self.facets
     }
 
-    /// The share of light from all around that perfect mirrors would reflect more than once.
+    /// Returns the share of diffuse light that perfect mirrors would reflect more than once.
     pub fn mean_missing_energy(&self) -> f64 {
         self.missing_energy.mean
     }
 
-    /// What is left, beside perfect mirrors, of light that is reflected more than once by facets of reflectance `mean`.
+    /// Returns the factor on light that is reflected more than once, relative to perfect mirrors, for facets whose mean
+    /// reflectance is `mean`.
     ///
     /// A geometric series over further reflections: Hill 2018, *A Multi-Faceted Exploration*, part 3.
     pub fn multiply_reflected(&self, mean: f64) -> f64 {
         mean * mean * (1.0 - self.mean_missing_energy()) / (1.0 - mean * self.mean_missing_energy())
     }
 
-    /// The share of light from the cosine `z` that perfect mirrors would reflect more than once.
+    /// Returns the share of light from the cosine `z` that perfect mirrors would reflect more than once.
     pub fn missing_energy(&self, z: f64) -> f64 {
         self.missing_energy.value(z)
     }
 
-    /// Draws a direction of light for the viewer's direction `wo`; none if it lies below the surface.
+    /// Samples a direction of light for the viewer's direction `wo`. Returns None if it lies below the surface.
     ///
-    /// It is drawn from the lobe as often as perfect mirrors would reflect light more than once.
+    /// The lobe is chosen with the probability that perfect mirrors would reflect the light more than once.
     pub fn scatter(&self, wo: DVec3, u: [f64; 2]) -> Option<RoughReflection> {
         let multiple = self.missing_energy(wo.z);
         if u[0] < multiple {
@@ -148,12 +150,13 @@ impl RoughSurface {
         self.reflection(wo, reflect(wo, h), h)
     }
 
-    /// What is reflected from `wi` to `wo`; none if `wi` lies below the surface.
+    /// Returns what is reflected from `wi` to `wo`, or None if `wi` lies below the surface.
     pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Option<RoughReflection> {
         self.reflection(wo, wi, (wo + wi).try_normalize()?)
     }
 
-    /// What is reflected from `wi` to the viewer of a context, both directions in the world; none from below.
+    /// Evaluates light from `wi` for the viewer of a context, with both directions in world space. Returns None from
+    /// below.
     pub(super) fn evaluate_at<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -179,19 +182,19 @@ impl RoughSurface {
     }
 }
 
-/// The viewer's direction in the surface's frame, on its side where rounding has put it behind.
+/// Returns the viewer's direction in the surface's frame, moved onto the surface if rounding has put it below.
 pub(super) fn above(frame: &Frame, wo: DVec3) -> DVec3 {
     let local = frame.to_local(wo);
     DVec3 { z: local.z.max(0.0), ..local }
 }
 
-/// The share of light from each cosine that meets a second facet: the mean over the visible facets.
+/// Tabulates the share of light from each cosine that meets a second facet, the mean over the visible facets.
 fn missing_energy(facets: &Facets) -> AlbedoTable {
     let visible = facets.visible(1.0);
     AlbedoTable::new(facets.alpha(), STEPS, |z| visible.mean(z, Shadowed(*facets)))
 }
 
-/// The share that meets a second facet, where the first one reflects all light.
+/// The share that meets a second facet if the first one reflects all light.
 struct Shadowed(Facets);
 
 impl OfFacet for Shadowed {

@@ -1,4 +1,5 @@
-//! Thin layers between two media, in which light interferes: R and T of both polarizations, and the phase between them.
+//! Thin layers between two media, in which light interferes: R and T of both polarizations, and their difference in
+//! phase.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,14 +9,15 @@ use super::Block;
 use super::degree::degree;
 use crate::math::Complex;
 
-/// Most layers of one coating.
+/// Maximum number of layers of one coating.
 pub const MAX_LAYERS: usize = 32;
-/// Optical thickness of a layer in nm beyond which a lane that stands for a band of wavelengths sees no interference:
-/// there the eye hardly does, and bands of 32 lanes hold a fringe or more.
+/// Optical thickness of a layer in nm beyond which a lane that stands for a band of wavelengths sees no interference.
+/// There the eye hardly sees any, and bands of 32 lanes hold a fringe or more.
 pub const COHERENT_NM: f64 = 6500.0;
-/// A fringe is read at a band's own wavelength while its phase changes by no more than this over the band, in radians.
+/// Maximum change of phase over a band, in radians, up to which a fringe is evaluated at the band's own wavelength
+/// only.
 pub const PHASE_STEP: f64 = 2.0;
-/// Places over a band, or over a fringe, where one reading is not enough.
+/// Number of samples over a band, or over a fringe, where a single one is not enough.
 const PLACES: usize = 16;
 
 /// One layer, for light of one wavelength.
@@ -34,14 +36,14 @@ impl Layer {
     }
 }
 
-/// What of light goes one way, of both polarizations.
+/// Share of the light that is reflected, or that crosses, for both polarizations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PolarizedShare {
-    /// Share of light polarized at right angles to the plane of incidence.
+    /// Share of light polarized perpendicular to the plane of incidence.
     pub s: f64,
-    /// Share of light polarized within it.
+    /// Share of light polarized in the plane of incidence.
     pub p: f64,
-    /// conj(s) p of the amplitudes whose squares are the two shares.
+    /// conj(s) p of the amplitudes whose squares are the shares s and p.
     pub cross: Complex,
 }
 
@@ -51,20 +53,21 @@ impl PolarizedShare {
         Self { s: s.norm_squared() * factors[0], p: p.norm_squared() * factors[1], cross }
     }
 
-    /// Share of unpolarized light.
+    /// Returns the share of unpolarized light.
     pub fn mean(&self) -> f64 {
         0.5 * (self.s + self.p)
     }
 
-    /// |s - p| / (s + p).
+    /// Returns |s - p| / (s + p).
     pub fn degree(&self) -> f64 {
         degree([self.s, self.p])
     }
 
-    /// The block of the Mueller matrix: a and d are half the sum and the difference of s and p, c + i q is `cross`.
+    /// Returns the block of the Mueller matrix: a and d are half the sum and half the difference of s and p, c + i q is
+    /// `cross`.
     ///
-    /// Fields go as e^(i omega t) and decay with n - i k; p is z x s for each ray, so that r_p = -r_s and c = -a where
-    /// light is reflected at normal incidence.
+    /// Fields vary as e^(i omega t) and decay with n - i k. For each ray p is z x s, so that r_p = -r_s and c = -a for
+    /// reflection at normal incidence.
     pub fn block(&self) -> Block<f64> {
         Block { a: self.mean(), d: 0.5 * (self.s - self.p), c: self.cross.re, q: self.cross.im }
     }
@@ -76,22 +79,23 @@ impl PolarizedShare {
     }
 }
 
-/// What layers between two media reflect and let through.
+/// What layers between two media reflect and transmit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StackShares {
-    /// What is reflected.
+    /// The reflected light.
     pub reflected: PolarizedShare,
-    /// What crosses, as flux: radiance changes by (n1 / n2)^2 besides. Of a medium that absorbs, what goes into it.
+    /// The light that crosses, as flux; radiance also changes by (n1 / n2)^2. For an absorbing medium, the light that
+    /// enters it.
     pub refracted: PolarizedShare,
 }
 
 impl StackShares {
-    /// Shares of unpolarized light that are reflected and that cross.
+    /// Returns the shares of unpolarized light that are reflected and that cross.
     pub(super) fn means(&self) -> [f64; 2] {
         [self.reflected.mean(), self.refracted.mean()]
     }
 
-    /// Reflects what would cross, with the phase of what is reflected.
+    /// Reflects the light that would cross, with the phase of the reflected light.
     pub(super) fn reflect_all(&mut self) {
         let PolarizedShare { s, p, .. } = self.reflected;
         self.reflected.s += self.refracted.s;
@@ -109,52 +113,55 @@ pub struct Stack {
     layers: SmallVec<[Layer; 4]>,
     /// Wavelength in vacuum, in nm.
     nm: f64,
-    /// Width of the band of wavelengths that the light stands for, over its wavelength: 0 of a single one.
+    /// Width of the band of wavelengths that the light stands for, divided by its wavelength; 0 for a single
+    /// wavelength.
     band: f64,
 }
 
 impl Stack {
-    /// Layers, without those of no thickness, for light of a wavelength in nm and the relative width of its band.
+    /// Makes a stack for light of a wavelength in nm and the relative width of its band. Layers without thickness are
+    /// left out.
     pub fn new([nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> Self {
         Self { layers: with_thickness(layers).collect(), nm, band }
     }
 
-    /// Whether [`new`](Self::new) would make this stack.
+    /// Returns whether [`new`](Self::new) would make this stack.
     pub fn is(&self, [nm, band]: [f64; 2], layers: impl Iterator<Item = Layer>) -> bool {
         self.nm == nm && self.band == band && self.layers.iter().copied().eq(with_thickness(layers))
     }
 
-    /// The layers, the viewer's side first.
+    /// Returns the layers, the viewer's side first.
     pub fn layers(&self) -> &[Layer] {
         &self.layers
     }
 
-    /// Thickness of all layers in nm.
+    /// Returns the thickness of all layers in nm.
     pub fn thickness_nm(&self) -> f64 {
         self.layers().iter().map(|layer| layer.thickness_nm).sum()
     }
 
-    /// Whether it changes slowly with the angle: a few layers of a micrometer together. A mirror of nine quarter waves
-    /// turns within a few degrees.
+    /// Returns whether its shares change slowly with the angle: few layers, with a total of at most a micrometer. The
+    /// shares of a mirror of nine quarter waves change within a few degrees.
     pub(super) fn is_slow(&self) -> bool {
         self.layers().len() <= 3 && self.thickness_nm() <= 1000.0
     }
 
-    /// How much the phase between both ends of the band differs after all layers and back, at most, in radians.
+    /// Returns the largest possible difference of phase between the two ends of the band, in radians, through all
+    /// layers and back.
     pub fn phase_step(&self) -> f64 {
         2.0 * TAU * self.layers().iter().map(Layer::optical_nm).sum::<f64>() / self.nm * self.band
     }
 
-    /// The same layers from the other side.
+    /// Returns the layers seen from the other side.
     pub fn turned_around(&self) -> Self {
         Self { layers: self.layers.iter().rev().copied().collect(), ..*self }
     }
 
-    /// What the layers do between index `n1`, where the viewer is, and `n2` beyond, n - i k, for light whose normal
-    /// component n1 cos of the index is `q1`.
+    /// Returns what the layers do between index `n1`, where the viewer is, and index `n2`, n - i k, beyond. `q1` is the
+    /// normal component n1 cos of the light.
     ///
-    /// A band of wavelengths has the mean over its wavelengths, and over all phases of layers thicker than
-    /// [`COHERENT_NM`].
+    /// A band over which the phase changes by more than [`PHASE_STEP`] gets the mean over its wavelengths, and over all
+    /// phases of layers thicker than [`COHERENT_NM`].
     pub fn shares(&self, n1: f64, n2: Complex, q1: f64) -> StackShares {
         if self.layers.is_empty() && n2 == n1.into() {
             let all = PolarizedShare { s: 1.0, p: 1.0, cross: Complex::ONE };
@@ -168,7 +175,7 @@ impl Stack {
         let places = if several { 4 * PLACES } else { PLACES };
         let mut mean = StackShares::default();
         for place in 0..places {
-            // A lattice over the phases of thick layers (Korobov 1959), which is even in each of them.
+            // A lattice over the phases of thick layers (Korobov 1959), which is uniform in each of them.
             let mut at = place;
             let shares = self.coherent(n1, n2, q1, |layer, delta| {
                 if thick(layer) {
@@ -184,12 +191,12 @@ impl Stack {
         mean
     }
 
-    /// The shares of light of one wavelength, where `turn` adds something to each layer's phase.
+    /// Returns the shares of light of one wavelength; `turn` returns what to add to each layer's phase.
     ///
-    /// Abeles' matrices (Born & Wolf 1999, *Principles of Optics*, section 1.6.2), with y = q for s and q / n^2 for p,
-    /// q = sqrt(n^2 - n1^2 sin^2), Im q <= 0: so p's amplitudes are those of the magnetic field, and r_p = -r_s at
-    /// normal incidence. sin(delta) / q stands in for both off-diagonal terms and is finite at the critical angle of a
-    /// layer. Each matrix is divided by e^|Im delta|, so that nothing overflows however much is absorbed.
+    /// Abeles' matrices (Born & Wolf 1999, *Principles of Optics*, section 1.6.2), with y = q for s and y = q / n^2 for
+    /// p, q = sqrt(n^2 - n1^2 sin^2), Im q <= 0. The amplitudes of p are thus those of the magnetic field, and
+    /// r_p = -r_s at normal incidence. sin(delta) / q serves both off-diagonal terms and is finite at the critical
+    /// angle of a layer. Each matrix is divided by e^|Im delta|, so that nothing overflows, however much is absorbed.
     fn coherent(&self, n1: f64, n2: Complex, q1: f64, mut turn: impl FnMut(&Layer, f64) -> f64) -> StackShares {
         let across = |n: Complex| ((n - n1.into()) * (n + n1.into()) + (q1 * q1).into()).decaying_root();
         let q2 = across(n2);
@@ -209,7 +216,7 @@ impl Stack {
             let q = across(layer.index);
             let delta = q * (TAU * waves);
             let mut phase = delta.re;
-            // What only decays has no fringes.
+            // Waves that only decay have no fringes.
             if q.re > -q.im {
                 phase += turn(layer, delta.re);
             }
@@ -249,8 +256,8 @@ fn with_thickness(layers: impl Iterator<Item = Layer>) -> impl Iterator<Item = L
     layers.filter(|layer| layer.thickness_nm > 0.0)
 }
 
-/// Takes the fields of s and p to the near side of a layer that neither absorbs nor reflects all light: its matrices
-/// are real but for a factor i.
+/// Propagates the fields of s and p to the near side of a layer that neither absorbs nor reflects totally. Its matrices
+/// are real except for a factor i.
 fn pass_clear(fields: &mut [[Complex; 2]; 2], q: f64, n_squared: f64, phase: f64) {
     let (sin, cos) = libm::sincos(phase);
     let (over_q, times_q) = (sin / q, sin * q);
@@ -268,7 +275,7 @@ mod tests {
     const BK7: f64 = 1.518_522_366;
     const DEGREE: f64 = PI / 180.0;
 
-    /// Layers of clear indices and thicknesses in nm, or absorbing ones, at a wavelength in nm.
+    /// Makes layers of clear indices and thicknesses in nm, or absorbing ones, at a wavelength in nm.
     fn stack(layers: &[([f64; 2], f64)], nm: f64) -> Stack {
         let layer = |&([n, k], thickness_nm): &([f64; 2], f64)| Layer { index: Complex::new(n, -k), thickness_nm };
         Stack::new([nm, 0.0], layers.iter().map(layer))
@@ -278,7 +285,7 @@ mod tests {
         stack(layers, nm).shares(n1, Complex::new(n2[0], -n2[1]), n1 * (degrees * DEGREE).cos())
     }
 
-    /// a, and d, c and q over it.
+    /// Returns a, and d, c and q divided by it.
     fn numbers(share: &PolarizedShare) -> [f64; 4] {
         let Block { a, d, c, q } = share.block();
         [a, d / a, c / a, q / a]
@@ -308,7 +315,7 @@ mod tests {
         }
     }
 
-    /// A linear congruence, for layers of any kind.
+    /// A linear congruential generator, for layers of any kind.
     fn random() -> impl FnMut(f64, f64) -> f64 {
         let mut state = 1_u64;
         move |from, to| {
@@ -430,7 +437,7 @@ mod tests {
             near(found.reflected.p, p, 1e-6);
             near(found.reflected.s + found.refracted.s, 1.0, 1e-12);
         }
-        // At the critical angle of the gap, and so thick that nothing is left.
+        // At the critical angle of the gap, with a gap so thick that no light is left, and along the surface.
         let critical = (1.0_f64 / 1.5).asin() / DEGREE;
         for (degrees, gap) in [(critical, 300.0), (60.0, 100_000.0), (90.0, 300.0)] {
             let found = met(&[([1.0, 0.0], gap)], 550.0, 1.5, [1.5, 0.0], degrees);

@@ -3,7 +3,8 @@ use super::last::Last;
 use super::{Block, Branch, Coating, Interface, Mueller, ScatterContext, StackShares, Straight, conductor_reflectance};
 use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 
-/// A sheet that bends no light: light goes straight on, that of lights to the surfaces behind as well, or is mirrored.
+/// A sheet that does not bend light. Light is mirrored or passes straight through. Lights are sampled through the sheet
+/// as well.
 ///
 /// ```toml
 /// thin = { index = 1.52 }     # transmittance = 1: what is left after one way through the pane, straight on
@@ -13,15 +14,15 @@ use crate::spectrum::{Draw, LaneSet, Lanes, Quantity, Table};
 /// ```
 #[derive(Clone, Debug)]
 pub enum Thin<S> {
-    /// A window of which nothing but its two surfaces is seen. All reflections between them are summed.
+    /// A window reduced to its two surfaces. All reflections between them are summed.
     Pane {
         /// Refractive index.
         index: S,
-        /// Share of the light that is left after one way through the pane, at every angle.
+        /// Share of the light that is left after one way through the pane, equal at every angle.
         transmittance: S,
     },
-    /// One layer with a thickness: a soap film, a flake of mica, gold leaf. Light that is reflected by its two surfaces
-    /// interferes, and what it absorbs is by its extinction.
+    /// One layer with a thickness: a soap film, a flake of mica, gold leaf. The reflections at its two surfaces
+    /// interfere, and its extinction coefficient determines what it absorbs.
     Film(Coating<S>),
 }
 
@@ -36,7 +37,7 @@ impl<S> Thin<S> {
         }
     }
 
-    /// Its index, if it is clear.
+    /// Returns its index, if it is clear.
     pub(super) fn clear_index(&self) -> Option<&S> {
         match self {
             Self::Pane { index, .. } => Some(index),
@@ -44,7 +45,7 @@ impl<S> Thin<S> {
         }
     }
 
-    /// The share of light that its substance leaves, beside what its surfaces mirror, where that is given.
+    /// Returns the share of light that its substance transmits, apart from reflection at its surfaces, if it is given.
     pub fn transmittance(&self) -> Option<&S> {
         match self {
             Self::Pane { transmittance, .. } => Some(transmittance),
@@ -54,8 +55,8 @@ impl<S> Thin<S> {
 }
 
 impl Thin<Table> {
-    /// About what share of a lane one of its two surfaces mirrors, in a medium of an index, of light at an angle of a
-    /// cosine: of a clear film without interference, of metal as if it were thick.
+    /// Estimates the reflectance of one of its two surfaces for a lane, in a medium of index `here` at an angle with
+    /// cosine `cos`. A clear film is taken without interference, a metal as if it were thick.
     pub fn reflectance_of_one_surface<const N: usize>(&self, draw: &Draw<N>, lane: usize, here: f64, cos: f64) -> f64 {
         let read = |table| draw.read_lane(table, lane);
         match self {
@@ -68,13 +69,13 @@ impl Thin<Table> {
         }
     }
 
-    /// What goes straight on.
+    /// Returns the share that passes straight through.
     pub(super) fn straight<const N: usize>(&self, context: &ScatterContext<N>) -> Straight<N> {
         let (panes, polarization) = self.share(context, true);
         Straight { holes: Lanes::ZERO, panes, polarization }
     }
 
-    /// What is mirrored.
+    /// Adds the mirrored branch.
     pub(super) fn scatter<const N: usize>(&self, context: &ScatterContext<N>, branches: &mut Vec<Branch<N>>) {
         let (share, polarization) = self.share(context, false);
         if !share.is_zero() {
@@ -82,7 +83,7 @@ impl Thin<Table> {
         }
     }
 
-    /// What becomes of polarization in some lanes, of light that crosses the pane or is mirrored.
+    /// Sets the Mueller matrix of some lanes, for light that crosses the pane or is mirrored.
     pub(super) fn mueller<const N: usize>(
         &self,
         context: &ScatterContext<N>,
@@ -116,8 +117,8 @@ impl Thin<Table> {
         });
     }
 
-    /// What of each lane goes straight on, or is mirrored, and the largest degree of polarization that this gives to
-    /// unpolarized light; of a film, in which light interferes, that of all lanes together.
+    /// Returns the share of each lane that passes straight through or is mirrored, and the largest degree to which
+    /// unpolarized light becomes polarized; for a film with interference, the degree of all lanes together.
     fn share<const N: usize>(&self, context: &ScatterContext<N>, crosses: bool) -> (Lanes<N>, f32) {
         let cos = context.wo.dot(context.normal);
         let mut lanes = [[0.0; 2]; N];
@@ -148,16 +149,17 @@ impl Thin<Table> {
     }
 }
 
-/// What goes through a pane and what comes back, each (s, p), of which one way leaves the share `t`.
+/// Returns the transmittance and the reflectance of a pane, each as (s, p), if the share `t` is left after one way
+/// through it.
 ///
-/// With R of one surface T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T comes back (Stokes 1862, *On the Intensity of
-/// the Light Reflected from or Transmitted through a Pile of Plates*). All surfaces share one plane of incidence, so
-/// that s and p keep to themselves: each has its own series, and unpolarized light has the mean of both.
+/// With R of one surface, T = (1 - R)^2 t / (1 - R^2 t^2), and the pane reflects R + R t T (Stokes 1862, *On the
+/// Intensity of the Light Reflected from or Transmitted through a Pile of Plates*). All surfaces share one plane of
+/// incidence, so that s and p do not mix: each has its own series, and unpolarized light gets the mean of both.
 fn all_reflections(surface: &Interface, t: f64) -> [[f64; 2]; 2] {
     let [s, p] = [1.0, -1.0].map(|sign| {
         let r = surface.reflectance * (1.0 + sign * surface.polarization_reflected);
         let crosses = surface.transmittance * (1.0 + sign * surface.polarization_refracted);
-        // 1 - R t as a sum of two numbers that are not negative; 0 only where no light enters at all.
+        // 1 - R t as a sum of two nonnegative numbers; 0 only where no light enters at all.
         let left = crosses + r * (1.0 - t);
         let through = if crosses > 0.0 { crosses * crosses * t / (left * (1.0 + r * t)) } else { 0.0 };
         [through, r + r * t * through]

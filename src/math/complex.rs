@@ -13,28 +13,28 @@ impl Complex {
     /// 1.
     pub const ONE: Self = Self::new(1.0, 0.0);
 
-    /// The number of two parts.
+    /// Creates a number from its real and imaginary parts.
     pub const fn new(re: f64, im: f64) -> Self {
         Self { re, im }
     }
 
-    /// The square of its absolute value.
+    /// Returns the square of the absolute value.
     pub fn norm_squared(self) -> f64 {
         self.re * self.re + self.im * self.im
     }
 
-    /// The conjugate.
+    /// Returns the conjugate.
     pub fn conjugate(self) -> Self {
         Self::new(self.re, -self.im)
     }
 
-    /// The number multiplied by i.
+    /// Returns the number multiplied by i.
     pub fn times_i(self) -> Self {
         Self::new(-self.im, self.re)
     }
 
-    /// The square root whose imaginary part is not above 0, in which nothing cancels (Kahan 1987, *Branch Cuts for
-    /// Complex Elementary Functions*).
+    /// Returns the square root whose imaginary part is not above 0, computed without cancellation (Kahan 1987, *Branch
+    /// Cuts for Complex Elementary Functions*).
     pub fn decaying_root(self) -> Self {
         let modulus = self.norm_squared().sqrt();
         let (re, im) = if self.re >= 0.0 {

@@ -1,34 +1,35 @@
-//! Drawing by tables: one entry of many, or one cell of a grid.
+//! Sampling from tables: one of many entries, or one cell of a grid.
 
 use serde::{Deserialize, Serialize};
 
 /// An entry drawn from a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteSample {
-    /// Its number.
+    /// Index of the entry.
     pub index: usize,
-    /// How likely it was, above 0 and at most 1.
+    /// Probability of drawing the entry, above 0 and at most 1.
     pub probability: f64,
-    /// What is left of the random number, again uniform in [0, 1).
+    /// The rest of the random number, rescaled so that it is again uniform in [0, 1).
     pub u: f64,
 }
 
 /// The largest number below 1.
 pub const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
-/// Entries 0, 1, 2, .., each with a probability.
+/// A discrete distribution over the entries 0, 1, 2, ..
 ///
-/// They are drawn by inverting the sums of their probabilities.
+/// It is sampled by inverting the cumulative probabilities.
 /// Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, 4th ed., appendix A.4.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distribution {
-    /// Probability of each entry and all before it; the last is 1.
+    /// Sum of the probabilities of each entry and of all entries before it. The last sum is 1.
     cumulative: Vec<f64>,
     total: f64,
 }
 
 impl Distribution {
-    /// At least one entry, drawn in proportion to weights of 0 or more; all alike where every weight is 0.
+    /// Creates a distribution over one or more entries. Their probabilities are proportional to weights of 0 or more,
+    /// and equal if every weight is 0.
     ///
     /// # Panics
     /// If there is no entry.
@@ -49,35 +50,35 @@ impl Distribution {
         Self { cumulative, total }
     }
 
-    /// Sum of the weights.
+    /// Returns the sum of the weights.
     pub fn total(&self) -> f64 {
         self.total
     }
 
-    /// Number of entries.
+    /// Returns the number of entries.
     pub fn count(&self) -> usize {
         self.cumulative.len()
     }
 
-    /// The entry for a random number in [0, 1).
+    /// Draws an entry with a random number in [0, 1).
     pub fn sample(&self, u: f64) -> DiscreteSample {
         let index = self.cumulative.partition_point(|&sum| sum <= u).min(self.count() - 1);
         let (before, probability) = (self.before(index), self.probability(index));
         DiscreteSample { index, probability, u: ((u - before) / probability).clamp(0.0, BELOW_ONE) }
     }
 
-    /// How likely `sample` draws an entry.
+    /// Returns the probability with which `sample` draws an entry.
     pub fn probability(&self, index: usize) -> f64 {
         self.cumulative[index] - self.before(index)
     }
 
-    /// Probability of all entries before one.
+    /// Returns the probability of all entries before one.
     fn before(&self, index: usize) -> f64 {
         if index == 0 { 0.0 } else { self.cumulative[index - 1] }
     }
 }
 
-/// The cells of a grid, each with a probability: first a row is drawn, then one of its columns.
+/// A discrete distribution over the cells of a grid. A row is drawn first, then one of its columns.
 ///
 /// Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, 4th ed., appendix A.5.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,8 +88,8 @@ pub struct Distribution2d {
 }
 
 impl Distribution2d {
-    /// A grid of `width` columns and `height` rows, at least one of each. A cell is drawn in proportion to its weight,
-    /// given by its column and row, times the weight of its row.
+    /// Creates a distribution over a grid of `width` columns and `height` rows, at least one of each. The probability
+    /// of a cell is proportional to its weight, given by its column and row, times the weight of its row.
     pub fn new([width, height]: [usize; 2], cell: impl Fn([usize; 2]) -> f64, row: impl Fn(usize) -> f64) -> Self {
         let cell = &cell;
         let columns: Vec<Distribution> =
@@ -97,29 +98,30 @@ impl Distribution2d {
         Self { rows, columns }
     }
 
-    /// Numbers of columns and rows.
+    /// Returns the numbers of columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.columns[0].count(), self.columns.len()]
     }
 
-    /// The column and the row for two random numbers in [0, 1).
+    /// Draws a column and a row with two random numbers in [0, 1).
     pub fn sample(&self, [u, v]: [f64; 2]) -> [DiscreteSample; 2] {
         let row = self.rows.sample(v);
         [self.columns[row.index].sample(u), row]
     }
 
-    /// How likely `sample` draws the cell of a column and a row.
+    /// Returns the probability with which `sample` draws the cell at a column and a row.
     pub fn probability(&self, [column, row]: [usize; 2]) -> f64 {
         self.rows.probability(row) * self.columns[row].probability(column)
     }
 
-    /// A place of the unit square, which the cells cut into even parts, for two random numbers: even within a cell.
+    /// Samples a point of the unit square with two random numbers. The cells divide the square into equal parts, and
+    /// the density is constant within each cell.
     pub fn sample_place(&self, u: [f64; 2]) -> [f64; 2] {
         let (size, drawn) = (self.size(), self.sample(u));
         [0, 1].map(|i| ((drawn[i].index as f64 + drawn[i].u) / size[i] as f64).min(BELOW_ONE))
     }
 
-    /// How densely `sample_place` draws a place.
+    /// Returns the density per unit area with which `sample_place` draws a point.
     pub fn density(&self, place: [f64; 2]) -> f64 {
         let size = self.size();
         let cell = [0, 1].map(|i| ((place[i] * size[i] as f64) as usize).min(size[i] - 1));

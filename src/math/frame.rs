@@ -9,7 +9,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame about the unit vector `normal`, free of branches near the poles.
+    /// Creates the frame about the unit vector `normal`, without branches near the poles.
     ///
     /// Duff et al. 2017, *Building an Orthonormal Basis, Revisited*, listing 3.
     pub fn about(normal: DVec3) -> Self {
@@ -23,18 +23,19 @@ impl Frame {
         }
     }
 
-    /// A vector given in the frame's coordinates, expressed in the world's.
+    /// Converts a vector from the frame's coordinates to the world's.
     pub fn to_world(&self, local: DVec3) -> DVec3 {
         self.tangent * local.x + self.bitangent * local.y + self.normal * local.z
     }
 
-    /// A vector given in the world's coordinates, expressed in the frame's.
+    /// Converts a vector from the world's coordinates to the frame's.
     pub fn to_local(&self, world: DVec3) -> DVec3 {
         DVec3::new(self.tangent.dot(world), self.bitangent.dot(world), self.normal.dot(world))
     }
 }
 
-/// The horizontal unit vector across `normal`, to the right of who stands before it, +y up; +x where it is vertical.
+/// Returns the horizontal unit vector perpendicular to `normal`, where +y is up. It points to the right for a viewer in
+/// front of the surface. Returns +x if `normal` is vertical.
 pub fn level(normal: DVec3) -> DVec3 {
     DVec3::Y.cross(normal).try_normalize().unwrap_or(DVec3::X)
 }
@@ -56,7 +57,7 @@ mod tests {
             DVec3::new(1e-9, -1e-9, -1.0).normalize(),
         ];
         let anywhere = (0..100_000).map(|i| {
-            // The points of Hammersley in the unit square.
+            // Hammersley points in the unit square.
             let u = [(f64::from(i) + 0.5) / 1e5, f64::from((i as u32).reverse_bits()) / 4_294_967_296.0];
             crate::math::ball_surface(u)
         });

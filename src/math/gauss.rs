@@ -1,15 +1,15 @@
 use std::f64::consts::PI;
 
-/// Places in 0..1 and their weights, which sum to 1: the Gauss-Legendre rule of `count` places.
+/// Returns the nodes and weights of the Gauss-Legendre rule with `count` nodes in 0..1. The weights sum to 1.
 ///
-/// The roots of the Legendre polynomial by Newton's method from Tricomi's estimate, as in Press et al. 2007, *Numerical
-/// Recipes*, section 4.6.
+/// Finds the roots of the Legendre polynomial by Newton's method, starting from Tricomi's estimate, as in Press et al.
+/// 2007, *Numerical Recipes*, section 4.6.
 pub fn gauss_legendre(count: usize) -> Vec<[f64; 2]> {
     let order = count as f64;
     let place = |i: usize| {
         let mut x = libm::cos(PI * (i as f64 + 0.75) / (order + 0.5));
         let mut slope = 1.0;
-        // Newton's method doubles the digits: three of them become all.
+        // Each step of Newton's method doubles the number of correct digits: the initial three soon become all.
         for _ in 0..6 {
             let (mut value, mut before) = (1.0, 0.0);
             for degree in 0..count {

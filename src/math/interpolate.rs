@@ -1,4 +1,4 @@
-/// Linear between samples (x, values), flat beyond the ends; 0 if there are none.
+/// Interpolates linearly between samples (x, values), constant beyond the ends. Returns 0 if there are no samples.
 pub fn interpolate<const N: usize>(samples: &[[f64; N]], x: f64) -> [f64; N] {
     let after = samples.partition_point(|sample| sample[0] < x);
     let (low, high) = match (after.checked_sub(1).map(|before| samples[before]), samples.get(after)) {

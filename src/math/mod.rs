@@ -1,4 +1,4 @@
-//! Floor 0: points, directions and random numbers; knows glam only.
+//! Floor 0: points, directions and random numbers. Depends on no other room.
 
 mod bounds;
 mod complex;

@@ -1,6 +1,6 @@
 use super::{Bounds, DVec3};
 
-/// Shares items out to at most `most` groups of neighbors, which `take` is given one by one: groups are cut in half
+/// Divides items into at most `most` groups of neighbors, and calls `take` with each group. Groups are cut in half
 /// across the longest side of the box around their centers.
 pub fn neighbors<T>(items: &mut [T], most: usize, center: &impl Fn(&T) -> DVec3, take: &mut impl FnMut(&[T])) {
     if items.len() <= most {

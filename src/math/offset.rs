@@ -1,11 +1,11 @@
-//! Leaving a surface without hitting it again: error bounds instead of epsilons.
+//! Ray origins that leave a surface without hitting it again, by error bounds instead of epsilons.
 
 use super::DVec3;
 
 /// Half a unit in the last place of 1: the largest relative error of one rounding.
 pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
-/// Bound of the relative error of `n` chained roundings, n u / (1 - n u).
+/// Returns the bound of the relative error of `n` chained roundings, n u / (1 - n u), where u is the unit roundoff.
 ///
 /// Higham 2002, *Accuracy and Stability of Numerical Algorithms*, lemma 3.1.
 pub const fn gamma(n: u32) -> f64 {
@@ -13,11 +13,11 @@ pub const fn gamma(n: u32) -> f64 {
     nu / (1.0 - nu)
 }
 
-/// Where a ray along `direction` starts so that it cannot hit the surface it leaves.
+/// Returns the origin of a ray along `direction` that cannot hit the surface it leaves.
 ///
-/// `position` is a point computed to lie on the surface, at most `error` off in each coordinate; `normal` is the
-/// surface's geometric unit normal. The origin is moved along the normal, to the side of `direction`, beyond the box of
-/// the error, then each coordinate one step outward to absorb the rounding of the move itself.
+/// `position` is a computed point of the surface, off by at most `error` in each coordinate. `normal` is the surface's
+/// geometric unit normal. The origin is moved along the normal, to the side of `direction`, until it is outside the
+/// error box. Then each coordinate is moved one step further out, to absorb the rounding of the move itself.
 /// Pharr, Jakob & Humphreys 2023, *Physically Based Rendering*, 4th ed., section 6.8.5.
 pub fn offset_origin(position: DVec3, error: DVec3, normal: DVec3, direction: DVec3) -> DVec3 {
     let distance = normal.abs().dot(error);

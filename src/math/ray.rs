@@ -10,20 +10,20 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The ray from `origin` along `direction`, which is normalized here.
+    /// Creates the ray from `origin` along `direction`, and normalizes `direction`.
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction: unit(direction) }
     }
 
-    /// The point at distance `t` from the origin.
+    /// Returns the point at distance `t` from the origin.
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
     }
 }
 
-/// The unit vector along `v`, whose length is 1 within 2 roundings.
+/// Returns the unit vector along `v`. Its length is 1 to within 2 roundings.
 ///
-/// Scaling alone leaves up to 3; one Newton step for 1 / |v| takes back what it can see.
+/// Scaling alone leaves up to 3 roundings. One Newton step for 1 / |v| removes as much of this error as it can resolve.
 #[inline]
 pub fn unit(v: DVec3) -> DVec3 {
     let near = v.normalize();

@@ -4,18 +4,18 @@ use std::sync::LazyLock;
 
 use sobol_burley::parts::{hash, hash_int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_rev};
 
-/// The place of a ray vertex in its camera sample's tree of branches.
+/// The position of a path vertex in the tree of branches of its camera sample.
 ///
-/// Two vertices of one tree never share a key, and the vertices reached by the same choices in other samples of the
-/// pixel do: so their numbers are well spread over the pixel's samples.
+/// Two vertices of one tree never share a key. Vertices reached by the same choices in different samples of a pixel do
+/// share it, so that their random numbers are well distributed over the samples of the pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BranchKey(u64);
 
 impl BranchKey {
-    /// The camera's own: film position and lens.
+    /// The key of the camera itself: film position and lens.
     pub const CAMERA: Self = Self(0);
 
-    /// The key of the `index`-th way on from here.
+    /// Returns the key of the `index`-th branch from here.
     pub fn child(self, index: usize) -> Self {
         Self(mix(self.0 ^ (index as u64 + 1)))
     }
@@ -29,37 +29,39 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// The numbers of one sample of one pixel under a seed. Columns and rows may be negative, as in the overscan.
+    /// Creates the sampler of one sample of one pixel under a seed. Columns and rows may be negative, as in the
+    /// overscan.
     pub fn of_pixel(seed: u64, pixel: [i32; 2], sample: u32) -> Self {
-        // The bits of a negative number are those of a positive one that no image has.
+        // The bits of a negative number are those of a positive one beyond any image.
         Self::new(seed, pixel.map(|place| place as u32), sample)
     }
 
-    /// The numbers of one sample of anything that two numbers tell from all others, under a seed.
+    /// Creates the sampler of one sample, under a seed, of anything that is identified by two numbers.
     pub fn new(seed: u64, key: [u32; 2], sample: u32) -> Self {
         let place = (u64::from(key[1]) << 32) | u64::from(key[0]);
         Self { pixel: mix(mix(seed) ^ place), index: sample }
     }
 
-    /// Four numbers in [0, 1) for one use (`purpose`) at one vertex.
+    /// Returns four numbers in [0, 1) for one use (`purpose`) at one vertex.
     ///
-    /// Owen-scrambled Sobol points in four dimensions, padded by an independent scramble and shuffle for each use.
+    /// They are Owen-scrambled Sobol points in four dimensions, padded by an independent scramble and shuffle for each
+    /// use.
     /// Burley 2020, *Practical Hash-based Owen Scrambling*.
     pub fn four(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = self.seed(branch, purpose);
         sobol(self.index, 0, [seed; 2])
     }
 
-    /// Four more numbers for the same use at the same vertex: with those of [`four`](Self::four), points in eight
-    /// dimensions.
+    /// Returns four more numbers for the same use at the same vertex. Together with those of [`four`](Self::four) they
+    /// are points in eight dimensions.
     pub fn four_more(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let seed = self.seed(branch, purpose);
         sobol(self.index, 1, [seed; 2])
     }
 
-    /// Two pairs of numbers in [0, 1) for one use at one vertex. Among samples whose first two numbers for the camera's
-    /// use `first` fall into one part of the square, each pair is spread evenly; so within every 65,536 samples, which
-    /// know nothing of the next.
+    /// Returns two pairs of numbers in [0, 1) for one use at one vertex. Among the samples whose first two numbers for
+    /// the camera's use `first` fall into the same part of the square, each pair is evenly distributed. This holds
+    /// within each block of 65,536 samples. Different blocks are independent.
     pub fn pairs_beside(&self, first: u32, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let scramble = self.seed(branch, purpose).wrapping_add((self.index >> 16).wrapping_mul(0x9e37_79b9));
         sobol(self.index, PAIRS, [self.seed(BranchKey::CAMERA, first), scramble])
@@ -69,7 +71,7 @@ impl Sampler {
         (mix(self.pixel ^ branch.0.wrapping_add(u64::from(purpose))) >> 32) as u32
     }
 
-    /// Four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
+    /// Returns four numbers in [0, 1) for one use at one vertex, independent from sample to sample.
     pub fn four_plain(&self, branch: BranchKey, purpose: u32) -> [f64; 4] {
         let sample = mix(self.pixel ^ u64::from(self.index).wrapping_mul(0xd134_2543_de82_ef95));
         let a = mix(sample ^ branch.0.wrapping_add(u64::from(purpose)));
@@ -79,13 +81,14 @@ impl Sampler {
     }
 }
 
-/// The seed of one of several renders of the same image that shall know nothing of each other.
+/// Returns the seed of one of several statistically independent renders of the same image.
 pub fn seed_of(seed: u64, number: u64) -> u64 {
     mix(mix(seed) ^ number.wrapping_add(1))
 }
 
-/// Four dimensions of a point, shuffled by a seed and scrambled by another: up to an index of 65,535 the numbers of
-/// `sobol_burley::sample_4d` where both are the same, and the same sequence beyond.
+/// Returns four dimensions of a Sobol point, shuffled by one seed and scrambled by another. In the first two sets, with
+/// both seeds equal, these are the numbers of `sobol_burley::sample_4d` up to an index of 65,535. Beyond, the same
+/// sequence goes on.
 fn sobol(index: u32, set: usize, [shuffle, scramble]: [u32; 2]) -> [f64; 4] {
     let shuffle = hash(shuffle ^ 0x79c6_8e4a);
     let shuffled = owen_scramble_rev(index.reverse_bits(), shuffle);
@@ -104,15 +107,15 @@ fn sobol(index: u32, set: usize, [shuffle, scramble]: [u32; 2]) -> [f64; 4] {
     owen_scramble_int4_rev(point.into(), hash_int4(scramble.into())).reverse_bits().to_f32_norm().map(f64::from)
 }
 
-/// The set of four dimensions that are two pairs beside the first.
+/// Index of the set of four dimensions that holds the two pairs beside the first pair.
 const PAIRS: usize = 2;
-/// The pairs beside the first are the first at another index, whose digits are those of these dimensions. So each is
-/// as even as the first, a (0, 2)-sequence. Of all dimensions, these leave the fewest boxes uneven that the first pair
-/// makes with the second, and both of these with the third, in sets of 4 to 256 samples.
+/// Each pair beside the first is the first pair at another index, whose digits come from these dimensions. So each is
+/// as even as the first, a (0, 2)-sequence. Of all dimensions, these leave the fewest uneven boxes in sets of 4 to 256
+/// samples: the boxes that the first pair makes with the second, then those that these two make with the third.
 const BESIDE: [u32; 2] = [156, 234];
 
-/// Of three sets of four dimensions, the points of each of the four hexadecimal digits of an index, bits reversed. The
-/// sequence is linear: an index has the sum of its digits' points, bit by bit.
+/// For three sets of four dimensions, the point of each of the four hexadecimal digits of an index, with bits reversed.
+/// The sequence is linear: the point of an index is the bitwise sum of its digits' points.
 static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
     let point = |set: usize, i: usize, digit: usize| {
         let index = (digit as u32) << (28 - 4 * i);
@@ -127,8 +130,8 @@ static SOBOL: LazyLock<[[[[u32; 4]; 16]; 4]; 3]> = LazyLock::new(|| {
     std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
 });
 
-/// Of the first two sets of four dimensions, the points of the hexadecimal digits in the upper half of an index, bits
-/// reversed; [`SOBOL`] has those of the lower half.
+/// For the first two sets of four dimensions, the points of the hexadecimal digits in the upper half of an index, with
+/// bits reversed. [`SOBOL`] has those of the lower half.
 static BEYOND: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
     let directions: Vec<[u32; 32]> = (0..8).map(directions).collect();
     let point = |set: usize, i: usize, digit: usize| {
@@ -140,13 +143,13 @@ static BEYOND: LazyLock<[[[[u32; 4]; 16]; 4]; 2]> = LazyLock::new(|| {
     std::array::from_fn(|set| std::array::from_fn(|i| std::array::from_fn(|digit| point(set, i, digit))))
 });
 
-/// The primitive polynomials of the first dimensions after the first, by degree and inner coefficients.
+/// The primitive polynomials of the dimensions after the first, up to the eighth, as degrees and inner coefficients.
 ///
 /// Joe & Kuo 2008, *Constructing Sobol Sequences with Better Two-Dimensional Projections*.
 const POLYNOMIALS: [(usize, u32); 7] = [(1, 0), (2, 1), (3, 1), (3, 2), (4, 1), (4, 4), (5, 2)];
 
-/// The direction numbers of one of the first eight dimensions, 32 bits each. `sobol_burley` has the first 16; the
-/// recurrence of its polynomial makes the rest.
+/// Returns the direction numbers of one of the first eight dimensions, 32 bits each. `sobol_burley` has the first 16.
+/// The recurrence of the dimension's polynomial gives the others.
 fn directions(dimension: usize) -> [u32; 32] {
     let mut directions = [0; 32];
     for i in 0..32 {
@@ -159,14 +162,14 @@ fn directions(dimension: usize) -> [u32; 32] {
     directions
 }
 
-/// The direction number after some others of one dimension.
+/// Returns the direction number that follows the given ones of a dimension.
 fn next(directions: &[u32], degree: usize, inner: u32) -> u32 {
     let before = |j: usize| directions[directions.len() - j];
     let is_in = |j: &usize| inner >> (degree - 1 - j) & 1 == 1;
     (1..degree).filter(is_in).fold(before(degree) ^ (before(degree) >> degree), |sum, j| sum ^ before(j))
 }
 
-/// A bijection of 64 bits that spreads every input bit over all output bits.
+/// Maps 64 bits to 64 bits by a bijection that spreads every input bit over all output bits.
 ///
 /// Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (mix64, variant 13 of Stafford).
 pub fn mix(x: u64) -> u64 {
@@ -204,7 +207,7 @@ mod tests {
     #[test]
     fn long_sequences_stay_even() {
         let m = 18;
-        // The second of such blocks: it reaches from 262,144 to 524,287.
+        // The second block of this length, from 262,144 to 524,287.
         let points: Vec<[[f64; 4]; 2]> = (1 << m..2 << m)
             .map(|i| Sampler::new(3, [5, 7], i))
             .map(|sampler| [sampler.four(BranchKey::CAMERA, 2), sampler.four_more(BranchKey::CAMERA, 2)])
@@ -215,7 +218,7 @@ mod tests {
             let numbers: Vec<[f64; 1]> = points.iter().map(|sets| [sets[dimension / 4][dimension % 4]]).collect();
             assert_eq!(share_of_even_shapes(&numbers, m), 1.0, "{dimension}");
         }
-        // Boxes of 64 points in three dimensions: independent points would leave a standard deviation of 8.
+        // Boxes of 64 points each in three dimensions. Independent points would have a standard deviation of 8.
         let mut counts = vec![0_u32; 1 << 12];
         for [first, _] in &points {
             let [x, y, z] = [first[0], first[1], first[2]].map(|u| (16.0 * u) as usize);
@@ -225,14 +228,14 @@ mod tests {
         assert!(variance < 1.0, "{variance}");
     }
 
-    /// All shapes of 2^m boxes of the same volume: how many times each axis is halved.
+    /// Returns all shapes of 2^m boxes of the same volume, as the number of times that each axis is halved.
     fn shapes<const D: usize>(m: u32) -> Vec<[u32; D]> {
         let sums_to_m = |halved: &[u32; D]| halved.iter().sum::<u32>() == m;
         let digits = |number: u32| std::array::from_fn(|axis| number / (m + 1).pow(axis as u32) % (m + 1));
         (0..(m + 1).pow(D as u32)).map(digits).filter(sums_to_m).collect()
     }
 
-    /// How many of 2^m points of 32 bits share a box where there are any, on the average.
+    /// Returns the mean number of points per box that is not empty, for 2^m points of 32 bits.
     fn crowd<const D: usize>(points: &[[u32; D]], halved: &[u32; D]) -> f64 {
         let mut is_filled = vec![false; points.len()];
         for point in points {
@@ -284,7 +287,7 @@ mod tests {
         let pair = |index: u32| [0, 1].map(|dimension| sobol_rev(index.reverse_bits(), dimension).reverse_bits());
         let at = |dimension: u32, index: u32| pair(sobol_rev(index.reverse_bits(), dimension));
         let shapes: Vec<Vec<[u32; 4]>> = (2..=8).map(shapes).collect();
-        // Boxes count less, the longer their sides are beside each other; more, the more points share one.
+        // Boxes weigh less, the more elongated they are within a pair. They count more, the more points share one.
         let weight = |[a, b, c, d]: [u32; 4]| {
             0.5_f64.powi((a.abs_diff(b).max(1) - 1) as i32 + (c.abs_diff(d).max(1) - 1) as i32)
         };

@@ -8,17 +8,17 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// The map that changes nothing.
+    /// The identity map.
     pub const IDENTITY: Self = Self { linear: DMat3::IDENTITY, translation: DVec3::ZERO };
 
-    /// Multiplies each coordinate by its factor.
+    /// Creates the map that multiplies each coordinate by its factor.
     pub fn scale(factors: DVec3) -> Self {
         Self { linear: DMat3::from_diagonal(factors), ..Self::IDENTITY }
     }
 
-    /// Turns counterclockwise, seen from the tip of `axis`, by an angle in degrees.
+    /// Creates the rotation by an angle in degrees, counterclockwise as seen from the tip of `axis`.
     pub fn rotate(axis: DVec3, degrees: f64) -> Self {
-        // Rodrigues' rotation formula, with the exact values at quarter turns that sin and cos only approach.
+        // Rodrigues' rotation formula, with the exact values at quarter turns, which sin and cos only approximate.
         let (sin, cos) = match degrees.rem_euclid(360.0) {
             0.0 => (0.0, 1.0),
             90.0 => (1.0, 0.0),
@@ -33,7 +33,8 @@ impl Transform {
         Self { linear: DMat3::IDENTITY * cos + cross * sin + outer * (1.0 - cos), ..Self::IDENTITY }
     }
 
-    /// Turns as the quaternion x i + y j + z k + w does, scaled to length 1; one of length 0 changes nothing.
+    /// Creates the rotation of the quaternion x i + y j + z k + w, which is scaled to length 1. A quaternion of length
+    /// 0 gives the identity.
     pub fn quaternion(vector: DVec3, w: f64) -> Self {
         let length = vector.length_squared() + w * w;
         if length == 0.0 {
@@ -43,34 +44,35 @@ impl Transform {
         Self { linear: DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)), ..Self::IDENTITY }
     }
 
-    /// The map x -> linear * x + translation.
+    /// Creates the map x -> linear * x + translation.
     pub fn affine(linear: DMat3, translation: DVec3) -> Self {
         Self { linear, translation }
     }
 
-    /// Moves every point by a vector.
+    /// Creates the translation by a vector.
     pub fn translate(by: DVec3) -> Self {
         Self { translation: by, ..Self::IDENTITY }
     }
 
-    /// This map followed by another.
+    /// Returns this map followed by another.
     pub fn then(&self, next: &Self) -> Self {
         Self { linear: next.linear * self.linear, translation: next.linear * self.translation + next.translation }
     }
 
-    /// Where a point goes.
+    /// Transforms a point.
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.linear * p + self.translation
     }
 
-    /// Where a difference of points goes.
+    /// Transforms a vector, the difference of two points.
     pub fn vector(&self, v: DVec3) -> DVec3 {
         self.linear * v
     }
 
-    /// The map back, right to a few roundings times the map's condition; none if a number of it is not finite.
+    /// Returns the inverse map, accurate to a few roundings times the map's condition number. Returns `None` if one of
+    /// its numbers is not finite.
     ///
-    /// A map with all lengths scaled by a power of two gives the same digits.
+    /// Scaling all lengths of a map by a power of two leaves the digits of its inverse unchanged.
     pub fn inverse(&self) -> Option<Self> {
         let size = self.size();
         let scaled = self.linear / size;
@@ -80,22 +82,23 @@ impl Transform {
         (linear.is_finite() && translation.is_finite()).then_some(Self { linear, translation })
     }
 
-    /// The linear part with every entry positive: |M| of the error bounds of `point` and `vector`.
+    /// Returns the absolute values of the linear part: |M| in the error bounds of `point` and `vector`.
     pub fn magnitudes(&self) -> DMat3 {
         self.linear.abs()
     }
 
-    /// Bound of the rounding of `point(p)` for |p| up to `reach`, coordinate by coordinate: gamma(4) (|M| |p| + |t|).
+    /// Returns a bound of the rounding error of `point(p)`, per coordinate, for |p| up to `reach`: gamma(4) (|M| |p| +
+    /// |t|).
     ///
-    /// Three products, their two sums and the shift chain up to 4 roundings.
+    /// The three products, their two sums and the translation chain up to 4 roundings.
     pub fn rounding(&self, reach: DVec3) -> DVec3 {
         (self.magnitudes() * reach + self.translation.abs()) * super::gamma(4)
     }
 
-    /// How far `then(back)` is from changing nothing, as a bound for |p| up to `reach`, coordinate by coordinate.
+    /// Returns a bound, per coordinate, of how far `then(back)` moves a point p, for |p| up to `reach`.
     ///
-    /// The products as computed, and the roundings of computing them: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| +
-    /// |s|).
+    /// With M and t for this map, N and s for `back`, it adds the deviation of the computed product from the identity
+    /// and the roundings in computing it: gamma(4) (|N| |M| + 1) and gamma(5) (|N| |t| + |s|).
     pub fn mismatch(&self, back: &Self, reach: DVec3) -> DVec3 {
         let both = self.then(back);
         let left = (both.linear - DMat3::IDENTITY).abs();
@@ -104,14 +107,14 @@ impl Transform {
         left * reach + both.translation.abs() + rounded * super::gamma(4) + shifted * super::gamma(5)
     }
 
-    /// The product of the linear part, turned over, with a vector: how normals go the other way.
+    /// Multiplies a vector by the transposed linear part, which maps normals of the image back to the original.
     pub fn transposed(&self, v: DVec3) -> DVec3 {
         self.linear.transpose() * v
     }
 
-    /// The unit normal of a transformed surface whose unit normal was `normal`; the front stays the front.
+    /// Returns the unit normal of a transformed surface whose unit normal was `normal`. The front stays the front.
     ///
-    /// Computed from the cofactors, which neither overflow nor vanish before the map itself does.
+    /// It is computed from the cofactors, which neither overflow nor vanish before the map itself does.
     pub fn normal(&self, normal: DVec3) -> DVec3 {
         let scaled = self.linear / self.size();
         let cofactors = cofactors(scaled);
@@ -120,29 +123,30 @@ impl Transform {
         turned * 1f64.copysign(cofactors.z_axis.dot(scaled.z_axis))
     }
 
-    /// What takes differences of points back to what they were.
+    /// Returns the inverse of the linear part, which maps differences of points back.
     pub fn inverse_linear(&self) -> DMat3 {
         let size = power_of_two(self.size());
         (self.linear / size).inverse() / size
     }
 
-    /// Whether the map turns left hands into right hands.
+    /// Returns whether the map turns left hands into right hands.
     pub fn mirrors(&self) -> bool {
         (self.linear / power_of_two(self.size())).determinant() < 0.0
     }
 
-    /// The corners of a triangle in the order that keeps its front in front: a mirror image runs the other way around.
+    /// Returns the corners of a triangle in the order that keeps its front in front, because a mirror image has the
+    /// opposite winding.
     pub fn wound<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
         if self.mirrors() { [a, c, b] } else { [a, b, c] }
     }
 
-    /// Whether every plane stays a plane: the map is finite and flattens nothing.
+    /// Returns whether every plane stays a plane: the map is finite and flattens nothing.
     pub fn is_invertible(&self) -> bool {
         let scaled = self.linear * (1.0 / self.size());
         self.linear.is_finite() && self.translation.is_finite() && scaled.determinant().abs() > f64::MIN_POSITIVE
     }
 
-    /// The factor by which all lengths grow, where it is the same in all directions to a few roundings.
+    /// Returns the factor by which all lengths grow, if it is the same in all directions to a few roundings.
     pub fn uniform_scale(&self) -> Option<f64> {
         let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
         let tolerance = super::gamma(64);
@@ -152,20 +156,21 @@ impl Transform {
         (equal && square).then_some(lengths[0])
     }
 
-    /// The largest entry of its linear part, without its sign; never 0.
+    /// Returns the largest absolute value of the linear part's entries, never 0.
     pub fn size(&self) -> f64 {
         let [a, b, c] = [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis];
         a.abs().max(b.abs()).max(c.abs()).max_element().max(f64::MIN_POSITIVE)
     }
 }
 
-/// The inverse turned over, times the determinant.
+/// Returns the transposed inverse times the determinant.
 fn cofactors(linear: DMat3) -> DMat3 {
     let [a, b, c] = [linear.x_axis, linear.y_axis, linear.z_axis];
     DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b))
 }
 
-/// The largest power of two that is not above a number: what is divided by it keeps its digits, and has squares.
+/// Returns the largest power of two that is not above a number. Numbers divided by it keep their digits, and their
+/// squares stay in range.
 fn power_of_two(number: f64) -> f64 {
     f64::from_bits(number.max(f64::MIN_POSITIVE).to_bits() & f64::INFINITY.to_bits())
 }

@@ -1,10 +1,10 @@
-//! From the unit square to a shape, each with its density.
+//! Maps from the unit square to shapes, each with its density.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 use super::{DVec2, DVec3, Frame, unit};
 
-/// A point of the unit disk, uniform by area (density 1 / pi), by the concentric map that keeps strata compact.
+/// Samples the unit disk uniformly by area (density 1 / pi), by the concentric map, which keeps strata compact.
 ///
 /// Shirley & Chiu 1997, *A Low Distortion Map Between Disk and Square*.
 pub fn disk(u: [f64; 2]) -> DVec2 {
@@ -18,18 +18,18 @@ pub fn disk(u: [f64; 2]) -> DVec2 {
     DVec2::new(radius * cos, radius * sin)
 }
 
-/// A direction about local +z with density cos(theta) / pi per steradian.
+/// Samples a direction about local +z with density cos(theta) / pi per steradian.
 pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let p = disk(u);
     DVec3::new(p.x, p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
 }
 
-/// A direction above a surface of the unit vector `normal`, with density cos(theta) / pi per steradian.
+/// Samples a direction above a surface with the unit normal `normal`, with density cos(theta) / pi per steradian.
 pub fn cosine_about(normal: DVec3, u: [f64; 2]) -> DVec3 {
     unit(Frame::about(normal).to_world(cosine_hemisphere(u)))
 }
 
-/// A direction of the full sphere, uniform (density 1 / (4 pi) per steradian).
+/// Samples a direction of the full sphere uniformly (density 1 / (4 pi) per steradian).
 pub fn ball_surface(u: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * u[0];
     let radius = (1.0 - z * z).max(0.0).sqrt();
@@ -37,14 +37,14 @@ pub fn ball_surface(u: [f64; 2]) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, z)
 }
 
-/// 1 - cos of a cone's half angle from the sine squared, without cancellation for narrow cones.
+/// Returns 1 - cos of a cone's half angle from the square of its sine, without cancellation for narrow cones.
 pub fn one_minus_cos_of_cone(sin_squared: f64) -> f64 {
     sin_squared / (1.0 + (1.0 - sin_squared).max(0.0).sqrt())
 }
 
-/// A direction within a cone about local +z, uniform by solid angle.
+/// Samples a direction within a cone about local +z, uniformly in solid angle.
 ///
-/// The sine comes from x (2 - x) with x = 1 - cos, so that cones as narrow as a star keep all their digits.
+/// The sine is computed from x (2 - x) with x = 1 - cos, so that cones as narrow as that of a star keep full precision.
 pub fn cone(one_minus_cos: f64, u: [f64; 2]) -> DVec3 {
     let x = u[0] * one_minus_cos;
     let radius = (x * (2.0 - x)).max(0.0).sqrt();
@@ -52,19 +52,20 @@ pub fn cone(one_minus_cos: f64, u: [f64; 2]) -> DVec3 {
     DVec3::new(radius * cos, radius * sin, 1.0 - x)
 }
 
-/// The point (x, y), |x|^2 + |y|^2 < 1, of the unit disk that lies at a place of the square around it, [0, 1]^2; none
-/// beside the disk. An area of the square is a quarter of that of the disk.
+/// Maps a point of the square [0, 1]^2 to the inscribed unit disk, as (x, y) with |x|^2 + |y|^2 < 1. Returns `None`
+/// outside the disk. An area of the square is a quarter of the corresponding area of the disk.
 pub fn disk_in_square(place: [f64; 2]) -> Option<[f64; 2]> {
     let [x, y] = place.map(|x| 2.0 * x - 1.0);
     (x * x + y * y < 1.0).then_some([x, y])
 }
 
-/// The place that `disk_in_square` takes to a point; none of a point beside the disk.
+/// Returns the point of the square that `disk_in_square` maps to a point of the disk, or `None` for a point outside the
+/// disk.
 pub fn square_around_disk([x, y]: [f64; 2]) -> Option<[f64; 2]> {
     (x * x + y * y < 1.0).then_some([0.5 * (x + 1.0), 0.5 * (y + 1.0)])
 }
 
-/// Affine coordinates (u, v) of a point of a triangle, uniform by area.
+/// Samples the affine coordinates (u, v) of a point of a triangle, uniformly by area.
 ///
 /// Heitz 2019, *A Low-Distortion Map Between Triangle and Square*.
 pub fn triangle_coordinates(u: [f64; 2]) -> [f64; 2] {
@@ -79,7 +80,7 @@ pub fn triangle_coordinates(u: [f64; 2]) -> [f64; 2] {
     [a, b]
 }
 
-/// The place of the unit square that `triangle_coordinates` takes to a point of a triangle.
+/// Returns the point of the unit square that `triangle_coordinates` maps to a point of a triangle.
 pub fn triangle_square([a, b]: [f64; 2]) -> [f64; 2] {
     if b > a { [2.0 * a, a + b] } else { [a + b, 2.0 * b] }
 }

@@ -1,16 +1,17 @@
-//! Whether more samples are taken where the noise is.
+//! Decides whether more samples are taken where the noise is.
 
 use crate::film::TELL_VARIANCE;
 use crate::scene::{AutoText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Adaptive, FIRST_LOOK, SampleDensity, Transport, World, adaptive};
 
-/// How much shorter an equal error must take: a pilot knows no better.
+/// Least gain: how many times as long an equal error must take without adaptive sampling. A pilot is no more precise
+/// than this.
 const CLEARLY: f64 = 1.15;
-/// Fewest camera samples of an image: of a smaller one a pilot would take more than a few hundredths of the time.
+/// Fewest camera samples of an image: with fewer, a pilot would take more than a few hundredths of the time.
 const LARGE: f64 = 4e6;
 
-/// Where samples are taken, if as many everywhere would be clearly worse.
+/// Returns where samples are taken, if uniform sampling would be clearly worse.
 ///
 /// No pixel gets too few samples to tell its variance.
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
@@ -25,7 +26,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Option<Adaptive> {
     adaptive(world).filter(|adaptive| adaptive.gain > CLEARLY)
 }
 
-/// What a person is told of it.
+/// Returns the explanation for the user.
 pub(super) fn reason(adaptive: &Adaptive) -> String {
     let powers = &adaptive.density.powers;
     let times = |power: Option<&i8>| SampleDensity::times(*power.unwrap_or(&0));

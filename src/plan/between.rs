@@ -1,4 +1,4 @@
-//! How light that surfaces send each other is found.
+//! Decides how light between surfaces is found.
 
 use std::cell::OnceCell;
 
@@ -10,24 +10,24 @@ use crate::trace::{
     with_light_vertices,
 };
 
-/// Fewest camera samples of an image with light vertices: of a smaller one there would be so few light paths that their
-/// noise, which all pixels share, shows in means over the image.
+/// Fewest camera samples of an image with light vertices. With fewer, there would be so few light paths that their
+/// noise, which all pixels share, would show in means over the image.
 const LARGE: f64 = 1e6;
 
-/// A world in which light between surfaces is found in one way.
+/// A world with one way to find light between surfaces.
 pub(super) struct IndirectMethod<'a> {
     pub(super) world: World,
-    /// What a person is told of it.
+    /// The explanations for the user.
     pub(super) reasons: Vec<String>,
-    /// The photons of each light that show caustics beside it.
+    /// The photons of each light that show caustics, in addition to that light.
     photons: &'a [PhotonWorth],
     noise: OnceCell<PilotNoise>,
-    /// How many times as long an equal error takes by bounces alone, as surfaces scatter them.
+    /// How many times as long bounces alone, as surfaces scatter them, take to the same error.
     gain: f64,
 }
 
-/// The world in which light between surfaces is found by light vertices, by bounces that are aimed at bright places, or
-/// by both, whichever pays most, if any does. What lights its room is looked for, unless it is given.
+/// Chooses how light between surfaces is found: by light vertices, by bounces that are aimed at bright places, or by
+/// both, whichever pays most, if any does. Finds what lights the room, unless that is given.
 pub(super) fn between(world: World, light: Option<RoomLight>, photons: &[PhotonWorth]) -> IndirectMethod<'_> {
     let plain = IndirectMethod { world, reasons: Vec::new(), photons, noise: OnceCell::new(), gain: 1.0 };
     let light = light.unwrap_or_else(|| room_light(&plain.world));
@@ -48,7 +48,7 @@ pub(super) fn between(world: World, light: Option<RoomLight>, photons: &[PhotonW
 }
 
 impl IndirectMethod<'_> {
-    /// How many of the photons for each camera sample make the time to an error least.
+    /// Returns the number of photons per camera sample that takes the least time to an error.
     pub(super) fn photons_of_a_sample(&self) -> f64 {
         self.noise().photons_of_a_sample(self.photons)
     }
@@ -57,7 +57,7 @@ impl IndirectMethod<'_> {
         self.noise.get_or_init(|| pilot_noise(&self.world))
     }
 
-    /// Another world instead, if it is clearly better.
+    /// Returns a method with another world, if that is clearly better.
     fn improved(&self, world: World, reason: impl FnOnce(&World, &str) -> String) -> Option<Self> {
         let noise = pilot_noise(&world);
         let gain = noise.gain_over(self.noise(), self.photons)?;
@@ -72,7 +72,7 @@ impl IndirectMethod<'_> {
         })
     }
 
-    /// With light vertices, those of skies by paths through some openings. Their paths know no dyes.
+    /// Adds light vertices, with paths of skies through some openings. Light paths do not support dyes.
     fn with_light_vertices(&self, openings: &SkyOpenings) -> Option<Self> {
         if self.world.samples_of_the_format() < LARGE
             || self.world.method().diffuse_bounces == 0
@@ -87,7 +87,7 @@ impl IndirectMethod<'_> {
         })
     }
 
-    /// With bounces that are aimed at bright places or at openings, whichever pays most, if any do.
+    /// Aims bounces at bright places or at openings, whichever pays most, if any do.
     fn aimed(&self, RoomLight { places, openings, .. }: RoomLight) -> Option<Self> {
         let at = |places: BrightPlaces| {
             let what = described(&places);
@@ -98,7 +98,7 @@ impl IndirectMethod<'_> {
         if pays(&openings) > pays(&places) { openings } else { places }
     }
 
-    /// With bounces that are aimed at openings so small that a pilot by chance tells nothing to hold against it.
+    /// Aims bounces at openings so small that a pilot without aim would find too little light to compare with.
     fn aimed_at_rare(self, openings: BrightPlaces) -> Self {
         let reason = format!("{}; without, hardly any would find light", described(&openings));
         let world = self.world.with_bright(Some(openings));
@@ -106,7 +106,7 @@ impl IndirectMethod<'_> {
     }
 }
 
-/// What bounces are aimed at.
+/// Describes what bounces are aimed at.
 fn described(places: &BrightPlaces) -> String {
     let count = places.places.len();
     let what = match (places.are_openings, count) {
@@ -118,7 +118,7 @@ fn described(places: &BrightPlaces) -> String {
     format!("bounces in the room are aimed at {what}")
 }
 
-/// Which light light vertices carry.
+/// Describes which light is found at light vertices.
 fn carried(world: &World) -> String {
     let lights = &world.scene().lights;
     if !lights.iter().any(Light::is_infinite) {

@@ -1,23 +1,23 @@
-//! How much color each model of a spectrum would miss in a scene.
+//! Predicts how much color each spectral model would miss in a scene.
 
 use super::dyes;
 use super::seen::Seen;
 use super::survey::{Survey, Tint, lanes, missed, strongest};
 use crate::spectrum::{Basis, Draw, Emission, MAX_LANES, Quantity, Upsampler, WavelengthBands};
 
-/// One model with the largest error of a color that it is predicted to make.
+/// A spectral model, with the largest color error that it is predicted to make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// What its lanes stand for.
     pub basis: Basis,
     /// Relative to the strongest channel, before the safety factor.
     pub error: f64,
-    /// Factor that covers nineteen of twenty scenes: measured on random rooms, see `tests/planning.rs`.
+    /// Factor that covers nineteen of twenty scenes, measured on random rooms: see `tests/planning.rs`.
     pub safety: f64,
 }
 
 impl Candidate {
-    /// What the color error is promised to stay below.
+    /// Returns the bound below which the color error is promised to stay.
     pub fn bound(&self) -> f64 {
         self.error * self.safety
     }
@@ -26,14 +26,14 @@ impl Candidate {
 /// Most diffuse and smooth colors that are combined; of more, those farthest from gray.
 const MOST: [usize; 2] = [20, 6];
 
-/// The largest relative error of a color that a basis makes in a scene: over its lights and all pairs of surfaces, and
-/// over what light of a probe hits, however many smooth surfaces those are.
+/// Returns the largest relative color error of a basis in a scene: over its lights and all pairs of surfaces, and over
+/// what the light of a probe hits, however many smooth surfaces that is.
 pub(super) fn error(survey: &Survey, seen: &Seen, basis: &Basis) -> f64 {
     let scattered = error_of_paths(survey, basis, &survey.scattering(MOST[0]), &survey.smooth(MOST[1]));
     scattered.max(seen.error(survey, basis)).max(dyes::error(survey, basis))
 }
 
-/// The same over paths of chosen tints.
+/// Returns the largest relative color error over paths of chosen tints.
 fn error_of_paths(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: &[&Tint]) -> f64 {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let read = |tints: &[&Tint]| tints.iter().map(|tint| tint.on(basis)).collect::<Vec<_>>();
@@ -55,7 +55,7 @@ fn error_of_paths(survey: &Survey, basis: &Basis, scattering: &[&Tint], smooth: 
     worst
 }
 
-/// The film colors of all paths, by sums over 1 nm.
+/// Returns the film colors of all paths, from sums over 1 nm.
 fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], upsampler: &Upsampler) -> Vec<[f64; 3]> {
     let colors = light.film_colors();
     let read =
@@ -64,10 +64,11 @@ fn exact_colors(light: &Emission, scattering: &[&Tint], smooth: &[&Tint], upsamp
     paths(&read(scattering), &read(smooth), &films).iter().map(|path| colors.color(path)).collect()
 }
 
-/// Every surface i lit straight and by way of every surface j, q = r_i (1 + r_j / (1 - mean r)), alone and seen by way
-/// of every smooth surface; and the lights, seen straight and by way of one or two smooth surfaces, of which at most
-/// one is one of the `films`, the first ones: two never share their fringes as a film does with itself. What enters a
-/// body through its film leaves through it, so that one that light crosses is crossed twice, also to and fro in a slab.
+/// Returns what is left of light on all paths: every surface i, lit directly and via every surface j, q = r_i (1 + r_j
+/// / (1 - mean r)), alone and seen via every smooth surface; and the lights, seen directly and via one or two smooth
+/// surfaces. At most one of these two is one of the `films`, which come first: two films never share their fringes as a
+/// film does with itself. Light that enters a body through its film leaves through it, so a film that light crosses is
+/// crossed twice, also by light that goes back and forth in a slab.
 fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Vec<f64>> {
     let length = scattering.iter().chain(smooth).next().map_or(0, Vec::len);
     let count = scattering.len().max(1) as f64;
@@ -94,22 +95,22 @@ fn paths(scattering: &[Vec<f64>], smooth: &[Vec<f64>], films: &[bool]) -> Vec<Ve
     paths
 }
 
-/// Of the first tints, in which light interferes, whether light crosses them.
+/// For each of the first tints, those in which light interferes, tells whether light crosses it.
 fn films_of(smooth: &[&Tint]) -> Vec<bool> {
     let is_crossed = |tint: &&Tint| matches!(tint, Tint::Film(film) if film.crosses);
     smooth.iter().take_while(|tint| tint.has_fringes()).map(is_crossed).collect()
 }
 
-/// Mean reflectance beyond which a closed room is not followed.
+/// Largest mean reflectance of a closed room; a larger one is clamped.
 const BRIGHTEST: f64 = 0.95;
 
-/// The models that could render a scene, from few lanes to many, each with its predicted error.
+/// Returns the models that could render a scene, from few lanes to many, each with its predicted error.
 pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Candidate> {
     let space = survey.color_space;
     let candidate = |basis: Basis, safety: f64| Candidate { error: error(survey, seen, &basis), basis, safety };
     let mut candidates = Vec::new();
     if survey.is_plain() {
-        // Colors of three numbers are what they are; only what glass reflects is measured.
+        // Colors of three numbers have no error; only what glass reflects is measured.
         let basis = Basis::rgb(space);
         let error = error_of_paths(survey, &basis, &[], &survey.surfaces(MOST[1]));
         candidates.push(Candidate { basis, error, safety: PREFILTERED_SAFETY });
@@ -123,18 +124,18 @@ pub(super) fn candidates(survey: &Survey, seen: &Seen, heroes: usize) -> Vec<Can
     candidates
 }
 
-/// The emission lines that have lanes of their own beside heroes.
+/// Returns the emission lines that have lanes of their own beside heroes.
 pub(super) fn own_lines(survey: &Survey, heroes: usize) -> Vec<f64> {
     survey.lines(MAX_LANES - heroes - FEWEST)
 }
 
-/// Fixed lanes that leave room for heroes: a scene's emission lines, and as many wavelengths as fit beside them.
+/// Returns fixed lanes that leave room for heroes: the scene's emission lines, and as many wavelengths as fit.
 pub(super) fn bands_beside(survey: &Survey, bands: usize, heroes: usize) -> Basis {
     bands_showing(survey, bands, heroes, None)
 }
 
-/// Fixed lanes beside heroes and emission lines, spread over all bands of a spectral image if there are any: beyond the
-/// first and last lane, surfaces are taken to be as they are there.
+/// Returns fixed lanes beside heroes and emission lines, spread over all bands of a spectral image if there are any:
+/// beyond the first and last lane, spectra of surfaces are taken as constant.
 pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown: Option<&WavelengthBands>) -> Basis {
     let lines = own_lines(survey, heroes);
     let bands = bands.min(MAX_LANES - heroes - lines.len());
@@ -145,7 +146,7 @@ pub(super) fn bands_showing(survey: &Survey, bands: usize, heroes: usize, shown:
     };
     let basis = match shown.map(WavelengthBands::range_nm) {
         None => Basis::bands_over(space, bands, [from, to], &lines),
-        // Lanes stand at both ends: where they stood half a step inside, an edge at 380 nm was off by 0.15.
+        // Lanes lie at both ends: with lanes half a step inside, an edge at 380 nm was off by 0.15.
         Some([first, last]) => {
             let (from, to) = (from.min(first), to.max(last));
             let step = (to - from) / (bands - 1) as f64;

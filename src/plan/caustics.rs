@@ -1,4 +1,4 @@
-//! Whether caustics need a light pass of their own.
+//! Decides whether caustics need a light pass of their own.
 
 use std::f64::consts::TAU;
 
@@ -13,25 +13,25 @@ use crate::trace::{
     Effort, LightPass, Method, PhotonWorth, PilotNoise, Smoothness, Transport, World, piloted, seen_photons,
 };
 
-/// Solid angle in steradians from which rays hit a lamp so often that photons cost the same (`benches/rooms.rs`).
+/// Solid angle in steradians of a lamp that rays hit so often that photons cost the same (`benches/rooms.rs`).
 const SMALL: f64 = 0.5;
-/// Fewest photons of a light pass: from fewer it does not learn where to send them.
+/// Fewest photons of a light pass: with fewer, it does not learn where to send them.
 const FEWEST: f64 = 65_536.0;
-/// Photons that are fewer than one in so many camera samples, or more than so many for each, were learned of too badly.
+/// Fewest and most photons per camera sample: a number outside of this range is badly measured.
 const FEWEST_OF_A_SAMPLE: f64 = 1.0 / 16.0;
 const MOST_OF_A_SAMPLE: f64 = 4.0;
-/// A gain within this of 1 says nothing of what is seen through glass: photons bring nothing beside the rest.
+/// A gain within this of 1 tells nothing about what is seen through glass: photons contribute nothing besides the rest.
 const NOTHING: f64 = 0.01;
-/// Pairs of a light and a place whose solid angles are looked at.
+/// Pairs of a light and a place whose solid angles are computed.
 const PAIRS: usize = 1 << 19;
 /// Camera rays along each side of the image that look for surfaces on which caustics may lie.
 const SIDE: u32 = 24;
 
-/// Whether caustics are shown to the camera by photons.
+/// Whether photons show caustics to the camera.
 pub(super) struct CausticChoice {
     pub(super) caustics: Option<Box<Caustics>>,
     pub(super) why: Vec<String>,
-    /// Whether photons are not gathered either, as they do not pay where the camera would see them.
+    /// Whether photons are not gathered either, since they do not pay where the camera would see them.
     pub(super) settled: bool,
 }
 
@@ -47,19 +47,19 @@ pub(super) struct Caustics {
     pub(super) photons: Vec<PhotonWorth>,
     /// The openings through which a sky sends them.
     openings: Vec<Opening>,
-    /// How smooth what they are sent to is.
+    /// How smooth the objects are that they are sent to.
     smooth: Vec<Smoothness>,
-    /// Which those are, and what they are sent to.
+    /// Descriptions of the lights that send them, and of what they are sent to.
     from: String,
     to: String,
-    /// The share of them that is seen.
+    /// The share of the photons that is seen.
     seen: f64,
     /// How many times as long chance takes to the same error, if it finds them.
     gain: Option<Effort>,
 }
 
 impl Caustics {
-    /// The pass of so many photons for each camera sample.
+    /// Returns the light pass with `of_a_sample` photons for each camera sample.
     pub(super) fn pass(&self, world: &World, of_a_sample: f64) -> LightPass {
         let mut lights: Vec<LightId> = self.photons.iter().flat_map(|photons| photons.lights.clone()).collect();
         lights.sort_unstable();
@@ -74,7 +74,7 @@ impl Caustics {
         }
     }
 
-    /// What a person is told of them.
+    /// Returns the explanation for the user.
     pub(super) fn reason(&self, world: &World) -> Option<String> {
         let Self { from, to, seen, gain, .. } = self;
         let (method, photons) = (world.method(), world.method().light_pass.as_ref()?.photons);
@@ -97,19 +97,19 @@ pub(super) struct SeenPhotons<'a> {
     offered: OfferedPhotons,
     /// The lights whose photons are seen.
     seen: Vec<SizedLight>,
-    /// Of each light of the scene the share of its photons that is seen.
+    /// For each light of the scene, the share of its photons that is seen.
     share: Vec<f64>,
     /// Lights that rays hit by chance.
     large: Vec<SizedLight>,
     openings: Vec<Opening>,
-    /// What they are sent to.
+    /// Description of what they are sent to.
     to: String,
-    /// Which lights' photons are not seen, as a person is told.
+    /// Explanation of which lights' photons are not seen.
     unseen: Option<String>,
 }
 
 impl<'a> SeenPhotons<'a> {
-    /// The photons of a scene that the camera sees, or why there are none.
+    /// Returns the photons of a scene that the camera sees, or why there are none.
     pub(super) fn new(scene: &'a Scene<Curve>, unguided: &World) -> Result<Self, CausticChoice> {
         let Sources { small, large, openings } = sources(scene, unguided)
             .map_err(|why| CausticChoice::not(why.into_iter().collect(), !lit_places(scene).is_empty()))?;
@@ -137,7 +137,7 @@ impl<'a> SeenPhotons<'a> {
         Ok(Self { scene, guided, offered, seen, share, large, openings, to, unseen })
     }
 
-    /// The photons that are worth their time beside camera samples of some noise, if any, and why.
+    /// Chooses the photons that are worth their time, given the noise of camera samples, and tells why.
     pub(super) fn choose(&self, noise: &PilotNoise) -> CausticChoice {
         let Self { scene, to, .. } = self;
         let PhotonGain { mut photons, gain, of_smooth } = self.offered.weigh(noise);
@@ -173,7 +173,7 @@ impl<'a> SeenPhotons<'a> {
     }
 }
 
-/// What photons are sent to, as a person is told.
+/// Describes what photons are sent to.
 fn aim(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
     match targets(scene, smooth).as_slice() {
         [one] => scene.objects[*one].name.clone(),
@@ -181,7 +181,7 @@ fn aim(scene: &Scene<Curve>, smooth: &[Smoothness]) -> String {
     }
 }
 
-/// Why the photons of a world are sent nowhere, if that is so.
+/// Explains why the photons of a world are sent nowhere, if that is so.
 fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let has_end = |&object: &usize| scene.objects[object].shape.is_bounded();
     let targets = targets(scene, &Smoothness::ALL);
@@ -192,7 +192,7 @@ fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
     })
 }
 
-/// What the photons of a world leave to chance of surfaces that have no end.
+/// Describes the caustics of unbounded surfaces that the photons of a world leave to chance.
 pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let pass = world.method().light_pass.as_ref()?;
     let endless = targets(scene, &pass.to).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
@@ -201,7 +201,7 @@ pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String>
     Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
 }
 
-/// Why photons that are seen are not sent: how many times shorter the time to an error would be, or nothing is lit.
+/// Explains why photons that are seen are not sent: how long an equal error would take with them, or nothing is lit.
 fn not_worth(gain: Option<Effort>) -> String {
     let Some(gain) = gain else { return "what they land on is black".into() };
     let is_small = gain.judged() > 1.0 && gain.of_whole.is_none_or(|of_whole| of_whole > 1.0);
@@ -209,22 +209,22 @@ fn not_worth(gain: Option<Effort>) -> String {
     format!("with them, {}{small}", as_long(gain.inverse()))
 }
 
-/// A light and the largest solid angle under which it is seen.
+/// A light and the solid angle under which at least half of some places see it.
 pub(super) type SizedLight = (LightId, f64);
 
-/// Lights whose caustics chance would hardly find, and others.
+/// Lights whose caustics chance would hardly find, and the other lights.
 pub(super) struct Sources {
     pub(super) small: Vec<SizedLight>,
     large: Vec<SizedLight>,
-    /// The openings through which those that are skies shine.
+    /// The openings through which skies among them shine.
     pub(super) openings: Vec<Opening>,
 }
 
 impl Sources {
-    /// The lights of a world that are sampled; small ones can send photons and are seen under less than a solid angle.
+    /// Returns the sampled lights of a world; small ones can send photons and are seen under less than `below`.
     pub(super) fn new(world: &World, places: &[DVec3], below: f64) -> Self {
         let lights = &world.scene().lights;
-        // Some of the places, so that all of them can be held against all lights.
+        // Use only some of the places, so that all pairs with lights can be computed.
         let step = places.len() * lights.len() / PAIRS + 1;
         let places: Vec<DVec3> = places.iter().copied().step_by(step).collect();
         let openings = world.openings();
@@ -244,7 +244,7 @@ impl Sources {
     }
 }
 
-/// The lights that photons may be sent from, or why none are sent, if that is worth telling.
+/// Returns the lights from which photons may be sent, or why none are sent, if that is worth telling.
 fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String>> {
     if let Some(why) = no_caustics(scene) {
         return Err(Some(format!("no caustics: {why}")));
@@ -274,7 +274,7 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     Ok(sources)
 }
 
-/// Why a scene has no caustics, if it has none.
+/// Explains why a scene has no caustics, if it has none.
 fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     if targets(scene, &Smoothness::ALL).is_empty() {
         Some("no surface is smooth glass, a mirror or polished metal")
@@ -287,7 +287,7 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     }
 }
 
-/// Objects of some kinds of smoothness.
+/// Returns the objects of some kinds of smoothness.
 pub(super) fn targets(scene: &Scene<Curve>, smooth: &[Smoothness]) -> Vec<usize> {
     (0..scene.objects.len()).filter(|&object| Smoothness::sent_to(scene, object, smooth).is_some()).collect()
 }
@@ -297,18 +297,18 @@ fn may_receive(scene: &Scene<Curve>, material: &Material<Curve>) -> bool {
     material.lobes().is_wide() && !(material.lobes().is_diffuse() && scene.render.diffuse_bounces == Some(0))
 }
 
-/// Under which solid angle all openings are seen from half of some places or more.
+/// Returns the solid angle under which all openings together are seen from at least half of some places.
 fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     let from = |place: &DVec3| openings.iter().map(|opening| opening.solid_angle_from(*place)).sum();
     median(places.iter().map(from).collect()).filter(|_| !openings.is_empty())
 }
 
-/// What cannot be hit by chance at all.
+/// Describes what cannot be hit by chance at all.
 fn missing(scene: &Scene<Curve>) -> &'static str {
     if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
 }
 
-/// What is left out of the light of points that smooth surfaces throw on one called `lit`, diffuse or rough.
+/// Describes which light of points is left out that smooth surfaces cast on surfaces called `lit`, diffuse or rough.
 pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -> Vec<String> {
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
     let line = |ways: &str, object: usize, but: &str| {
@@ -334,7 +334,7 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
     of_aimed.into_iter().chain(of_left).collect()
 }
 
-/// Lights with the solid angle under which what is bright of them is seen.
+/// Names lights, with the solid angle under which their bright parts are seen.
 fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
     let name = |&(id, size): &SizedLight| {
         let name = match &scene.lights[id] {
@@ -354,7 +354,7 @@ fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
     }
 }
 
-/// Points that the camera sees on surfaces that may show caustics; the same whatever part of the image is made.
+/// Returns points that the camera sees on surfaces that may show caustics; the same for any part of the image.
 fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
     let film = scene.film;
     let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
@@ -372,8 +372,8 @@ fn lit_places(scene: &Scene<Curve>) -> Vec<DVec3> {
     rays.filter_map(place).collect()
 }
 
-/// Under which solid angle, in steradians, a light is seen from half of some places or more, by the part of it that can
-/// be seen and is bright or, of a sky that fills it all, by openings; none of one that is seen without them.
+/// Returns the solid angle, in steradians, under which at least half of some places see a light: its visible bright
+/// part or, for a sky without one, the openings to it. Returns `None` for a sky that is seen without openings.
 fn solid_angle<S>(light: &Light<S>, openings: &[Opening], places: &[DVec3]) -> Option<f64> {
     match light {
         Light::Point(_) | Light::Spot(_) => Some(0.0),

@@ -1,4 +1,4 @@
-//! How much color each model of a spectrum would miss of dyes.
+//! Predicts how much color each spectral model would miss of dyes.
 
 use std::borrow::Cow;
 
@@ -7,21 +7,21 @@ use crate::spectrum::{
     Basis, Curve, Draw, Dye, Emission, Excitable, FilmColors, Lanes, MAX_LANES, Quantity, Upsampler, visible,
 };
 
-/// Most tints of each way that are combined, those farthest from gray.
+/// Most tints of each path that are combined: those farthest from gray.
 const MOST: usize = 8;
 
-/// What tints light on a way: nothing, or a surface.
+/// What tints light on a path: nothing, or a surface.
 struct PathTints<'a> {
     tints: Vec<Option<&'a Tint<'a>>>,
 }
 
 impl PathTints<'_> {
-    /// What is left of light at wavelengths in nm.
+    /// Returns what is left of light at wavelengths in nm.
     fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<Vec<f64>> {
         self.read(wavelengths_nm.len(), |tint| tint.at(wavelengths_nm, upsampler))
     }
 
-    /// What is left of light in the lanes of a basis.
+    /// Returns what is left of light in the lanes of a basis.
     fn on(&self, basis: &Basis) -> Vec<Lanes<MAX_LANES>> {
         self.read(basis.fixed_lanes(), |tint| tint.on(basis)).iter().map(|left| lanes(left)).collect()
     }
@@ -31,7 +31,7 @@ impl PathTints<'_> {
     }
 }
 
-/// The largest relative error that a basis makes of the color of a dye, seen and lit by way of every other surface.
+/// Returns the largest relative error of a basis in the color of a dye that is seen and lit via every other surface.
 pub(super) fn error(survey: &Survey, basis: &Basis) -> f64 {
     if survey.dyes.is_empty() {
         return 0.0;
@@ -58,7 +58,7 @@ struct LitDye<'a> {
     dye: &'a Excitable<'a>,
     glow: &'a FilmColors,
     reflectance: &'a Curve,
-    /// The light as it is written, and as it shines.
+    /// The light's curve as it is written, and its emission.
     curve: &'a Curve,
     light: &'a Emission,
 }
@@ -106,7 +106,7 @@ impl LitDye<'_> {
     }
 }
 
-/// What is said of a material's dyes: where they absorb light, and whether lanes reach there.
+/// Describes a material's dyes: where they absorb light, and whether lanes reach there.
 pub(super) fn spoken(dyes: &[Dye], basis: &Basis) -> Option<String> {
     let absorbed = |nm: f64| dyes.iter().map(|dye| dye.absorbed()(nm)).fold(0.0, f64::max);
     let most = visible::wavelengths().map(absorbed).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Whether photons are worth their time, and how many.
+//! Decides whether photons are worth their time, and how many.
 
 use crate::light::{Light, LightId, Point, Spot};
 use crate::math::DVec3;
@@ -6,28 +6,28 @@ use crate::scene::Scene;
 use crate::spectrum::{Curve, Distinct, Emission, apply};
 use crate::trace::{Effort, PhotonWorth, PilotNoise, Smoothness, World, photons_worth};
 
-/// Of a lamp's radiance, what the camera sees of it by way of a smooth surface and one that scatters: about half.
+/// Share of a lamp's radiance that the camera sees via a smooth surface and one that scatters: about half.
 const LEFT: f64 = 0.5;
 
-/// Photons of some lights that may be sent, those first that save most for what they cost.
+/// Photons of some lights that may be sent; first those that save most for what they cost.
 pub(super) struct OfferedPhotons {
     photons: Vec<PhotonWorth>,
-    /// The second moment of what chance finds of the light of each, over its mean.
+    /// For the light of each, the second moment of what chance finds, divided by its mean.
     spikes: Vec<f64>,
 }
 
 /// What photons of some lights are worth beside camera samples.
 pub(super) struct PhotonGain {
-    /// The photons of those lights whose photons lower the time to an error.
+    /// The photons of those lights whose photons shorten the time to an error.
     pub(super) photons: Vec<PhotonWorth>,
-    /// How many times as long chance takes to the same error; none where it misses light for good, or there is none.
+    /// How many times as long chance takes to the same error; `None` where it misses light for good or there is none.
     pub(super) gain: Option<Effort>,
-    /// Whether some of the photons were sent to what is smooth, all of it or a part.
+    /// Whether some of the photons were sent to objects that are smooth, entirely or in part.
     pub(super) of_smooth: bool,
 }
 
 impl OfferedPhotons {
-    /// Photons that a world sends, from lights of known solid angles in steradians.
+    /// Weighs the photons that a world sends, from lights of known solid angles in steradians.
     pub(super) fn new(scene: &Scene<Curve>, world: &World, size: impl Fn(LightId) -> f64) -> Self {
         let mut colors = Distinct::default();
         let mut spike = |photons: &PhotonWorth| {
@@ -43,11 +43,11 @@ impl OfferedPhotons {
         Self { photons, spikes }
     }
 
-    /// Weighs photons against chance, beside camera samples of some noise.
+    /// Weighs photons against chance, given the noise of camera samples.
     ///
-    /// A light that is left to chance adds to that noise: a sample that hits the lamp sees f of its radiance, and does
-    /// so as often as makes the mean right, so that its second moment is f times the mean. How many photons there are
-    /// is found when all else is decided.
+    /// A light that is left to chance adds to that noise. A sample that hits the lamp sees f of its radiance, just
+    /// often enough to make the mean right, so that its second moment is f times the mean. The number of photons is
+    /// chosen when all else is decided.
     pub(super) fn weigh(&self, noise: &PilotNoise) -> PhotonGain {
         let Self { photons, spikes } = self;
         let of_smooth = photons.iter().any(|photons| matches!(photons.to, Smoothness::Whole | Smoothness::Partial));
@@ -61,7 +61,7 @@ impl OfferedPhotons {
     }
 }
 
-/// The nearest power of the root of 2: the least of time x variance is flat, and rounding must not change an image.
+/// Rounds to a power of the root of 2: the minimum of time x variance is flat, and roundoff must not change an image.
 pub(super) fn rounded(photons: f64) -> f64 {
     libm::exp2(0.5 * (2.0 * libm::log2(photons)).round())
 }
@@ -86,8 +86,9 @@ impl<'a> TargetObjects<'a> {
         (0..self.scene.objects.len()).filter(|&object| Smoothness::of(self.scene, object) == Some(self.to))
     }
 
-    /// X + Y + Z of the radiance of a light of a solid angle as they show it: of one that is smaller than what they
-    /// spread it into, about its irradiance over that. None of one that has no extent where they spread nothing.
+    /// Returns X + Y + Z of the radiance of a light of some solid angle as the objects show it. If the light is smaller
+    /// than the solid angle into which they spread it, this is about its irradiance over that solid angle. Returns
+    /// `None` for a light without extent where they spread nothing.
     fn shows(&self, light: LightId, size: f64, colors: &mut Distinct<[f64; 3]>) -> Option<f64> {
         let light = &self.scene.lights[light];
         let blurred = if self.spread > 0.0 { size / (size + self.spread) } else { 1.0 };
@@ -108,7 +109,7 @@ impl<'a> TargetObjects<'a> {
         Some(apply(&space.to_xyz(), color).iter().sum::<f64>() * factor)
     }
 
-    /// From a place to the nearest of them.
+    /// Returns the squared distance from a place to the nearest of the objects.
     fn squared_distance(&self, place: DVec3) -> f64 {
         let distance = |object: usize| Some((self.scene.objects[object].shape.ball()?.center - place).length_squared());
         self.objects().filter_map(distance).fold(f64::INFINITY, f64::min)

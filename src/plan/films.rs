@@ -1,4 +1,4 @@
-//! Films and wave plates in which light interferes, as the survey judges lanes by them.
+//! Films and wave plates in which light interferes, with which the survey judges lanes.
 
 use std::borrow::Cow;
 
@@ -8,13 +8,13 @@ use crate::material::{
 use crate::math::Complex;
 use crate::spectrum::{Basis, Curve, CurveKind, Quantity};
 
-/// Light meets a film at right angles, where its fringes are closest, and is reflected or crosses it.
+/// A film that light meets at normal incidence, where its fringes are closest, and that reflects or transmits it.
 pub(super) struct Film<'a> {
     coating: &'a Coating<Curve>,
-    /// What is beyond it; nothing behind a pane.
+    /// What lies beyond it; nothing behind a pane.
     beyond: Beyond<'a>,
     pub(super) crosses: bool,
-    /// Whether layers that vary are taken as thick as they are anywhere, and else as on the mean.
+    /// Whether layers of varying thickness are taken at their thickest, rather than at their mean.
     thickest: bool,
 }
 
@@ -25,7 +25,7 @@ enum Beyond<'a> {
     Metal(&'a Curve, &'a Curve),
 }
 
-/// The films of a material alone, without the parts it is made of.
+/// Returns the films of a material itself, without the parts it is made of.
 pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
     let (coating, beyond, lets_through) = match material {
         Material::Dielectric(glass) => (glass.coating.as_ref(), Beyond::Glass(&glass.index), true),
@@ -48,7 +48,8 @@ pub(super) fn films(material: &Material<Curve>) -> Vec<Film<'_>> {
 }
 
 impl Film<'_> {
-    /// What is left of light of each wavelength in nm and relative width of its band, for all of which curves are read.
+    /// Returns what is left of light at some wavelengths, given in nm with the relative widths of their bands. `read`
+    /// returns the values of a curve at all of them.
     pub(super) fn left(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         let stacks = self.stacks(waves, &read);
         let (n, k) = match self.beyond {
@@ -63,14 +64,14 @@ impl Film<'_> {
         stacks.iter().enumerate().map(share).collect()
     }
 
-    /// Optical thickness of each layer in the middle of the spectrum, in nm.
+    /// Returns the optical thickness of each layer in the middle of the spectrum, in nm.
     pub(super) fn optical_nm(&self) -> Vec<f64> {
         let read = |quantity, curve: &Curve| vec![curve.values(quantity)(MIDDLE_NM)];
         let stacks = self.stacks(&[[MIDDLE_NM, 0.0]], read);
         stacks.iter().flat_map(|stack| stack.layers().iter().map(Layer::optical_nm)).collect()
     }
 
-    /// The layers for light of each wavelength in nm and relative width of its band.
+    /// Returns the layers for each wavelength in nm and relative width of its band.
     fn stacks(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<Stack> {
         let of_layer = |layer: &CoatingLayer<Curve>| {
             let of_index = if layer.is_metal { Quantity::MetalIndex } else { Quantity::Index };
@@ -87,7 +88,7 @@ impl Film<'_> {
 
 const MIDDLE_NM: f64 = 550.0;
 
-/// A thickness that is the same all over: of one that varies the most or the mean.
+/// Returns a uniform thickness: for one that varies, the most or the mean.
 fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
     let number = |number: f64| Cow::Owned(Curve { kind: CurveKind::Number(number), ..thickness.clone() });
     match &thickness.kind {
@@ -105,7 +106,7 @@ fn even(thickness: &Curve, thickest: bool) -> Cow<'_, Curve> {
     }
 }
 
-/// The plate of a material alone that shows fringes between polarizers, if it is one.
+/// Returns the plate of a material itself that shows fringes between polarizers, if it is one.
 pub(super) fn plate(material: &Material<Curve>) -> Option<PathDifference> {
     match material {
         Material::Retarder(retarder) => match retarder.retardance {
@@ -116,13 +117,13 @@ pub(super) fn plate(material: &Material<Curve>) -> Option<PathDifference> {
     }
 }
 
-/// What two crossed polarizers let through of light polarized along the first, with a plate at 45 degrees between them,
-/// of each wavelength in nm and relative width of its band: sin^2 of half its phase.
+/// Returns what two crossed polarizers let through of light polarized along the first, with a plate at 45 degrees
+/// between them, for each wavelength in nm and relative width of its band: sin^2 of half its phase.
 pub(super) fn between_polarizers(plate: PathDifference, waves: &[[f64; 2]]) -> Vec<f64> {
     waves.iter().map(|wave| 0.5 * (1.0 - plate.block(*wave).c)).collect()
 }
 
-/// How lanes read the films and the plates of a material, in words; none of one without.
+/// Describes how lanes read the films and the plates of a material; `None` without any.
 pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String> {
     let waves: Vec<_> = basis.waves().of_fixed_lanes().collect();
     if let Some(plate) = material.with_parts().into_iter().find_map(plate) {
@@ -151,7 +152,7 @@ pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String
     Some(format!("{layers} of an optical thickness of up to {total} nm; {how}"))
 }
 
-/// Where three bands read what has fringes.
+/// Describes where three bands read what has fringes.
 fn of_three_bands(basis: &Basis) -> String {
     let [red, green, blue] = [0, 1, 2].map(|band| basis.wavelengths_nm()[band].round());
     format!("at {red}, {green} and {blue} nm alone, for three bands have no other wavelengths")

@@ -1,13 +1,13 @@
-//! Lights of different spectra.
+//! Finds lights of different spectra.
 
 use std::collections::HashMap;
 
 use crate::spectrum::{ColorSpace, Curve, Distinct, Emission, visible};
 
-/// Places of the spectrum by which lights are told apart at a glance.
+/// Steps of the spectrum by which lights are told apart at a glance.
 const GLANCE: usize = 24;
 
-/// A light's spectrum in coarse steps, of a sum of 1.
+/// Returns a light's spectrum in coarse steps, whose sum is 1.
 fn glance(emission: &Emission) -> [f64; GLANCE] {
     let mut steps = [0.0; GLANCE];
     let count = visible::COUNT as f64;
@@ -18,14 +18,14 @@ fn glance(emission: &Emission) -> [f64; GLANCE] {
     if total > 0.0 { steps.map(|x| x / total) } else { steps }
 }
 
-/// The lights of different spectra, and which one each curve is.
+/// Returns the lights of different spectra, and which of them each curve is.
 pub(super) fn different<'a>(
     curves: impl Iterator<Item = &'a Curve>,
     space: ColorSpace,
 ) -> (Vec<(Curve, Emission)>, Vec<usize>) {
     let mut known: Vec<(Curve, Emission)> = Vec::new();
     let mut alike: HashMap<[i64; GLANCE], Vec<usize>> = HashMap::new();
-    // Thousands of lamps are often written alike: no spectrum need be made to see that.
+    // Thousands of lamps often have the same curve: no spectrum need be computed to see that.
     let mut looked_at = Distinct::default();
     let number = |curve: &'a Curve| {
         looked_at.of(curve, |curve| {
@@ -43,7 +43,7 @@ pub(super) fn different<'a>(
     (known, numbers)
 }
 
-/// So many of the lights, each as far from all before it as any.
+/// Chooses at most `most` of the lights, each as far as possible from all before it.
 pub(super) fn farthest_apart(lights: &[(Curve, Emission)], most: usize) -> Vec<usize> {
     if lights.len() <= most {
         return (0..lights.len()).collect();

@@ -1,4 +1,4 @@
-//! How the light of a scene is found.
+//! Decides how the light of a scene is found.
 
 use super::between::{IndirectMethod, between};
 use super::caustics::{self, CausticChoice, SeenPhotons};
@@ -8,17 +8,17 @@ use crate::scene::Scene;
 use crate::spectrum::Curve;
 use crate::trace::{LightPass, Method, RoomLight, Smoothness, World, pilot_noise, room_light};
 
-/// A world with all that finds its light.
+/// A world with everything that finds its light.
 pub(super) struct LitWorld {
     pub(super) world: World,
     pub(super) because: Vec<String>,
-    /// Where photons learned to go.
+    /// A world in which photons have learned where to go.
     pub(super) guided: Option<World>,
 }
 
 impl LitWorld {
     pub(super) fn new(scene: &Scene<Curve>, unlit: &World) -> Self {
-        // Through openings of a room, skies may send photons.
+        // Skies may send photons through openings of a room.
         let may_send = scene.lights.iter().any(Light::sends_photons_through_openings)
             && !caustics::targets(scene, &Smoothness::ALL).is_empty();
         let light = may_send.then(|| room_light(unlit));
@@ -36,7 +36,7 @@ impl LitWorld {
             return Self { guided: Some(photons.guided), ..lit };
         }
         let Method { light_vertices: true, light_pass: None, .. } = lit.world.method() else { return lit };
-        // Light vertices take away noise beside which photons did not pay.
+        // Light vertices remove noise next to which photons did not pay.
         let beside = lit.world.with_light_pass(photons.guided.method().light_pass.clone());
         let choice = photons.choose(&pilot_noise(&beside));
         if choice.caustics.is_none() {
@@ -49,7 +49,7 @@ impl LitWorld {
         Self { guided: Some(photons.guided), ..beside }
     }
 
-    /// With the caustics that were chosen. `light` is what lights the room, if that is known.
+    /// Adds the caustics that were chosen. `light` is what lights the room, if that is known.
     fn with_caustics(
         scene: &Scene<Curve>,
         unlit: &World,
@@ -63,10 +63,10 @@ impl LitWorld {
         let why = if shown.is_some() || light_pass.is_none() { why } else { Vec::new() };
         let map = light_pass.as_ref().and_then(|pass| pass.map);
         let photons = caustics.as_ref().map_or(&[][..], |caustics| &caustics.photons);
-        // Without photons, the room is lit as it was found.
+        // Without photons, what was found to light the room still holds.
         let known = light.filter(|_| light_pass.is_none());
         let way = between(unlit.with_light_pass(light_pass), known, photons);
-        // As many as are best beside the noise that all else leaves.
+        // Choose the best number of photons for the noise that all else leaves.
         let pass = caustics.as_ref().map(|caustics| caustics.pass(unlit, way.photons_of_a_sample()));
         let IndirectMethod { mut world, reasons, .. } = way;
         if let Some(pass) = pass {

@@ -1,4 +1,4 @@
-//! Floor 5: looks at a scene, decides how little of the world must be modelled to render it, and says why.
+//! Floor 5: looks at a scene, decides how little of the world must be modeled to render it, and says why.
 
 mod adaptive;
 mod between;
@@ -42,29 +42,29 @@ pub use candidates::Candidate;
 pub struct Plan {
     /// What the tracer is to do.
     pub method: Method,
-    /// What it will cost, how far colors may be off and what is left out; then one decision a line, with its numbers.
+    /// The cost, how far colors may be off and what is left out; then one decision per line, with its numbers.
     pub because: Vec<String>,
     /// How many of these lines come before the decisions.
     pub summary_lines: usize,
-    /// Processor time that the render will take, about.
+    /// Estimated processor time of the render.
     pub processor_time: Duration,
     /// How many camera samples a photon counts as in the progress.
     pub photon_cost: PhotonCost,
-    /// The models of color that were weighed, from few lanes to many; none of a plan that was read from a file.
+    /// The models of color that were weighed, from few lanes to many; empty for a plan that was read from a file.
     #[serde(skip)]
     pub candidates: Vec<Candidate>,
     /// The lines that say what light is left out.
     pub left_out: Vec<String>,
-    /// How far colors may be off, relative to the strongest channel, because spectra are carried in so few lanes.
+    /// How far colors may be off, relative to the strongest channel, because spectra are carried in few lanes.
     pub model_error: f64,
-    /// How far the image is off because polarization is not traced, relative, where that was measured.
+    /// Relative error of the image because polarization is not traced, where that was measured.
     pub polarization_error: Option<f64>,
 }
 
-/// Samples where the scene does not say.
+/// Samples per pixel where the scene does not specify them.
 const SAMPLES: u32 = 256;
-/// Refracted rays that lie nearer to each other, in pixels, go on as one where wavelengths are drawn: a twentieth of
-/// the dispersion that can be seen, so that several surfaces in a row stay below it.
+/// Where wavelengths are drawn, refracted rays that are closer than this, in pixels, continue as one: a twentieth of
+/// the visible dispersion, so that several surfaces in a row stay below it.
 const TOGETHER_PIXELS: f64 = 0.01;
 
 /// Decides how to render a scene.
@@ -115,7 +115,7 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     }
 }
 
-/// What does not depend on how light is found, and in words, which branches are followed.
+/// Returns what does not depend on how light is found, and an explanation of which branches are followed.
 fn before_light(scene: &Scene<Curve>, basis: Basis, model_error: f64) -> (Method, String) {
     let together = if basis.draws_wavelengths() { TOGETHER_PIXELS * scene.camera.pixel_angle() } else { 0.0 };
     let (transport, reason) = transport::transport(scene, &basis, together);
@@ -129,7 +129,7 @@ fn before_light(scene: &Scene<Curve>, basis: Basis, model_error: f64) -> (Method
     (Method { together, samples, stop, ..method_of_paths(scene, basis, transport) }, reason)
 }
 
-/// What the film and its layers take, where that is much.
+/// Describes the memory of the film and its layers, where that is much.
 fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String> {
     let takes = |what: String, bytes: u64| {
         let gigabytes = bytes as f64 / 1e9;
@@ -142,7 +142,7 @@ fn memory(scene: &Scene<Curve>, method: &Method) -> impl Iterator<Item = String>
     film.into_iter().chain(layers)
 }
 
-/// What lights cannot do.
+/// Describes which light is left out.
 fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
     let mut lines = Vec::new();
     let lobes = || scene.materials.iter().map(|named| named.material.lobes());
@@ -169,7 +169,7 @@ fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
     lines
 }
 
-/// What a few hundred samples say of the whole.
+/// Estimates the cost of the whole from a few hundred samples.
 fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes) -> (String, Duration) {
     let window = scene.film.window();
     let samples = window.pixels() as f64 * f64::from(method.samples);
@@ -194,7 +194,7 @@ fn cost(scene: &Scene<Curve>, method: &Method, probe: &Probe, times: PhotonTimes
     (line, time)
 }
 
-/// What another model of color would cost.
+/// Describes what another model of color would cost.
 fn beside(scene: &Scene<Curve>, method: &Method, probe_of_method: &Probe, basis: Basis) -> String {
     let name = basis.name();
     let other = probe(&prepare_unguided(scene, Method { basis, ..method.clone() }));

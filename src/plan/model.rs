@@ -1,4 +1,4 @@
-//! Which lanes carry the light, and whether they part.
+//! Decides which lanes carry the light, and whether they part.
 
 use std::cell::LazyCell;
 use std::collections::BTreeSet;
@@ -14,26 +14,26 @@ use crate::scene::{ModelText, NamedMaterial, Scene};
 use crate::spectrum::{Basis, Curve, CurveKind, Dye, Emission, MAX_LANES, Quantity, provenance};
 use crate::trace::{COLORS_NM, Dispersion, World, dispersion as measured_dispersion};
 
-/// Share of the camera rays on dispersive surfaces from which twice the wavelengths are carried.
+/// Share of the camera rays on dispersive surfaces above which twice as many wavelengths are carried.
 const FILLED: f64 = 0.5;
-/// Fixed wavelengths and heroes where dispersion is seen, and where it fills the image.
+/// Fixed and hero wavelengths where dispersion is visible, and where it fills the image.
 const HERO: [[usize; 2]; 2] = [[12, 4], [24, 8]];
 
 /// What the lanes stand for, why, and a basis to compare its cost with.
 pub(super) struct Model {
     pub(super) basis: Basis,
-    /// How far colors may be off.
+    /// How far colors may be off, in words.
     pub(super) missed: Option<String>,
-    /// The same as a number.
+    /// How far colors may be off, as a number.
     pub(super) error: f64,
     pub(super) because: Vec<String>,
-    /// The model beside it that would cost more or less.
+    /// The model to compare with, which would cost more or less.
     pub(super) next: Option<Basis>,
     /// The models it was chosen from.
     pub(super) candidates: Vec<Candidate>,
 }
 
-/// The least model that a scene needs, or the one it asks for.
+/// Returns the smallest model that a scene needs, or the one it asks for.
 pub(super) fn model(scene: &Scene<Curve>) -> Model {
     let dispersion = dispersion(scene);
     let visible = dispersion.is_some_and(|d| d.is_visible());
@@ -90,8 +90,8 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
     Model { basis, missed, error, because, next, candidates }
 }
 
-/// The number of the first candidate that misses no color by more than is tolerated. Where none does, of the one that
-/// misses least among those of so many fixed lanes at least.
+/// Returns the index of the first candidate that misses no color by more than is tolerated. Without one, returns that
+/// of the candidate that misses least among those with at least `fewest` fixed lanes.
 fn choice(candidates: &[Candidate], tolerance: f64, fewest: usize) -> usize {
     let within = candidates.iter().position(|candidate| candidate.bound() <= tolerance);
     let many = (0..candidates.len()).filter(|&number| candidates[number].basis.fixed_lanes() >= fewest);
@@ -99,7 +99,7 @@ fn choice(candidates: &[Candidate], tolerance: f64, fewest: usize) -> usize {
     within.or(nearest).unwrap_or(candidates.len() - 1)
 }
 
-/// What a sample carries.
+/// Describes what a sample carries.
 fn lanes(basis: &Basis) -> String {
     let (all, fixed) = (basis.lanes(), basis.fixed_lanes());
     match all - fixed {
@@ -111,7 +111,7 @@ fn lanes(basis: &Basis) -> String {
     }
 }
 
-/// Three bands, whatever they miss.
+/// Returns three bands, whatever they miss.
 fn three_bands(survey: &Survey) -> Basis {
     let space = survey.color_space;
     match (survey.is_plain(), survey.common_light()) {
@@ -121,7 +121,7 @@ fn three_bands(survey: &Survey) -> Basis {
     }
 }
 
-/// What is said where no number of lanes is enough.
+/// The message where no number of lanes is enough.
 const BEYOND: &str = "some color may be missed by more than is tolerated";
 
 fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
@@ -135,13 +135,13 @@ fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -
     }
 }
 
-/// How far colors may be off in a basis.
+/// Returns how far colors may be off in a basis.
 fn bound(candidates: &[Candidate], basis: &Basis, survey: &Survey, seen: &Seen) -> f64 {
     let known = candidates.iter().find(|candidate| candidate.basis.name() == basis.name());
     known.map_or_else(|| LANES_SAFETY * error(survey, seen, basis), Candidate::bound)
 }
 
-/// All candidates in one line, and the basis with its bound; for heroes, what their fixed lanes miss.
+/// Describes all candidates in one line, and the basis with its bound; for heroes, what their fixed lanes miss.
 fn missed(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f64) -> String {
     if basis.draws_wavelengths() {
         let bounded = if bound > 1.0 { "some color may be" } else { "colors are" };
@@ -158,7 +158,7 @@ fn missed(candidates: &[Candidate], basis: &Basis, bound: f64, tolerance: f64) -
     format!("colors are off by at most ({} is tolerated): {}", percent(tolerance), steps.join(", "))
 }
 
-/// Emission lines that share the interpolated lanes.
+/// Describes emission lines that share the interpolated lanes.
 fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
     let lines = survey.lines(usize::MAX);
     let own = lines.iter().filter(|nm| basis.wavelengths_nm().contains(nm)).count();
@@ -172,11 +172,11 @@ fn lines_without_lane(survey: &Survey, basis: &Basis) -> Option<String> {
     })
 }
 
-/// How far dispersive glass pulls colors apart; none if there is none.
+/// Measures how far dispersive glass pulls colors apart; `None` if there is none.
 fn dispersion(scene: &Scene<Curve>) -> Option<Dispersion> {
     let of_three =
         |glass: &Dielectric<Curve>| matches!(glass.index.kind, CurveKind::Rgb([r, g, b]) if r != g || g != b);
-    // Under white light and paints of three numbers, three indices say all. Otherwise each wavelength has its own.
+    // Under white light and with paints of three numbers, three indices suffice. Otherwise each wavelength has its own.
     let is_plain = LazyCell::new(|| Survey::new(scene, true).is_plain());
     let parts = |glass: &Dielectric<Curve>| disperses(glass) || of_three(glass) && !*is_plain;
     scene.materials.iter().find(|m| m.material.medium().is_some_and(parts))?;
@@ -211,7 +211,7 @@ fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
     format!("dispersion: {shown}; {what}")
 }
 
-/// Colors that no reflectance has.
+/// Describes how many colors are more saturated than any reflectance.
 fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
     if basis.fixed_lanes() <= 3 {
         return None;
@@ -229,16 +229,16 @@ fn desaturated(scene: &Scene<Curve>, basis: &Basis) -> Option<String> {
     (count > 0).then(|| format!("{colors} more saturated than a smooth reflectance can be, and moved toward gray"))
 }
 
-/// So many materials are told of one by one.
+/// Most materials that are described one by one.
 const TOLD: usize = 20;
 
-/// Where the numbers of clear bodies and metals come from, and what is known of films and dyes.
+/// Describes where the data of clear bodies and metals come from, and what is known of films and dyes.
 fn materials(scene: &Scene<Curve>, basis: &Basis) -> Vec<String> {
     let mut known = BTreeSet::new();
     let about = |named: &NamedMaterial<Curve>| {
         let lines = about_material(&named.material, basis);
         let lines = lines.into_iter().map(|line| format!("material {}: {line}", named.name));
-        // Each object has a sheet of its own, turned with it.
+        // Each object has its own sheet, which turns with it: equal lines are given once.
         let new: Vec<String> = lines.filter(|line| known.insert(line.clone())).collect();
         (!new.is_empty()).then_some(new)
     };

@@ -1,4 +1,4 @@
-//! Whether caustics that are not seen straight need a map of photons.
+//! Decides whether caustics that are not seen directly need a photon map.
 
 use super::caustics::{Sources, targets};
 use super::efficiency::rounded;
@@ -10,27 +10,27 @@ use crate::trace::{
     photons_within, reached_places,
 };
 
-/// Most photons per camera sample: from 0.25 to 1 the error for the time hardly changes, where glass is behind glass.
+/// Most photons per camera sample: from 0.25 to 1, the error for the time hardly changes where glass is behind glass.
 const PHOTONS: f64 = 0.5;
-/// Fewest: of fewer a pilot does not know enough.
+/// Fewest photons per camera sample: with fewer, a pilot does not know enough.
 const FEWEST: f64 = 1.0 / 64.0;
-/// How much longer camera samples take that gather wherever they can, as a share: measured in a room by a window.
+/// Relative extra time of camera samples that gather wherever they can, measured in a room with a window.
 const GATHERING: f64 = 0.5;
-/// Least chance that photons are gathered: of what is rarer a pilot does not know enough.
+/// Least probability that photons are gathered: a pilot does not know enough about what is rarer.
 const RAREST: f64 = 1.0 / 16.0;
-/// Solid angle in steradians of lights that rays hit too rarely from where nothing is shown.
+/// Solid angle in steradians of lights that rays hit too rarely from where no photons are shown.
 const SMALL: f64 = 0.1;
-/// Radius in pixels of a map of one sample per pixel.
+/// Radius in pixels of a map for one sample per pixel.
 const RADIUS: f64 = 2.0;
-/// Photons of a pass, if fewer are not enough: more would take longer to look through than to send.
+/// Photons of a pass unless fewer are enough: more would take longer to search than to send.
 const OF_A_PASS: f64 = 32_768.0;
-/// Photons of a map that tells whether any are gathered, and what they are worth.
+/// Most photons of a first map, which tells whether any are gathered and what they are worth.
 const FEW: u64 = 4096;
-/// Fewer where they follow many rays, but never too few.
+/// Fewest photons of a first map, however many rays they take.
 const FEWEST_SENT: u64 = 512;
 
-/// The light pass with a map, if one is needed, and why. It is settled that none is where photons were weighed that the
-/// camera would see straight, and do not pay.
+/// Returns the light pass with a map, if one is needed, and why. If `settled`, none is: photons were weighed that the
+/// camera would see directly, and they do not pay.
 pub(super) fn with_map(
     scene: &Scene<Curve>,
     unguided: &World,
@@ -40,7 +40,7 @@ pub(super) fn with_map(
     let method = unguided.method();
     let as_shown = || (shown.cloned(), Vec::new());
     let is_off = matches!(method.transport, Transport::Deterministic { .. }) || scene.render.caustics == AutoText::Off;
-    // What coats and narrow lobes throw and the camera would not see straight is not worth photons of its own.
+    // Caustics of coats and narrow lobes that the camera does not see directly are not worth photons of their own.
     let is_aimed = shown.is_some() || !targets(scene, &[Smoothness::Whole]).is_empty();
     if is_off || settled || !is_aimed {
         return as_shown();
@@ -48,7 +48,7 @@ pub(super) fn with_map(
     let places = reached_places(unguided);
     let samples = unguided.samples_of_the_format();
     let most = f64::from(method.samples);
-    // Bias falls with the square of the radius, noise with its inverse: both alike fast with this power of the samples.
+    // Bias falls with the square of the radius, noise with its inverse: with this power of the samples, equally fast.
     let radius = RADIUS * libm::pow(most, -1.0 / 6.0);
     let passes = |photons: f64, of_a_pass: f64| {
         let all = (photons * samples).ceil();
@@ -75,7 +75,7 @@ pub(super) fn with_map(
     (asked(map), vec![line])
 }
 
-/// What a person is told of a map beside so many camera samples, which are all of them or, with a stop rule, not.
+/// Describes a map to the user, for `samples` camera samples, which are all of them or, with a stop rule, only some.
 fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
     let photons = match (method.stop.is_some(), map.count) {
         (true, _) => format!("{:.2} photons for each camera sample", map.all_photons() as f64 / samples),
@@ -100,20 +100,20 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
     )
 }
 
-/// How many photons for each camera sample make the time to an error least.
+/// Returns the number of photons per camera sample that takes the least time to an error.
 ///
-/// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l;
-/// their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays stand for time: plans are the same everywhere.
+/// An image of n_p camera samples and n_l photons has the variance A / n_p + B / n_l in the time C_p n_p + C_l n_l.
+/// Their product is least for n_l / n_p = sqrt(B C_p / (A C_l)). Rays stand for time: plans are the same everywhere.
 fn photons(worth: &GatheredWorth) -> f64 {
     let samples = worth.samples;
     let best = (worth.variance * samples.rays / (samples.variance * worth.rays)).sqrt();
     if best.is_nan() { PHOTONS } else { rounded(best.clamp(FEWEST, PHOTONS)) }
 }
 
-/// At how many of the places that paths reach photons are gathered.
+/// Returns the share of the places that paths reach at which photons are gathered.
 ///
-/// Where a share q gathers, the second moment M of what a sample gathers adds at most M / q to its variance A, and the
-/// time is 1 + q t of one that gathers nowhere; the product is least for q = sqrt(M / (A t)).
+/// If a share q gathers, the second moment M of what a sample gathers adds at most M / q to its variance A, and the
+/// time is 1 + q t times that of a sample that gathers nowhere. The product is least for q = sqrt(M / (A t)).
 fn chance(worth: &GatheredWorth) -> f64 {
     let best = (worth.second_moment / (worth.samples.variance * GATHERING)).sqrt();
     if best.is_nan() { 1.0 } else { rounded(best.clamp(RAREST, 1.0)) }

@@ -1,4 +1,4 @@
-//! Whether polarization is traced, and why.
+//! Decides whether polarization is traced, and why.
 
 use super::survey::tolerance;
 use super::words::{against, percent};
@@ -6,20 +6,20 @@ use crate::scene::{PolarizationText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{Polarizing, World, most_changed, polarization_error};
 
-/// What is done about polarization, and what is said of it.
+/// What is decided about polarization, and what the user is told.
 pub(super) struct Decided {
     pub(super) polarization: Polarizing,
     pub(super) why: Option<String>,
     pub(super) left_out: Option<String>,
-    /// How far the image is off where it is not traced, if that was measured.
+    /// How far the image is off without polarization, if that was measured.
     pub(super) error: Option<f64>,
 }
 
-/// The error is measured on so few samples that they may miss what is so many times as large.
+/// Factor by which the error may be larger than measured, since so few samples may miss some of it.
 const MISSED: f64 = 2.0;
 
-/// Traces polarization where the scene asks for it, or where leaving it out would be wrong by more than is tolerated:
-/// in the whole format, so that all parts of an image are made alike.
+/// Traces polarization where the scene asks for it, or where leaving it out would cause an error above the tolerance:
+/// in the whole format, so that all parts of an image are rendered the same way.
 pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     let on = |why: String| {
         let why = Some(format!("polarization on: {why}"));
@@ -57,7 +57,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     }
 }
 
-/// What has no meaning without it.
+/// Describes what in a scene has no meaning without polarization, if anything.
 fn asking(scene: &Scene<Curve>) -> Option<String> {
     if scene.camera.filter().is_some() {
         return Some("there is a filter before the camera".into());
@@ -72,11 +72,11 @@ fn asking(scene: &Scene<Curve>) -> Option<String> {
     Some(format!("the scene has a sheet that polarizes ({})", sheet.name))
 }
 
-/// How much polarization may change; nothing where it can hardly be told.
+/// Describes how much polarization may change; `None` where that is negligible.
 fn left_out(change: f64) -> Option<String> {
     (change > NOTHING)
         .then(|| format!("left out: polarization, which changes at most {} of the light seen", percent(change)))
 }
 
-/// A share that is not worth a word.
+/// A share that is too small to mention.
 const NOTHING: f64 = 1e-4;

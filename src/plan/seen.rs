@@ -1,4 +1,4 @@
-//! The colors that the camera sees of a scene, as a probe finds them: products of as many tints as light really hits.
+//! The colors that the camera sees of a scene, found by a probe: products of as many tints as light really hits.
 
 use std::collections::BTreeMap;
 
@@ -9,38 +9,38 @@ use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Draw, Lanes, MAX_LANES, Quantity};
 use crate::trace::{ROUTES_NM, Route, RouteEvent, Step, World, routes};
 
-/// Products of tints by number, with the weight of each.
+/// Indices of products of tints, with the weight of each.
 type Weighted = Vec<(usize, f64)>;
 
-/// Colors that are seen, each light's own.
+/// Colors that are seen, those of each light separately.
 #[derive(Default)]
 pub(super) struct Seen<'a> {
     tints: Vec<Tint<'a>>,
-    /// Tints that light hits one after another, each as often as it is hit.
+    /// Tints that light hits one after another, each repeated as often as it is hit.
     products: Vec<Vec<u32>>,
     colors: Vec<Color>,
 }
 
-/// What a pixel sees of one light, after as many diffuse surfaces.
+/// What a pixel sees of one light, after a given number of diffuse surfaces.
 struct Color {
     light: usize,
     /// Products and their weights.
     sum: Weighted,
-    /// By sums over 1 nm.
+    /// From sums over 1 nm.
     exact: [f64; 3],
-    /// What an error of it is relative to: its strongest channel. Of colors that are fainter than what is tolerated of
-    /// the brightest that the light makes in the view, it is that.
+    /// What an error of it is relative to: its strongest channel, or the tolerated share of the brightest color that
+    /// the light makes in the view, if that is larger.
     scale: f64,
 }
 
-/// Steps of a distance, a factor, and of a cosine that are told apart.
+/// Factor between distances, and number of cosines, that are told apart.
 const DISTANCE: f64 = 1.05;
 const COSINES: f64 = 32.0;
-/// Weights that are told apart.
+/// Steps per unit of weight that are told apart.
 const WEIGHTS: f64 = 100.0;
 
 impl<'a> Seen<'a> {
-    /// Sends a few hundred rays and keeps what they hit; nothing where smooth surfaces tint no light.
+    /// Traces a few hundred rays and keeps what they hit; nothing where smooth surfaces tint no light.
     pub(super) fn new(scene: &'a Scene<Curve>, survey: &Survey) -> Self {
         if survey.is_plain() || survey.smooth(1).is_empty() {
             return Self::default();
@@ -53,7 +53,7 @@ impl<'a> Seen<'a> {
         keeping.finish(survey, tolerance(scene))
     }
 
-    /// The largest error of a color in the lanes of a basis.
+    /// Returns the largest error of a color in the lanes of a basis.
     pub(super) fn error(&self, survey: &Survey, basis: &Basis) -> f64 {
         let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
         let tints: Vec<Vec<f64>> = self.tints.iter().map(|tint| tint.on(basis)).collect();
@@ -76,7 +76,7 @@ impl<'a> Seen<'a> {
         self.colors.iter().map(error).fold(0.0, f64::max)
     }
 
-    /// What is left of light after each product, where tints leave some.
+    /// Returns what is left of light after each product, from what each tint leaves.
     fn multiply(&self, tints: &[Vec<f64>], length: usize) -> Vec<Vec<f64>> {
         let product = |numbers: &Vec<u32>| {
             let mut left = vec![1.0; length];
@@ -89,14 +89,14 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// A tint that was hit, so that it is known again: material, part, what light does there, and a number.
+/// Identifies a tint that was hit: material, part, what light does there, and a number.
 type Key = (u32, usize, u8, i64);
-/// A color to be known again: light, diffuse surfaces, products with rounded weights.
+/// Identifies a color: light, diffuse surfaces, products with rounded weights.
 type ColorKey = (usize, u32, Vec<(usize, i64)>);
 
 struct Keeping<'a> {
     scene: &'a Scene<Curve>,
-    /// The survey's light of each light.
+    /// For each light, the index of its spectrum in the survey.
     lights: Vec<usize>,
     seen: Seen<'a>,
     tints: BTreeMap<Key, Vec<u32>>,
@@ -195,7 +195,7 @@ impl<'a> Keeping<'a> {
     }
 }
 
-/// What tints light at a step on one of the parts of a material; `rounded` is what tells its distance or angle.
+/// Returns what tints light at a step on a part of a material; `rounded` is its distance or angle in rounded steps.
 fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Tint<'a>> {
     let filter = |quantity, curve: &'a Curve| vec![Tint::Filter(quantity, farthest_from_gray(curve))];
     match (whole[step.part], step.way) {
@@ -220,7 +220,7 @@ fn tints<'a>(whole: &[&'a Material<Curve>], step: &Step, rounded: i64) -> Vec<Ti
     }
 }
 
-/// Of a curve that varies over a surface, the color that is farthest from gray.
+/// Returns the color of a curve that is farthest from gray, if it varies over a surface.
 fn farthest_from_gray(curve: &Curve) -> std::borrow::Cow<'_, Curve> {
     let spread = |curve: &Curve| {
         let rgb = curve.kind.rgb().unwrap_or([1.0; 3]);

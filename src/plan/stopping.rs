@@ -1,4 +1,4 @@
-//! When enough samples are taken.
+//! Decides when enough samples are taken.
 
 use super::words::{in_words, percent};
 use crate::film::Window;
@@ -6,20 +6,20 @@ use crate::scene::{RenderText, Scene};
 use crate::spectrum::Curve;
 use crate::trace::{FIRST_LOOK, Stop};
 
-/// Fewest that replicates can share.
+/// Fewest samples that replicates can share.
 const FEWEST: u32 = 8;
-/// Fewest camera samples of an image that an error is believed of: 64 of a pixel would often miss a small lamp.
+/// Fewest camera samples of an image whose error is trusted: 64 in one pixel would often miss a small lamp.
 const BELIEVED: u32 = 4096;
-/// Most samples where the scene does not say.
+/// Most samples where the scene does not specify them.
 const MOST: u32 = 65_536;
-/// Samples that photons are counted for: as many for each, however many there will be.
+/// Samples for which photons are counted: their number per sample is the same, however many samples there will be.
 pub(super) const COUNTED_FOR: u32 = 1024;
-/// The least part of the error that is left for noise: where the model of color misses a third of it.
+/// The least share of the error that is left for noise: where the model of color misses a third of it.
 const NOISE: f64 = 0.942_809_041_582_063_4;
 
-/// When a render has enough, if it does not take all samples whatever they show.
+/// Returns when a render has enough samples, if it does not take all of them whatever they show.
 ///
-/// The model of color may miss a third of the error; what it does not is left for noise, as squares add up.
+/// The model of color may miss a third of the error. What it does not miss is left for noise, as squares add up.
 pub(super) fn stop(render: &RenderText, window: Window, model_error: f64) -> Option<Stop> {
     let RenderText { error, time, samples, is_part, .. } = *render;
     let most = samples.unwrap_or(MOST) / FEWEST * FEWEST;
@@ -31,7 +31,7 @@ pub(super) fn stop(render: &RenderText, window: Window, model_error: f64) -> Opt
     (asked && most >= fewest && !is_part).then_some(Stop { noise, time, least, most })
 }
 
-/// What a person is told of it.
+/// Returns the explanation for the user.
 pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64) -> Option<String> {
     let RenderText { error, time, samples, is_part, .. } = scene.render;
     let Some(stop) = stop else {
@@ -61,7 +61,7 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
     Some(format!("stops {}, whichever is first", rules.join(", or ")))
 }
 
-/// A time as people say it, also a short one.
+/// Formats a time as people say it, also a short one.
 fn spoken(seconds: f64) -> String {
     if seconds < 10.0 { format!("{seconds} s") } else { in_words(seconds) }
 }

@@ -1,4 +1,4 @@
-//! What of a scene decides how its spectra must be carried.
+//! Surveys what in a scene decides how its spectra must be carried.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -17,32 +17,32 @@ use crate::trace::{Method, Transport};
 
 /// The share of the error that the model of color may make; noise may make the rest.
 const SHARE: f64 = 1.0 / 3.0;
-/// The relative error of an image that is aimed at where the scene does not say.
+/// The relative error that an image aims at where the scene does not specify one.
 const ERROR: f64 = 0.03;
-/// The seed of what a plan looks at, whatever the image's: else its model of color could change from frame to frame.
+/// The seed of a plan's looks, whatever the image's: otherwise, its model of color could change from frame to frame.
 const SEED: u64 = 0;
 
-/// The relative error of a color that its model may make.
+/// Returns the relative error of a color that its model may make.
 pub(super) fn tolerance(scene: &Scene<Curve>) -> f64 {
     SHARE * scene.render.error.unwrap_or(ERROR)
 }
 
-/// The channel that is farthest from 0: what an error of a color is relative to.
+/// Returns the magnitude of the channel that is farthest from 0: what an error of a color is relative to.
 pub(super) fn strongest(color: [f64; 3]) -> f64 {
     color.into_iter().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
 
-/// The error of a color in its worst channel.
+/// Returns the error of a color in its worst channel.
 pub(super) fn missed(found: [f64; 3], exact: [f64; 3]) -> f64 {
     strongest(std::array::from_fn(|c| found[c] - exact[c]))
 }
 
-/// What is left of light, a number for each lane.
+/// Returns what is left of light as lanes, one number for each.
 pub(super) fn lanes(left: &[f64]) -> Lanes<MAX_LANES> {
     Lanes::from_fn(|i| left.get(i).map_or(0.0, |&x| x as f32))
 }
 
-/// The method of paths that are as long as the scene lets them be.
+/// Returns the method of paths that are as long as the scene allows.
 pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Transport) -> Method {
     Method {
         diffuse_bounces: scene.render.diffuse_bounces.unwrap_or(u32::MAX),
@@ -51,7 +51,7 @@ pub(super) fn method_of_paths(scene: &Scene<Curve>, basis: Basis, transport: Tra
     }
 }
 
-/// The method by which a plan looks where colors go: no path splits, and none is ended at random.
+/// Returns the method with which a plan looks where colors go: no path splits, and none is ended at random.
 pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
     let transport = Transport::Random { split: 1.0, roulette: 0.0 };
     method_of_paths(scene, basis, transport)
@@ -61,11 +61,11 @@ pub(super) fn method_of_a_look(scene: &Scene<Curve>, basis: Basis) -> Method {
 pub(super) struct Survey<'a> {
     pub(super) color_space: ColorSpace,
     pub(super) upsampler: Upsampler,
-    /// The light of each different spectrum, as it is written and as it shines.
+    /// One light for each different spectrum: its curve as it is written, and its emission.
     pub(super) lights: Vec<(Curve, Emission)>,
-    /// Which of those each light of the scene shines.
+    /// For each light of the scene, its index among these.
     pub(super) light_numbers: Vec<usize>,
-    /// Those of them by whose light models are judged.
+    /// Indices of the lights by which models are judged.
     judged: Vec<usize>,
     tints: Vec<Tint<'a>>,
     /// The dyes, each with the reflectance of its surface.
@@ -80,7 +80,7 @@ pub(super) enum Tint<'a> {
     Coated(&'a Plastic<Curve>, Cow<'a, Curve>),
     /// A factor on light that a smooth surface reflects or lets through.
     Filter(Quantity, Cow<'a, Curve>),
-    /// A bare metal's reflection under an angle of this cosine, once or, where it is rough, more often.
+    /// A bare metal's reflection at an angle with this cosine, once or, where it is rough, more often.
     Metal(&'a Conductor<Curve>, f64),
     /// Light goes a distance through an absorbing body.
     Depth(&'a Curve, f64),
@@ -88,15 +88,15 @@ pub(super) enum Tint<'a> {
     Film(Film<'a>),
     /// Light crosses a wave plate between crossed polarizers.
     Plate(PathDifference),
-    /// Light meets a clear surface of a measured index at right angles, and is reflected or crosses it.
+    /// Light meets a clear surface of a measured index at normal incidence, and is reflected or crosses it.
     Surface { index: &'a Curve, crosses: bool, together: bool },
 }
 
-/// Lights of so many different spectra are judged; of more, those farthest apart.
+/// Most lights of different spectra that are judged; of more, those farthest apart.
 const MOST_LIGHTS: usize = 64;
 
 impl<'a> Survey<'a> {
-    /// `together`: all lanes are refracted by one index.
+    /// Surveys a scene. If `together`, all lanes are refracted by one index.
     pub(super) fn new(scene: &'a Scene<Curve>, together: bool) -> Self {
         let space = scene.film.color_space;
         let (lights, light_numbers) = different(scene.lights.iter().map(|light| light.emission()), space);
@@ -114,7 +114,7 @@ impl<'a> Survey<'a> {
                 );
                 tints.extend(films(material).into_iter().map(Tint::Film));
                 if let Some(plate) = plate(material).filter(|_| scene.render.polarization != PolarizationText::Off) {
-                    // Each object has a plate of its own, turned with it.
+                    // Each object has its own plate, which turns with it.
                     let known = |tint: &Tint| matches!(tint, Tint::Plate(known) if known.nm.abs() == plate.nm.abs());
                     tints.extend((!tints.iter().any(known)).then_some(Tint::Plate(plate)));
                 }
@@ -151,7 +151,7 @@ impl<'a> Survey<'a> {
         Self { color_space: space, upsampler, lights, light_numbers, judged, tints, dyes }
     }
 
-    /// Whether three numbers say all that is known of every color: numbers and `rgb` under the film's own white.
+    /// Whether three numbers are all that is known of every color: numbers and `rgb` under the film's own white.
     pub(super) fn is_plain(&self) -> bool {
         let white: Curve = CurveKind::Illuminant(Arc::new(self.color_space.white_light())).into();
         let white = Emission::new(&white, self.color_space);
@@ -161,7 +161,7 @@ impl<'a> Survey<'a> {
             && self.lights.iter().all(|(curve, light)| !curve.is_measured() || light.has_shape_of(&white))
     }
 
-    /// Whether light interferes somewhere, which three numbers cannot tell.
+    /// Whether light interferes anywhere, which three numbers cannot describe.
     pub(super) fn has_fringes(&self) -> bool {
         self.tints.iter().any(|tint| tint.has_fringes())
     }
@@ -179,7 +179,7 @@ impl<'a> Survey<'a> {
         dyes.any(|dye| self.judged().any(|(_, light)| invisible(&dye, light)))
     }
 
-    /// The light of the whole scene, if all lights have the same spectrum.
+    /// Returns the light of the whole scene, if all lights have the same spectrum.
     pub(super) fn common_light(&self) -> Option<Emission> {
         match self.lights.as_slice() {
             [] => Some(Emission::new(&1.0.into(), self.color_space)),
@@ -192,19 +192,20 @@ impl<'a> Survey<'a> {
         self.lights.iter().map(|(_, light)| light.clone()).collect()
     }
 
-    /// The lights by which models are judged.
+    /// Returns the lights by which models are judged.
     pub(super) fn judged(&self) -> impl Iterator<Item = &(Curve, Emission)> {
         self.judged.iter().map(|&light| &self.lights[light])
     }
 
-    /// What shines on surfaces, the lights by which models are judged and the dyes; and the dyes.
+    /// Returns what shines on surfaces, that is, the lights by which models are judged and the dyes; and the dyes
+    /// alone.
     pub(super) fn shining(&self) -> (Vec<Emission>, Vec<Dye>) {
         let lights = self.judged().map(|(_, light)| light.clone());
         let dyes = self.dyes.iter().map(|(dye, _)| dye);
         (lights.chain(dyes.clone().map(|dye| dye.shines(self.color_space))).collect(), dyes.cloned().collect())
     }
 
-    /// The brightest ideal lines, ascending in nm.
+    /// Returns the brightest ideal lines, ascending in nm.
     pub(super) fn lines(&self, most: usize) -> Vec<f64> {
         let brightness = |nm: f64, power: f64| power * visible::color_matching(nm).iter().sum::<f64>();
         let mut lines: Vec<[f64; 2]> = self.lights.iter().flat_map(|(_, light)| light.lines()).copied().collect();
@@ -230,7 +231,7 @@ impl<'a> Survey<'a> {
         chosen
     }
 
-    /// Films and plates of which the fringes are closest.
+    /// Returns the films and plates with the closest fringes.
     fn thickest_films(&self, most: usize) -> Vec<&Tint<'a>> {
         let thickness = |tint: &Tint| match tint {
             Tint::Film(film) => Some(film.optical_nm().iter().sum::<f64>()),
@@ -243,7 +244,7 @@ impl<'a> Survey<'a> {
         films.into_iter().take(most).map(|(_, tint)| tint).collect()
     }
 
-    /// The clear surfaces alone.
+    /// Returns the clear surfaces only.
     pub(super) fn surfaces(&self, most: usize) -> Vec<&Tint<'a>> {
         self.farthest_from_gray(most, |tint| matches!(tint, Tint::Surface { .. }))
     }
@@ -264,13 +265,13 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// Below this, in nm, lanes of visible light carry none that excites dyes.
+/// Wavelength in nm below which lanes of visible light carry nothing that excites dyes.
 const ULTRAVIOLET_NM: f64 = 390.0;
 
-/// Films and plates by which models are judged, each film as it reflects and as it lets through.
+/// Most films and plates by which models are judged; each film counts as it reflects and as it transmits.
 const FILMS: usize = 4;
 
-/// The longest straight way through the largest body of a material.
+/// Returns how thick the thickest body of a material is, measured by the smallest side of a body's bounds.
 fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
     let bodies = scene.objects.iter().filter(|object| object.material == material);
     let sizes = bodies.filter_map(|object| object.shape.bounds()).map(|bounds| bounds.size().min_element());
@@ -278,7 +279,7 @@ fn thickness(scene: &Scene<Curve>, material: u32) -> f64 {
 }
 
 impl Tint<'_> {
-    /// The spectra that say how lanes must be carried: what an index makes of white is nearly white.
+    /// Returns the spectra that decide how lanes must be carried: what an index makes of white is nearly white.
     fn curves(&self) -> Vec<&Curve> {
         match self {
             Self::Diffuse(curve) | Self::Filter(_, curve) => vec![curve],
@@ -302,9 +303,9 @@ impl Tint<'_> {
             && self.curves().iter().all(|curve| matches!(curve.kind, CurveKind::Number(_)))
     }
 
-    /// What is left of the light at wavelengths in nm.
+    /// Returns what is left of the light at wavelengths in nm.
     pub(super) fn at(&self, wavelengths_nm: &[f64], upsampler: &Upsampler) -> Vec<f64> {
-        // What is summed over 1 nm has the fringes of bands of 1 nm.
+        // Sums over 1 nm have the fringes of bands of 1 nm.
         let waves: Vec<_> = wavelengths_nm.iter().map(|&nm| [nm, 1.0 / nm]).collect();
         self.combine(&waves, |quantity, curve| {
             let reader = curve.reader(quantity, upsampler);
@@ -312,7 +313,7 @@ impl Tint<'_> {
         })
     }
 
-    /// What is left of the light in the lanes of a basis.
+    /// Returns what is left of the light in the lanes of a basis.
     pub(super) fn on(&self, basis: &Basis) -> Vec<f64> {
         let basis = match self {
             Self::Surface { together: true, .. } => Cow::Owned(basis.clone().kept_together()),
@@ -322,7 +323,8 @@ impl Tint<'_> {
         self.combine(&waves, |quantity, curve| basis.tabulate(quantity, curve).bins().to_vec())
     }
 
-    /// What is left of light of each wavelength in nm and relative width of its band, for all of which curves are read.
+    /// Returns what is left of light at some wavelengths, given in nm with the relative widths of their bands. `read`
+    /// returns the values of a curve at all of them.
     fn combine(&self, waves: &[[f64; 2]], read: impl Fn(Quantity, &Curve) -> Vec<f64>) -> Vec<f64> {
         match self {
             Self::Diffuse(curve) => read(Quantity::Reflectance, curve),
@@ -362,7 +364,7 @@ impl Tint<'_> {
     }
 }
 
-/// The colors of an image or a pattern that shines, as filters of its white, half as bright as that.
+/// Returns the colors of a shining image or pattern, as filters of its white that are half as bright.
 fn shown(radiance: &Curve) -> Vec<Tint<'_>> {
     let colors = radiance.shades().into_iter().filter(|_| radiance.varies()).filter_map(|shade| shade.kind.rgb());
     let filter = |rgb: [f64; 3]| {

@@ -1,4 +1,4 @@
-//! Whether light is followed in all its ways or in some, chosen by chance.
+//! Decides whether light is followed along all branches, or along some that are chosen by chance.
 
 use super::survey::method_of_paths;
 use super::words::percent;
@@ -11,18 +11,18 @@ use crate::trace::{Branching, Method, Transport, World, branching};
 
 /// Weight below which deterministic transport follows no branch.
 const CUTOFF: f64 = 1e-9;
-/// Surfaces that one of its camera samples may hit: eight times what a mean one may.
+/// Most surfaces that a camera sample of deterministic transport may hit: eight times what a mean one may.
 const MOST_SURFACES: u64 = 16_384;
-/// Nothing is left to chance.
+/// Transport that leaves nothing to chance.
 const DETERMINISTIC: Transport = Transport::Deterministic { cutoff: CUTOFF, most: MOST_SURFACES };
 /// Weight above which a path splits into all its branches (row W5 of the stability catalog).
 const SPLIT: f64 = 0.05;
 /// Weight below which paths are ended at random.
 const ROULETTE: f64 = 0.05;
-/// Surfaces that a mean sample may hit where all branches are followed: about as many as 256 samples that choose one.
+/// Surfaces that a mean sample may hit if all branches are followed: about as many as 256 samples that choose one.
 const AFFORDABLE: f64 = 2048.0;
 
-/// Whether anything is left to chance, and why. Lanes within the angle `together` go on as one.
+/// Decides whether anything is left to chance, and why. Lanes within the angle `together` continue as one.
 pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (Transport, String) {
     let material = |object: &Object| &scene.materials[object.material as usize].material;
     let is_wide = |object: &&Object| material(object).lobes().is_wide() && !material(object).is_black();
@@ -65,7 +65,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
     }
 }
 
-/// Whether a scene asks for more than one sample of a pixel, and for no layer that needs several.
+/// Whether a scene asks for more than one sample per pixel, and for no layer that needs several.
 fn asks_for_more(scene: &Scene<Curve>) -> bool {
     let RenderText { samples, error, time, .. } = &scene.render;
     let of_several = [Layer::Variance, Layer::HalfA, Layer::HalfB];
@@ -73,7 +73,7 @@ fn asks_for_more(scene: &Scene<Curve>) -> bool {
     !needs_them && (samples.is_some_and(|samples| samples > 1) || error.is_some() || time.is_some())
 }
 
-/// A light with an extent that next-event estimation would aim at.
+/// Names a light with an extent at which next-event estimation would aim.
 fn extended_light(scene: &Scene<Curve>) -> Option<String> {
     scene.lights.iter().find(|light| light.is_sampled() && light.is_extended()).map(|light| match light {
         Light::Area(area) => scene.objects[area.object as usize].name.clone(),
@@ -82,7 +82,7 @@ fn extended_light(scene: &Scene<Curve>) -> Option<String> {
     })
 }
 
-/// That camera samples take surfaces with holes, or what is behind them, in whole.
+/// Explains that camera samples take surfaces with holes, or what is behind them, as a whole.
 fn holes_beside_mattes(scene: &Scene<Curve>) -> Option<String> {
     let has_mattes =
         scene.objects.iter().any(|object| matches!(object.visibility, Visibility::Holdout | Visibility::ShadowCatcher));
@@ -94,7 +94,7 @@ fn holes_beside_mattes(scene: &Scene<Curve>) -> Option<String> {
     Some(format!("beside holdouts and shadow catchers each sample shows {} or what is behind its holes", object.name))
 }
 
-/// Why not all ways of light can be followed, where they are too many.
+/// Explains why not all branches can be followed, if there are too many.
 fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<String> {
     if !scene.materials.iter().any(|named| named.material.lobes().has_delta()) {
         return None;

@@ -2,7 +2,7 @@
 
 use crate::trace::Effort;
 
-/// A share as people say it.
+/// Formats a share as people say it.
 pub(super) fn percent(share: f64) -> String {
     match 100.0 * share {
         0.0 => "0 %".into(),
@@ -13,7 +13,7 @@ pub(super) fn percent(share: f64) -> String {
     }
 }
 
-/// Two shares, the second a limit, with as many digits as it takes to see on which side of it the first lies.
+/// Formats two shares, the second a limit, with enough digits to show on which side of it the first lies.
 pub(super) fn against(share: f64, limit: f64) -> [String; 2] {
     let said = [share, limit].map(percent);
     let longer = (2..6).map(|digits| [share, limit].map(|x| format!("{:.digits$} %", 100.0 * x)));
@@ -21,12 +21,12 @@ pub(super) fn against(share: f64, limit: f64) -> [String; 2] {
     std::iter::once(said.clone()).chain(longer).find(is_clear).unwrap_or(said)
 }
 
-/// The most by which something may be off; beyond all of it, how much more says nothing.
+/// Formats the most by which something may be off; beyond all of it, the exact number tells nothing.
 pub(super) fn at_most(bound: f64) -> String {
     if bound > 1.0 { "over 100 %".into() } else { percent(bound) }
 }
 
-/// A count as people say it.
+/// Formats a count as people say it.
 pub(super) fn in_number(count: u64) -> String {
     match count as f64 {
         n if n < 1e4 => format!("{count}"),
@@ -35,7 +35,7 @@ pub(super) fn in_number(count: u64) -> String {
     }
 }
 
-/// How many times as long an equal error takes, that of the image and that of its pixels.
+/// Describes how many times as long the same error takes, that of the image and that of its pixels.
 pub(super) fn as_long(times: Effort) -> String {
     let number = |times: f64| match times {
         less if less < 0.995 => format!("{less:.2}"),
@@ -51,7 +51,7 @@ pub(super) fn as_long(times: Effort) -> String {
     }
 }
 
-/// A time as people say it.
+/// Formats a time as people say it.
 pub(super) fn in_words(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => "a second or less".into(),

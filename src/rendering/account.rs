@@ -1,4 +1,4 @@
-//! What is known of a plan and of a render, as programs read it.
+//! Summaries of plans and renders, for programs to read.
 
 use std::time::Duration;
 
@@ -13,26 +13,26 @@ use crate::trace::Report;
 /// How a scene will be rendered.
 #[derive(Clone, Debug, Serialize)]
 pub struct PlanAccount<'a> {
-    /// How spectra are carried.
+    /// How spectra are represented.
     pub model: String,
-    /// How light is followed.
+    /// The light transport algorithm.
     pub transport: &'static str,
-    /// Camera samples per pixel, or the most.
+    /// The number of camera samples per pixel, or the maximum number if there is a stop rule.
     pub samples: u32,
-    /// Photons of all passes, where it is known how many there will be.
+    /// The number of photons in all passes, if it is known in advance.
     pub photons: Option<u64>,
-    /// Time of all processors together, where it is known how many samples there will be.
+    /// The time of all processors together, if the number of samples is known in advance.
     pub processor_seconds: Option<f64>,
-    /// How far colors may be off.
+    /// The error that colors may have.
     pub model_error: f64,
-    /// What light is left out.
+    /// The light that is left out.
     pub left_out: &'a [String],
-    /// The plan in words, a decision each.
+    /// The plan in words, one decision per entry.
     pub because: &'a [String],
 }
 
 impl<'a> PlanAccount<'a> {
-    /// Of a plan.
+    /// Summarizes a plan.
     pub fn new(plan: &'a Plan) -> Self {
         let method = &plan.method;
         let (pass, is_known) = (method.light_pass.as_ref(), method.stop.is_none());
@@ -50,26 +50,26 @@ impl<'a> PlanAccount<'a> {
     }
 }
 
-/// What rendering noticed.
+/// What was noticed during a render.
 #[derive(Clone, Debug, Serialize)]
 pub struct RenderAccount<'a> {
     /// What the tracer noticed.
     #[serde(flatten)]
     pub report: &'a Report,
-    /// How long it took.
+    /// How long the render took.
     pub seconds: f64,
-    /// How long the plan expected it to take.
+    /// How long the plan expected the render to take.
     pub expected_seconds: f64,
-    /// How far the image is off, where that was measured.
+    /// The error of the image, if it was measured.
     pub error: Option<ErrorAccount<'a>>,
-    /// What the process has taken so far, where the system tells it.
+    /// The processor time of the process so far, if the system reports it.
     pub processor_seconds: Option<f64>,
-    /// The most memory that the process has had at once, where the system tells it.
+    /// The peak memory of the process, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
 }
 
 impl<'a> RenderAccount<'a> {
-    /// Of an image that took some time, where its plan expected another.
+    /// Summarizes the render of an image, given the time that it took and the time that its plan expected.
     pub fn new(image: &'a Image, took: Duration, expected: Duration) -> Self {
         Self {
             report: image.report(),
@@ -82,51 +82,51 @@ impl<'a> RenderAccount<'a> {
     }
 }
 
-/// How far an image is off. All errors are relative to the image.
+/// The error of an image. All errors are relative to the image.
 #[derive(Clone, Debug, Serialize)]
 pub struct ErrorAccount<'a> {
-    /// The error that was asked for, if one was.
+    /// The requested error, if any.
     pub asked: Option<f64>,
-    /// Whether it is reached; so it is where none was.
+    /// Whether the requested error was reached. True if none was requested.
     pub is_reached: bool,
     /// What ended the render: error, time or samples.
     pub stopped_by: Option<&'static str>,
-    /// Camera samples of each pixel.
+    /// The number of camera samples per pixel.
     pub samples_per_pixel: u32,
-    /// In 95 of 100 renders the error is at most this.
+    /// The error is at most this in 95 of 100 renders.
     pub at_most: f64,
-    /// The part of it that is chance, as it is expected.
+    /// The expected noise: the part of the error that is due to chance.
     pub noise: f64,
-    /// What the noise is at most in 95 of 100 renders.
+    /// The noise is at most this in 95 of 100 renders.
     pub noise_at_most: f64,
-    /// The part of photons that are gathered, which blur, as it is expected.
+    /// The expected blur: the part of the error that is due to gathered photons.
     pub blur: f64,
-    /// What the blur is at most in 95 of 100 renders.
+    /// The blur is at most this in 95 of 100 renders.
     pub blur_at_most: f64,
-    /// The noise of alpha, relative to alpha, as it is expected; none without shadow catchers.
+    /// The expected noise of alpha, relative to alpha. None without shadow catchers.
     pub alpha: Option<f64>,
-    /// What the noise of alpha is at most in 95 of 100 renders.
+    /// The noise of alpha is at most this in 95 of 100 renders.
     pub alpha_at_most: Option<f64>,
-    /// The part that is color.
+    /// The part of the error that is due to the color model.
     pub model: f64,
-    /// First column and row of the 16 x 16 pixels with most noise.
+    /// The first column and row of the 16 x 16 pixels with the most noise.
     pub worst_tile: [i64; 2],
-    /// How much it is.
+    /// The expected noise of the worst tile.
     pub worst_tile_noise: f64,
-    /// Column and row of a pixel whose light one of eight renders found alone.
+    /// The column and row of a pixel with light that only one of eight renders found.
     pub outlier: Option<[i64; 2]>,
-    /// Its share of the variance.
+    /// The outlier's share of the variance.
     pub outlier_share: Option<f64>,
-    /// The light that was found there.
+    /// The light that was found in the outlier.
     pub outlier_light: Option<&'a str>,
-    /// How often it was scattered, mirrored or refracted on its way.
+    /// How often the outlier's light was scattered, mirrored or refracted on its way.
     pub outlier_bounces: Option<u32>,
-    /// How it was found.
+    /// How the outlier's light was found.
     pub outlier_found: Option<&'static str>,
 }
 
 impl<'a> ErrorAccount<'a> {
-    /// Of an error.
+    /// Summarizes an error.
     pub fn new(error: &'a ImageError) -> Self {
         let light = error.rare_light.as_ref();
         let (noise, outlier) = (&error.noise, error.noise.outlier.as_ref());
@@ -154,7 +154,7 @@ impl<'a> ErrorAccount<'a> {
     }
 }
 
-/// The most memory that the process has had at once, where Linux tells it.
+/// Returns the peak memory of the process, if Linux reports it.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

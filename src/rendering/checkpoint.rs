@@ -1,4 +1,4 @@
-//! Checkpoints: renders that were stopped, and go on.
+//! Checkpoints, from which stopped renders continue.
 
 use std::fs;
 use std::path::Path;
@@ -15,39 +15,39 @@ use crate::trace;
 /// The first bytes of a checkpoint.
 const CHECKPOINT: Kind = *b"AbbeCkp4";
 
-/// What came of a checkpoint.
+/// The result of resuming from a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resumed {
-    /// The render goes on from there.
+    /// The render continues from the checkpoint.
     Continues,
-    /// All samples that are asked for had been taken.
+    /// All requested samples had already been taken.
     Finished,
-    /// More samples than that had been taken: this many of each pixel. Nothing was read.
+    /// More samples had been taken than requested: this many per pixel. Nothing was read.
     HasMore(u32),
 }
 
-/// A file that a finished render has written, as it was then.
+/// A file that a finished render has written, with its state at that time.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Written {
     name: String,
     length: u64,
     modified: SystemTime,
-    /// How it was written.
+    /// How the file was written.
     way: String,
 }
 
 impl Written {
-    /// A file as it is now, written in some way; none if it is not there.
+    /// Describes a file as it is now, written in a given way. Returns none if it does not exist.
     pub(super) fn of(path: &Path, way: &str) -> Option<Self> {
         let (name, found) = (path.file_name()?.to_string_lossy().into_owned(), fs::metadata(path).ok()?);
         Some(Self { name, length: found.len(), modified: found.modified().ok()?, way: way.to_owned() })
     }
 }
 
-/// What the checkpoint of a finished render knows beside its sums; empty before its end.
+/// What the checkpoint of a finished render stores besides its sums. Empty before the end.
 #[derive(Default, Serialize, Deserialize)]
 pub(super) struct Finished {
-    /// What stands for all that was asked for.
+    /// A digest of the requested settings.
     asked: String,
     written: Vec<Written>,
 }
@@ -58,8 +58,8 @@ impl Finished {
     }
 }
 
-/// Whether a file is the checkpoint of a finished render of a scene with the options in it, which has written `files`
-/// in some `way`, and nobody has changed them since. It is found out without a plan.
+/// Returns whether a file is the checkpoint of a finished render of a scene with all options applied, which has written
+/// `files` in a certain `way`, and whether nobody has changed these since. Does not need a plan.
 pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], way: &str) -> bool {
     let read = || -> Result<bool> {
         let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else { return Ok(false) };
@@ -70,23 +70,23 @@ pub fn has_finished(path: &Path, scene: &Scene, shard: Shard, files: &[&Path], w
         let is_there = |file: &&Path| Written::of(file, way).is_some_and(|file| written.contains(&file));
         Ok(asked == digest(&format!("{:?}", scene.render)) && files.iter().all(is_there))
     };
-    // Whatever is wrong with it is reported when the render would continue from it.
+    // Any error is reported when the render tries to continue from the checkpoint.
     read().unwrap_or(false)
 }
 
-/// Whether a file is a checkpoint, which may be damaged or of another render.
+/// Returns whether a file is a checkpoint. It may be damaged or belong to another render.
 ///
 /// # Errors
 /// If it cannot be read.
 pub fn is_checkpoint(path: &Path) -> Result<bool> {
-    // A pipe would be waited for.
+    // Opening a pipe would block.
     Ok(path.is_file() && BlockReader::open(path, CHECKPOINT)?.is_some())
 }
 
 /// Writes a checkpoint.
 ///
 /// # Errors
-/// If it cannot be written; a file that was there before is then untouched.
+/// If it cannot be written. An existing file is then untouched.
 pub(super) fn save(path: &Path, identity: &Identity, finished: &Finished, passes: &trace::Rendering) -> Result<()> {
     write_blocks(path, CHECKPOINT, &|blocks| {
         blocks.block(identity)?;
@@ -95,10 +95,10 @@ pub(super) fn save(path: &Path, identity: &Identity, finished: &Finished, passes
     })
 }
 
-/// Goes on from a checkpoint. Returns as well which files were written, if the render had finished.
+/// Continues from a checkpoint. Also returns which files were written, if the render had finished.
 ///
 /// # Errors
-/// If it is of something else, damaged, or cannot be read.
+/// If it belongs to something else, is damaged, or cannot be read.
 pub(super) fn resume(
     path: &Path,
     identity: &Identity,

@@ -1,4 +1,4 @@
-//! By what a render is known again.
+//! The identity of a render, by which checkpoints, parts and plans are matched to it.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::film::{Format, Overscan, Shard, Window};
 use crate::scene::{FilmSettings, Scene};
 use crate::trace::{LightPass, Method, Stop};
 
-/// What two runs must have in common to add to one image, each with its name.
+/// The facts that two runs must have in common to contribute to one image, each with its name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Identity(Vec<(String, String)>);
 
@@ -19,7 +19,8 @@ const STOP: &str = "stop rule";
 const PLAN: &str = "plan";
 
 impl Identity {
-    /// Of a scene with the options in it. The number of samples is no part of it, unless the plan depends on that.
+    /// Identifies a scene with all options applied. The number of samples is not part of the identity, unless the plan
+    /// depends on it.
     pub(super) fn new(scene: &Scene, method: &Method, shard: Shard) -> Self {
         let spectral = scene.format.spectral;
         let stop = if method.stop.is_some() { "error or time" } else { "samples alone" };
@@ -28,7 +29,7 @@ impl Identity {
         Self(Self::without_plan(scene, shard).0.into_iter().chain(of_method).collect())
     }
 
-    /// What of it is known before a scene is planned.
+    /// Returns the part of the identity that is known before a scene is planned.
     fn without_plan(scene: &Scene, shard: Shard) -> Self {
         let FilmSettings { width, height, filter, color_space, overscan, crop } = scene.film;
         let Overscan { left, top, right, bottom } = overscan;
@@ -52,25 +53,25 @@ impl Identity {
         Self(facts.map(|(name, value)| (name.to_owned(), value)).into())
     }
 
-    /// Whether it is of a scene, by whatever plan.
+    /// Returns whether this is the identity of a scene, whatever the plan.
     pub(super) fn is_of(&self, scene: &Scene, shard: Shard) -> bool {
         let own = self.0.iter().filter(|(name, _)| ![STOP, PLAN].contains(&name.as_str()));
         own.eq(&Self::without_plan(scene, shard).0)
     }
 
-    /// The identity that all parts of an image share.
+    /// Returns the identity that all parts of an image share.
     pub(super) fn of_all_parts(&self) -> Self {
         Self(self.0.iter().filter(|(name, _)| name != "part").cloned().collect())
     }
 
-    /// Why what follows it in a file is not read: another version may have other data there.
+    /// Returns why the rest of a file cannot be read, if so: another version may store other data after the identity.
     pub(super) fn objection(&self) -> Option<String> {
         let made_by = self.0.iter().find_map(|(name, value)| (name == VERSION).then_some(value))?;
         (made_by != env!("CARGO_PKG_VERSION"))
             .then(|| format!("its {VERSION} is {made_by}, not {}", env!("CARGO_PKG_VERSION")))
     }
 
-    /// What differs in another run, if anything does.
+    /// Returns what differs in another run, if anything does.
     pub(super) fn difference(&self, other: &Self) -> Option<String> {
         let value = |name: &str| self.0.iter().find(|(known, _)| known == name).map(|(_, value)| value);
         let (name, theirs) = other.0.iter().find(|(name, theirs)| value(name) != Some(theirs))?;
@@ -86,9 +87,9 @@ impl Identity {
     }
 }
 
-/// What of a method decides what a camera sample finds: not how many there are, nor when they are enough, nor how many
-/// photons are shown beside them. Where photons are gathered, their number and radius belong to it, and so does the
-/// number of samples.
+/// Reduces a method to what determines the result of a camera sample. Omits the number of samples, the limits of the
+/// stop rule and the number of photons that are splatted. If photons are gathered, their number and radius are
+/// included, and so is the number of samples.
 fn of_camera(method: &Method) -> Method {
     let light_pass = method.light_pass.clone().map(|pass| LightPass { photons: 0, ..pass });
     let stop = method.stop.as_ref().map(|_| Stop { noise: None, time: None, least: 0, most: 0 });
@@ -96,7 +97,7 @@ fn of_camera(method: &Method) -> Method {
     if method.map().is_some() { method } else { Method { samples: 0, light_pass, ..method } }
 }
 
-/// 64 hexadecimal digits that stand for a text.
+/// Returns 64 hexadecimal digits that identify a text.
 pub(super) fn digest(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().fold(String::new(), |mut digits, byte| {
         let _ = write!(digits, "{byte:02x}");

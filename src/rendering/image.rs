@@ -1,4 +1,4 @@
-//! What a render hands over.
+//! The result of a render.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::film::{
 };
 use crate::trace::Report;
 
-/// A rendered image, and all that is known of it.
+/// A rendered image, with all that is known about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     pub(super) film: Film,
@@ -22,27 +22,28 @@ pub struct Image {
     pub(super) view: CameraView,
     pub(super) format: Format,
     pub(super) provenance: Provenance,
-    /// What is said of it if there is no light in it.
+    /// The warning to show if the image contains no light.
     pub(super) dark: Option<String>,
 }
 
 impl Image {
-    /// Pixels per row of what was made: the format, with its overscan or a part of it.
+    /// Returns the number of pixels per row that were rendered: those of the format, possibly with overscan or cropped.
     pub fn width(&self) -> u32 {
         self.film.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.film.height
     }
 
-    /// Linear red, green and blue of all pixels in the film's color space, row by row from the top left.
+    /// Returns linear red, green and blue of all pixels in the film's color space, row by row from the top left.
     pub fn rgb(&self) -> Vec<[f32; 3]> {
         self.film.pixels.iter().map(|pixel| pixel.rgb).collect()
     }
 
-    /// Linear red, green and blue of the pixel in column `x`, row `y`, counted from 0 at the top left of what was made.
+    /// Returns linear red, green and blue of the pixel in column `x`, row `y`, counted from 0 at the top left of the
+    /// rendered pixels.
     ///
     /// # Panics
     /// If there is no such pixel.
@@ -50,20 +51,20 @@ impl Image {
         self.film.pixels[self.number(x, y)].rgb
     }
 
-    /// The number of a pixel. A column that there is not would be one of the next row.
+    /// Returns the index of a pixel. Without the check, a column beyond the last would be one of the next row.
     fn number(&self, x: u32, y: u32) -> usize {
         assert!(x < self.width(), "there is no column {x} in an image of {} pixels per row", self.width());
         y as usize * self.film.width as usize + x as usize
     }
 
-    /// All values of a layer by its name in the file, row by row from the top left; none if there is no such layer.
+    /// Returns a channel by its name in the file, row by row from the top left, or none if there is no such channel.
     ///
     /// | name | value |
     /// |---|---|
     /// | `R`, `G`, `B` | linear color |
-    /// | `A` | share of the camera rays that met something, 0 to 1 |
-    /// | `Z` | nearest depth in scene units, 1e10 where nothing is met |
-    /// | `albedo.R`, `N.X`, .. | what was asked for beside them |
+    /// | `A` | fraction of the camera rays that hit something, 0 to 1 |
+    /// | `Z` | smallest depth in scene units, 1e10 where nothing is hit |
+    /// | `albedo.R`, `N.X`, .. | the requested layers |
     pub fn layer(&self, name: &str) -> Option<Vec<f32>> {
         let value: fn(&Pixel) -> f32 = match name {
             "R" => |pixel| pixel.rgb[0],
@@ -76,7 +77,7 @@ impl Image {
         Some(self.film.pixels.iter().map(value).collect())
     }
 
-    /// A channel of a layer that was asked for.
+    /// Returns a channel of a requested layer.
     fn layer_beside(&self, name: &str) -> Option<Vec<f32>> {
         let (layer, channel) = name.rsplit_once('.')?;
         let image = self.film.layers.iter().find(|image| image.name == layer)?;
@@ -84,22 +85,22 @@ impl Image {
         Some(image.channel(number).collect())
     }
 
-    /// The pixels as they are, with what they mean.
+    /// Returns the film: the unchanged pixels and what they mean.
     pub fn film(&self) -> &Film {
         &self.film
     }
 
-    /// What rendering noticed: samples, rays, light that was left out.
+    /// Returns what the render noticed: samples, rays, light that was left out.
     pub fn report(&self) -> &Report {
         &self.report
     }
 
-    /// How far it is off, where a stop rule has it measured: in a render that stops by its error or by time.
+    /// Returns the error of the image, if it was measured: in a render that stops by its error or by time.
     pub fn error(&self) -> Option<&ImageError> {
         self.error.as_ref()
     }
 
-    /// What whoever sees it should know: light that is too rare, an error that is not reached, samples left out.
+    /// Returns warnings for viewers: light that is too rare, an error that is not reached, samples left out.
     pub fn warnings(&self) -> Vec<String> {
         let samples = self.provenance.count(SAMPLES);
         let few = samples.and_then(|samples| few_samples(&self.format.layers, samples));
@@ -108,43 +109,43 @@ impl Image {
         few.into_iter().chain(dark).chain(warnings(&self.report, self.error.as_ref())).collect()
     }
 
-    /// How its file is written.
+    /// Returns the format of the image's file.
     pub fn format(&self) -> &Format {
         &self.format
     }
 
-    /// How it was rendered and why, one decision a line; nothing of an image that was merged from parts.
+    /// Returns how the image was rendered and why, one decision per entry. Empty for an image merged from parts.
     pub fn because(&self) -> &[String] {
         &self.because
     }
 
-    /// What its files say of it.
+    /// Returns what the image's files record besides its pixels.
     pub(super) fn heading(&self) -> Heading<'_> {
         Heading { film: &self.film, format: &self.format, view: &self.view, provenance: &self.provenance }
     }
 
-    /// Writes a linear OpenEXR file with all layers, the camera, and everything that another run needs to make the same
-    /// bytes. Returns how many values were too large for 16 bits, if it has those, and became 65504.
+    /// Writes a linear OpenEXR file with all layers, the camera, and everything that another run needs to reproduce the
+    /// same bytes. Returns how many values exceeded the range of 16 bits, if the file uses them, and became 65504.
     ///
     /// # Errors
-    /// If it cannot be written; a file that was there before is then untouched.
+    /// If the file cannot be written. An existing file is then untouched.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
         write_exr(self.heading(), &mut &self.film, path.as_ref())
     }
 
-    /// The bytes of that file, and how many values became 65504.
+    /// Encodes the file of [`write_exr`](Self::write_exr). Returns its bytes, and how many values became 65504.
     ///
     /// # Errors
-    /// If it cannot be encoded.
+    /// If the image cannot be encoded.
     pub fn exr_bytes(&self) -> Result<(Vec<u8>, u64)> {
         encode_exr(self.heading(), &mut &self.film, Path::new("the image"))
     }
 
-    /// The spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left; none if spectra were not asked
-    /// for.
+    /// Returns the spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left, or none if spectra
+    /// were not requested.
     ///
-    /// Each band is its center in nm and its radiance per nm, the mean over the band, on the scale of the scene's
-    /// `samples`: an even spectrum of 1 is 1 in all of them, and has luminance 1 in the image.
+    /// Each band is given by its center in nm and its radiance per nm, the mean over the band. The scale is that of the
+    /// scene's `samples`: a uniform spectrum of 1 is 1 in all bands, and has luminance 1 in the image.
     ///
     /// # Panics
     /// If there is no such pixel.
@@ -152,8 +153,8 @@ impl Image {
         Some(spectrum(self.film.spectral.as_ref()?, self.number(x, y), 0))
     }
 
-    /// The spectra of S1, S2 and S3 of a pixel, as [`spectrum_at`](Self::spectrum_at) has that of S0; none if no Stokes
-    /// vectors or no spectra were asked for.
+    /// Returns the spectra of S1, S2 and S3 of a pixel, like [`spectrum_at`](Self::spectrum_at) returns that of S0.
+    /// Returns none if Stokes vectors or spectra were not requested.
     ///
     /// # Panics
     /// If there is no such pixel.
@@ -163,33 +164,33 @@ impl Image {
         Some([1, 2, 3].map(|component| spectrum(spectral, pixel, component)))
     }
 
-    /// Writes the spectra of all pixels as an OpenEXR file, in the layout of Fichet, Pacanowski & Wilkie 2021; nothing
-    /// if they were not asked for.
+    /// Writes the spectra of all pixels as an OpenEXR file, in the layout of Fichet, Pacanowski & Wilkie 2021. Writes
+    /// nothing if they were not requested.
     ///
     /// # Errors
-    /// As [`write_exr`](Self::write_exr).
+    /// Those of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<()> {
         write_spectral_exr(self.heading(), &mut &self.film, path.as_ref())
     }
 
-    /// Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`.
+    /// Writes an 8-bit sRGB picture for viewing, brightened by 2^`exposure`.
     ///
     /// # Errors
-    /// If it cannot be written; a file that was there before is then untouched.
+    /// If the file cannot be written. An existing file is then untouched.
     pub fn write_png(&self, path: impl AsRef<Path>, exposure: f64) -> Result<()> {
         write_png(&self.film, exposure, path.as_ref())
     }
 
-    /// The bytes of that picture.
+    /// Encodes the picture that [`write_png`](Self::write_png) writes.
     ///
     /// # Errors
-    /// If it cannot be encoded.
+    /// If the picture cannot be encoded.
     pub fn png_bytes(&self, exposure: f64) -> Result<Vec<u8>> {
         film_png(&self.film, exposure, Path::new("the picture"))
     }
 }
 
-/// The center of each band in nm, and a Stokes component of a pixel there.
+/// Returns the center of each band in nm, and the value of a pixel's Stokes component in it.
 fn spectrum(spectral: &SpectralImage, pixel: usize, component: usize) -> Vec<[f64; 2]> {
     let values = spectral.component(pixel, component).iter();
     spectral.bands.centers_nm().zip(values).map(|(nm, &value)| [nm, value.into()]).collect()

@@ -1,32 +1,34 @@
 use crate::trace::{Estimate, FIRST_LOOK, Noise, RareLight, Stopped};
 
-/// How far an image is off, as a render with a stop rule has measured it.
+/// The error of an image, measured by a render with a stop rule.
 ///
-/// Errors are relative: the root of the mean square, over all pixels and the three film channels, by that of the image.
+/// Errors are relative: the root mean square over all pixels and the three film channels, divided by that of the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageError {
-    /// The error that was asked for, if one was.
+    /// The requested error, if any.
     pub asked: Option<f64>,
-    /// What chance makes of it.
+    /// The part that is due to chance.
     pub noise: Noise,
-    /// What photons that are gathered make of it, which blur.
+    /// The part that is due to gathered photons, which blur.
     pub blur: Estimate,
-    /// The noise of alpha, relative to alpha, where shadow catchers make some: the larger of it and of all that colors
-    /// are off counts.
+    /// The noise of alpha, relative to alpha, if shadow catchers cause any. The larger of this and the total error of
+    /// the colors counts.
     pub alpha: Option<Estimate>,
-    /// The light that makes an outlier of the noise, of a render that has ended.
+    /// The light that makes an outlier of the noise, in a render that has ended.
     pub rare_light: Option<RareLight>,
-    /// What the model of color may make of it, as the plan predicts: relative to the strongest channel of each color.
+    /// The error that the color model may cause, as the plan predicts: relative to the strongest channel of each color.
     pub model: f64,
-    /// What ended the render; none as long as it goes on.
+    /// What ended the render, or none while it is running.
     pub stopped_by: Option<Stopped>,
 }
 
 impl ImageError {
-    /// The error is smaller than this in 95 of 100 renders, but for what no render of the plan finds, and for
-    /// light so rare that none of it was met. Where the error that was asked for is reached at a later look than the
-    /// first, it is that: a render that ends as soon as it measures so little ends rather where it measures too little.
-    /// So it is where rare light was met, as there may be some that is rarer still.
+    /// Returns a bound that the error stays below in 95 of 100 renders. It does not include light that no render of the
+    /// plan finds, nor light so rare that none of it was found.
+    ///
+    /// The bound is at least the requested error if that was reached at a later look than the first: a render that ends
+    /// as soon as the measured error is small enough tends to end when the measurement is too small. The same holds if
+    /// rare light was found, as there may be some that is rarer still.
     pub fn at_most(&self) -> f64 {
         let of_alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
         let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(of_alpha);
@@ -35,7 +37,7 @@ impl ImageError {
         self.asked.filter(|_| is_chosen).map_or(measured, |asked| measured.max(asked))
     }
 
-    /// Whether the error that was asked for is reached; so it is where none was.
+    /// Returns whether the requested error was reached. True if none was requested.
     pub fn is_reached(&self) -> bool {
         self.asked.is_none_or(|asked| {
             self.stopped_by == Some(Stopped::Noise) && self.at_most() <= asked * (1.0 + 4.0 * f64::EPSILON)

@@ -1,4 +1,4 @@
-//! Floor 6: a scene made into an image, for programs; the `render` command is one of them.
+//! Floor 6: renders a scene to an image. This is the interface for programs, including the `render` command.
 
 mod account;
 mod checkpoint;

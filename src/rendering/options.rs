@@ -1,4 +1,4 @@
-//! What is asked for beside the scene.
+//! Settings that are given in addition to the scene.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,56 +8,56 @@ use crate::error::{Error, Result};
 use crate::film::{LONGEST_NAME, Layer, Overscan, Shard, Window, light_layer_name};
 use crate::scene::{FilmSettings, ModelText, PolarizationText, RenderText, Scene};
 
-/// What replaces the scene's own settings. By default nothing does.
+/// Settings that replace the scene's own. By default they replace nothing.
 ///
 /// ```
 /// let quick = abbe::Options { samples: Some(4), ..abbe::Options::default() };
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Camera samples per pixel, 1 or more; beside an error or a time, the most. Those of the scene count no more where
-    /// an error or a time is given here.
+    /// The number of camera samples per pixel, 1 or more. With an error or a time, this is the maximum. If an error or
+    /// a time is given here, the scene's own number of samples is ignored.
     pub samples: Option<u32>,
-    /// The relative error of the image that is good enough, 0.000001 to 1: the root of the mean square over all pixels
-    /// and channels, by that of the image. It is kept in 95 of 100 renders.
+    /// The relative error at which the image is good enough, 0.000001 to 1: the root mean square over all pixels and
+    /// channels, divided by that of the image. It holds in 95 of 100 renders.
     pub error: Option<f64>,
-    /// How long it may render.
+    /// How long the render may take.
     pub time: Option<Duration>,
-    /// Chooses another set of random numbers.
+    /// The seed, which selects another set of random numbers.
     pub seed: Option<u64>,
-    /// What is made around the format, in pixels.
+    /// The pixels that are rendered around the format.
     pub overscan: Option<Overscan>,
-    /// The part of the image and its overscan that is made, in pixels of the format.
+    /// The part of the image and its overscan that is rendered, in pixels of the format.
     pub crop: Option<Window>,
-    /// Layers in place of the scene's own.
+    /// Layers that replace the scene's own.
     pub layers: Option<Vec<Layer>>,
-    /// Whether spectra are made, as they are where the scene asks for them.
+    /// Whether to render spectra even if the scene does not request them.
     pub spectral: bool,
-    /// Processor threads, 1 to [`MOST_THREADS`](Self::MOST_THREADS); one for each processor if absent. The image is the
-    /// same for any number.
+    /// The number of processor threads, 1 to [`MOST_THREADS`](Self::MOST_THREADS); one for each processor if absent.
+    /// The image is the same for any number.
     pub threads: Option<usize>,
-    /// The part of the image's tiles that is made.
+    /// The part of the image's tiles that is rendered.
     pub shard: Shard,
-    /// The file of a plan that is followed, where one would be made: of this scene with the same options but for
-    /// threads, stamp and which part it is. The image is the same. Where an error or a time is asked for, parts have
-    /// another plan than the whole.
+    /// The file of a plan to follow instead of making one. It must be a plan for this scene with the same options,
+    /// except for threads, stamp and the number of the part. The image is the same. If an error or a time is requested,
+    /// parts have another plan than the whole image.
     pub plan: Option<PathBuf>,
-    /// Whether the file says when the image was made, on how many threads, and how long it took. Then no two files are
-    /// the same to the byte. Parts do not say it.
+    /// Whether the file records when the image was made, on how many threads, and how long it took. No two files are
+    /// then identical to the byte. Parts do not record it.
     pub stamp: bool,
 }
 
 impl Options {
-    /// Most threads that can be asked for: many more would exhaust a machine.
+    /// The maximum number of threads. Many more would exhaust a machine.
     pub const MOST_THREADS: u16 = 1024;
 
-    /// Puts these settings in place of the scene's own.
+    /// Replaces the scene's settings with these.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if there are no samples, or none are given for a part of an image that else would stop by
-    /// its error or a time; if the error does not lie between 0.000001 and 1, the image has no pixels, the overscan is
-    /// too wide, the crop lies outside the image and its overscan, or its layers cannot be written, together or in the
-    /// scene's format.
+    /// [`Error::Arguments`] if there are 0 samples, or no number of samples is given for a part of an image that would
+    /// otherwise stop by its error or a time; if the error is not between 0.000001 and 1, the image has no pixels, the
+    /// overscan is too wide, the crop lies outside the image and its overscan, or its layers cannot be written,
+    /// together or in the scene's format.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         let (render, film) = self.instead_of(scene)?;
         (scene.render, scene.film) = (render, film);
@@ -70,8 +70,8 @@ impl Options {
         check_layers(scene, self.shard)
     }
 
-    /// What replaces a scene's own way to be rendered, and its film. Programs may have changed these since they were
-    /// compiled: they are checked as well.
+    /// Returns the render settings and the film that replace those of a scene. Programs may have changed these since
+    /// the scene was compiled, so they are checked as well.
     pub(super) fn instead_of(&self, scene: &Scene) -> Result<(RenderText, FilmSettings)> {
         let own = &scene.render;
         let stops_otherwise = self.error.is_some() || self.time.is_some();
@@ -87,7 +87,7 @@ impl Options {
         Ok((render, film))
     }
 
-    /// How many threads are asked for; 0 for one on each processor.
+    /// Returns the requested number of threads, or 0 for one per processor.
     pub(super) fn threads(&self) -> Result<usize> {
         let most = Self::MOST_THREADS;
         if self.threads.is_some_and(|threads| !(1..=usize::from(most)).contains(&threads)) {
@@ -130,11 +130,11 @@ fn check_film(film: &FilmSettings) -> Result<()> {
     }
 }
 
-/// Most bytes of memory that layers may take: 64 GB.
+/// The maximum bytes of memory that layers may take: 64 GB.
 const MOST_OF_LAYERS: u64 = 64_000_000_000;
 
-/// Refuses layers that fill all memory, cannot be made or do not fit the format, and lights whose layers' names cannot
-/// be written.
+/// Refuses layers that would exhaust the memory, cannot be rendered or do not fit the format. Also refuses lights with
+/// layer names that cannot be written.
 pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     if let Some((message, help)) = scene.format.objection() {
         return Error::refuse(message, &help);

@@ -1,21 +1,21 @@
-//! What an image's file says of its render.
+//! What an image's file records about its render.
 
 use crate::film::{Fact, Provenance};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::trace::REPLICATES;
 
-/// The key of camera samples per pixel.
+/// The key for the number of camera samples per pixel.
 pub(super) const SAMPLES: &str = "samples";
-/// The key of samples that are left out because they are not finite.
+/// The key for the number of samples that are left out because they are not finite.
 pub(super) const NON_FINITE: &str = "nonFinite";
 
-/// What is known before the first sample: the counts of what a render has done are 0.
+/// Returns what is known before the first sample. The counts of what a render has done are still 0.
 pub(super) fn origin(scene: &Scene, plan: &Plan) -> Provenance {
     let text = |text: &str| Fact::Text(text.to_owned());
     let method = &plan.method;
     let wavelengths: Vec<String> = method.basis.wavelengths_nm().iter().map(f64::to_string).collect();
-    // As on a command line.
+    // Written as on a command line.
     let settings: Vec<String> = scene.settings.iter().map(|setting| format!("--set {setting}")).collect();
     let settings = (!settings.is_empty()).then(|| ("set", Fact::Text(settings.join(" "))));
     let replicates = method.stop.as_ref().map(|_| ("replicates", Fact::Count(REPLICATES as u64)));

@@ -1,4 +1,4 @@
-//! Parts of an image that several machines make: finished tiles, and all that the image's file says beside them.
+//! Parts of an image that are rendered on several machines: finished tiles, and the other contents of the image's file.
 
 use std::path::Path;
 
@@ -15,10 +15,10 @@ use crate::trace;
 /// The first bytes of a part.
 const PART: Kind = *b"AbbePrt1";
 
-/// What stands before the tiles.
+/// The data before the tiles.
 #[derive(Serialize, Deserialize)]
 pub(super) struct PartHeader {
-    /// Read by itself, and first: what is of another version may not be read further.
+    /// Read first and separately: the rest of another version's file cannot be read.
     #[serde(skip)]
     identity: Identity,
     pub(super) shard: Shard,
@@ -26,15 +26,15 @@ pub(super) struct PartHeader {
     pub(super) film: Film,
     pub(super) format: Format,
     pub(super) view: CameraView,
-    /// With what was left out of the light that all parts send alike; and what was left out beside that.
+    /// Counts only the non-finite samples of the light that all parts send alike. `non_finite` counts the others.
     pub(super) provenance: Provenance,
     pub(super) non_finite: u64,
 }
 
-/// Writes the finished tiles of an image, of which all else is known.
+/// Writes the finished tiles of an image. `summary` holds everything else about it.
 ///
 /// # Errors
-/// If they cannot be written; a file that was there before is then untouched.
+/// If they cannot be written. An existing file is then untouched.
 pub(super) fn write(
     path: &Path,
     identity: &Identity,
@@ -54,10 +54,10 @@ pub(super) fn write(
     })
 }
 
-/// Opens a part and reads what stands before its tiles.
+/// Opens a part and reads its header.
 ///
 /// # Errors
-/// [`Error::Arguments`] if it is no part, or not there; [`Error::Decode`] if it is damaged.
+/// [`Error::Arguments`] if it does not exist, is no part, or is of another version; [`Error::Decode`] if it is damaged.
 pub(super) fn open(path: &Path) -> Result<(PartHeader, BlockReader)> {
     let made = "parts are made by --shard, as in render --shard 1/4 scene.toml";
     if !path.exists() {
@@ -77,7 +77,7 @@ pub(super) fn open(path: &Path) -> Result<(PartHeader, BlockReader)> {
 }
 
 impl PartHeader {
-    /// Why another part is not of the same image, if it is not.
+    /// Returns why another part does not belong to the same image, if that is so.
     pub(super) fn difference(&self, part: &Self) -> Option<String> {
         if part.shard.count() != self.shard.count() {
             return Some(format!("it is one of {} parts, not of {}", part.shard.count(), self.shard.count()));
@@ -96,7 +96,7 @@ impl PartHeader {
         (is_other || ours != theirs).then(|| "it was made with other options".into())
     }
 
-    /// What was left out of the light that all parts send alike.
+    /// Returns how many samples were left out of the light that all parts send alike.
     pub(super) fn shared_non_finite(&self) -> u64 {
         self.provenance.count(NON_FINITE).unwrap_or_default()
     }

@@ -1,4 +1,4 @@
-//! Images whose parts several machines made, laid together.
+//! Merges images whose parts were rendered on several machines.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,7 +13,7 @@ use crate::film::{
 };
 use crate::trace::Report;
 
-/// The parts of an image, all of them and of the same render. Only one tile of each is looked at at a time.
+/// All parts of an image, made by the same render. Only one tile of each part is read at a time.
 ///
 /// ```
 /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -36,9 +36,9 @@ use crate::trace::Report;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// What is known of the image without its pixels, and what was left out of all parts.
+    /// The image without its pixels, and the number of samples left out of all parts.
     image: Image,
-    /// In the order of their numbers.
+    /// The files, in the order of the parts' numbers.
     files: Vec<Tiles>,
 }
 
@@ -46,24 +46,24 @@ pub struct Parts {
 #[derive(Clone, Debug)]
 struct Tiles {
     path: PathBuf,
-    /// The byte at which the first one begins.
+    /// The byte at which the first unread tile begins.
     start: u64,
 }
 
-/// Lays the parts of an image together in memory: the same image, to the last bit, as one render makes.
+/// Merges the parts of an image in memory. Returns the same image, to the last bit, as a single render.
 ///
 /// # Errors
-/// As [`Parts::open`]; [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+/// Those of [`Parts::open`]; [`Error::Decode`](crate::Error::Decode) if a part is damaged.
 pub fn merge(parts: &[PathBuf]) -> Result<Image> {
     Parts::open(parts)?.image()
 }
 
 impl Parts {
-    /// Finds out whether parts, named in any order, make an image.
+    /// Checks that parts, given in any order, make up an image.
     ///
     /// # Errors
-    /// [`Error::Arguments`](crate::Error::Arguments) if a part is missing or there twice, or parts are not of the same
-    /// render; [`Error::Decode`](crate::Error::Decode) if one is damaged before its tiles.
+    /// [`Error::Arguments`](crate::Error::Arguments) if a part is missing or given twice, or if the parts are not of
+    /// the same render; [`Error::Decode`](crate::Error::Decode) if one is damaged before its tiles.
     pub fn open(paths: &[PathBuf]) -> Result<Self> {
         let Some((first, others)) = paths.split_first() else {
             return Error::refuse("no part of an image is given", "name all of them: render merge out.exr *.part");
@@ -102,30 +102,30 @@ impl Parts {
         Ok(Self { image, files: found.into_values().collect() })
     }
 
-    /// How the image's file is written.
+    /// Returns the format of the image's file.
     pub fn format(&self) -> &Format {
         &self.image.format
     }
 
-    /// Writes the image as [`Image::write_exr`] does, to the same bytes as one render. It takes as much memory as some
-    /// rows of the image, whatever the number of parts.
+    /// Writes the image like [`Image::write_exr`] does, with the same bytes as a single render. Needs memory for only
+    /// some rows of the image, whatever the number of parts.
     ///
     /// # Errors
-    /// As of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+    /// Those of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
         write_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
     }
 
-    /// Writes the spectra as [`Image::write_spectral_exr`] does, in as little memory. Returns whether there are any.
+    /// Writes the spectra like [`Image::write_spectral_exr`] does, in as little memory. Returns whether there are any.
     ///
     /// # Errors
-    /// As [`write_exr`](Self::write_exr).
+    /// Those of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<bool> {
         write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())?;
         Ok(self.image.film.spectral.is_some())
     }
 
-    /// The image in memory. It says of its rendering only what its files say.
+    /// Returns the image in memory. About its rendering, it contains only what its files record.
     ///
     /// # Errors
     /// [`Error::Decode`](crate::Error::Decode) if a part is damaged.
@@ -136,7 +136,7 @@ impl Parts {
     }
 }
 
-/// Where the tiles of a part begin, of which it may have none.
+/// Finds where the tiles of a part begin. The part may have none.
 fn tiles(path: &Path, blocks: BlockReader, shard: Shard, window: Window) -> Result<Tiles> {
     let start = blocks.place();
     if shard.tiles(window).next().is_none() {
@@ -145,22 +145,22 @@ fn tiles(path: &Path, blocks: BlockReader, shard: Shard, window: Window) -> Resu
     Ok(Tiles { path: path.to_owned(), start })
 }
 
-/// Rows that are merged at once: some blocks of the usual packing.
+/// The number of rows that are merged at a time: some blocks of the default compression.
 const AT_ONCE: u32 = 64;
-/// Files that are open at once, of the 256 that the strictest system allows; of more parts, some are opened again for
-/// each of their tiles.
+/// The maximum number of open files, of the 256 that the strictest system allows. If there are more parts, some are
+/// reopened for each of their tiles.
 const MOST_OPEN: usize = 200;
 
-/// Rows of an image, of the tiles of all parts.
+/// Rows of an image, assembled from the tiles of all parts.
 struct Strip<'p> {
     parts: &'p Parts,
-    /// How far each part is read, and its reader if that is kept.
+    /// How far each part has been read, and its reader if that stays open.
     files: Vec<Tiles>,
     readers: Vec<Option<BlockReader>>,
     at_once: Option<u32>,
-    /// Tiles of all parts.
+    /// The number of tiles in all parts.
     tiles: usize,
-    /// The rows.
+    /// The current rows.
     film: Film,
 }
 
@@ -172,7 +172,7 @@ impl<'p> Strip<'p> {
         Self { parts, files, readers, at_once, tiles, film: Film { height: 0, ..film.clone() } }
     }
 
-    /// Reads the next tile of the part that has it, which is its last one perhaps.
+    /// Reads the next tile from the part that contains it. After a part's last tile, checks that nothing follows.
     fn read(&mut self, place: TilePlace) -> Result<TileValues> {
         let (number, count) = (place.number as usize, self.files.len());
         let part = number % count;
@@ -195,7 +195,7 @@ impl<'p> Strip<'p> {
     }
 }
 
-/// Rows are asked for from the top down, whole tiles at once.
+/// Rows must be requested from the top down, in whole tiles.
 impl Rows for Strip<'_> {
     fn at_once(&self) -> Option<u32> {
         self.at_once

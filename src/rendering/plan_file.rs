@@ -1,4 +1,4 @@
-//! Plans that are made once, for all parts of an image.
+//! Plans that are made once for all parts of an image.
 
 use std::path::Path;
 
@@ -10,16 +10,16 @@ use crate::film::{BlockReader, Kind, Shard, write_blocks};
 use crate::plan::Plan;
 use crate::scene::{RenderText, Scene};
 
-/// The first bytes of a plan.
+/// The first bytes of a plan file.
 const PLAN: Kind = *b"AbbePln1";
 
-/// What a plan is of.
+/// What a plan was made for.
 #[derive(Serialize, Deserialize)]
 struct PlanHeader {
     identity: Identity,
-    /// Samples per pixel, if they were asked for.
+    /// The number of samples per pixel, if it was requested.
     samples: Option<u32>,
-    /// The error and the time in seconds that end a render, which parts do not know.
+    /// The error and the time in seconds that end a render. Plans for parts do not have them.
     error: Option<f64>,
     time: Option<f64>,
 }
@@ -32,7 +32,7 @@ impl PlanHeader {
         Self { identity, samples, error, time }
     }
 
-    /// What differs in another one, if anything does.
+    /// Returns what differs in another header, if anything does.
     fn difference(&self, other: &Self) -> Option<String> {
         let words = |samples: Option<u32>| samples.map_or("chosen by the plan".into(), |count| count.to_string());
         let of_samples = (self.samples != other.samples)
@@ -46,7 +46,7 @@ impl PlanHeader {
     }
 }
 
-/// Writes the plan of a scene with all options in it, for [`Options::plan`](crate::Options::plan).
+/// Writes the plan of a scene with all options applied, for [`Options::plan`](crate::Options::plan).
 ///
 /// ```
 /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -62,7 +62,7 @@ impl PlanHeader {
 /// ```
 ///
 /// # Errors
-/// If it cannot be written; a file that was there before is then untouched.
+/// If it cannot be written. An existing file is then untouched.
 pub fn write_plan(plan: &Plan, scene: &Scene, path: impl AsRef<Path>) -> Result<()> {
     let head = PlanHeader::new(scene, plan);
     write_blocks(path.as_ref(), PLAN, &|blocks| {
@@ -71,10 +71,10 @@ pub fn write_plan(plan: &Plan, scene: &Scene, path: impl AsRef<Path>) -> Result<
     })
 }
 
-/// Reads the plan of a scene with all options in it.
+/// Reads the plan of a scene with all options applied.
 ///
 /// # Errors
-/// [`Error::Arguments`] if it is missing, or of something else; [`Error::Decode`] if it is damaged.
+/// [`Error::Arguments`] if it does not exist, or belongs to something else; [`Error::Decode`] if it is damaged.
 pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     if !path.exists() {
         return Error::refuse(format!("there is no plan {}", path.display()), AGAIN);
@@ -98,7 +98,7 @@ pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
     }
 }
 
-/// How a plan is made that can be followed.
+/// How to make a plan that can be followed.
 const AGAIN: &str = "make it with the same options: render --plan scene.toml --plan-file frame.plan";
 const AGAIN_FOR_PARTS: &str =
     "parts take all samples, and have a plan of their own: render --plan scene.toml --shard 1/4 --plan-file frame.plan";

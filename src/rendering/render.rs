@@ -1,4 +1,4 @@
-//! Renders, step by step.
+//! Renders a scene, step by step.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -24,12 +24,12 @@ use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare, run_
 /// Renders a scene.
 ///
 /// # Errors
-/// As [`Rendering::new`].
+/// Those of [`Rendering::new`].
 pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
     Ok(Rendering::new(scene, options)?.run(&|_| ()))
 }
 
-/// A render that is planned: run to its end, or pass by pass with a look at the image after each.
+/// A planned render, which runs to its end, or pass by pass with a look at the image after each.
 ///
 /// ```
 /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -52,21 +52,21 @@ pub struct Rendering {
     passes: trace::Rendering<'static>,
     view: CameraView,
     format: Format,
-    /// What the image's file says of the render, but for the counts of what it has done.
+    /// What the image's file records about the render, except for the counts of what it has done.
     provenance: Provenance,
     threads: rayon::ThreadPool,
-    /// What a render has to be to go on from this one.
+    /// The identity that another render must have to continue this one.
     identity: Identity,
     shard: Shard,
-    /// What is asked for.
+    /// The requested settings.
     render: RenderText,
-    /// When it began, if the file says that.
+    /// When the render began, if the file records it.
     began: Option<Instant>,
-    /// Files of the finished render from which it was resumed.
+    /// The files of the finished render that this one was resumed from.
     written: Vec<Written>,
-    /// How much of the work an earlier run has done.
+    /// The amount of work that an earlier run has done.
     resumed_at: u64,
-    /// What to say of an image without any light.
+    /// The warning for an image without any light.
     dark: Option<String>,
 }
 
@@ -78,12 +78,12 @@ impl fmt::Debug for Rendering {
 }
 
 impl Rendering {
-    /// Decides how to render a scene, and prepares it.
+    /// Plans how to render a scene, and prepares it.
     ///
     /// # Errors
-    /// [`Error::Arguments`] if the options do not fit the scene, its plan is of something else, or threads cannot be
-    /// started; [`Error::Decode`] if the plan is damaged; [`Error::Io`] if it cannot be read, or the film does not fit
-    /// into memory.
+    /// [`Error::Arguments`] if the options do not fit the scene, its plan belongs to something else, or threads cannot
+    /// be started; [`Error::Decode`] if the plan is damaged; [`Error::Io`] if it cannot be read, or the film does not
+    /// fit into memory.
     pub fn new(scene: &Scene, options: &Options) -> Result<Self> {
         let now = Instant::now();
         let began = (options.stamp && options.shard == Shard::WHOLE).then_some(now);
@@ -130,43 +130,43 @@ impl Rendering {
         })
     }
 
-    /// Counts the time that it may take from an earlier moment on, such as that before the scene was read.
+    /// Counts the time that the render may take from an earlier moment, such as before the scene was read.
     pub fn since(mut self, began: Instant) -> Self {
         self.began = self.began.map(|_| began);
         self.passes = self.passes.since(began);
         self
     }
 
-    /// How it will be rendered, and why.
+    /// Returns the plan: how the scene will be rendered, and why.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// How much there is to do: camera samples, and photons, each of which counts as the samples that take as long.
-    /// With a stop rule this is a guess, better after each pass, and the most that may be done as long as nothing
-    /// [is known](Self::is_work_known).
+    /// Returns the amount of work: camera samples, and photons, each of which counts as the number of samples that take
+    /// as long. With a stop rule this is an estimate, which improves after each pass. It is the maximum until more [is
+    /// known](Self::is_work_known).
     pub fn work(&self) -> u64 {
         self.passes.work()
     }
 
-    /// Whether it is known, about, how much there is to do: where an error is asked for and no time, not before the
-    /// first look at the noise.
+    /// Returns whether the amount of work is approximately known. If an error is requested and no time, it is not known
+    /// before the first look at the noise.
     pub fn is_work_known(&self) -> bool {
         self.passes.is_work_known()
     }
 
-    /// How long all its [work](Self::work) takes, about, if nothing else keeps the processors busy; without what was
-    /// done before it was resumed.
+    /// Estimates how long all the [work](Self::work) takes if nothing else keeps the processors busy, without the work
+    /// done before the render was resumed.
     pub fn expected(&self) -> Duration {
         let work = self.work().saturating_sub(self.resumed_at);
         let part = work as f64 / self.passes.work_of_all_parts().max(1) as f64;
         self.plan.processor_time.mul_f64(part / self.threads.current_num_threads() as f64)
     }
 
-    /// Renders the next pass, if one is left, and returns whether another one is. Passes take more and more samples, or
-    /// gather photons of their own.
+    /// Renders the next pass, if one is left, and returns whether another one is left. Passes take more and more
+    /// samples, or gather photons of their own.
     ///
-    /// `progress` gets how much of the [`work`](Self::work) was done since its last call, on any thread.
+    /// `progress` receives the amount of [`work`](Self::work) done since its last call. Any thread may call it.
     ///
     /// ```
     /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -185,9 +185,10 @@ impl Rendering {
         run_on(&self.threads, || self.passes.advance(progress))
     }
 
-    /// The same, but stops before the next pixels once `is_due` says so. It is asked again and again, from any thread.
+    /// Renders the next pass like [`advance`](Self::advance), but stops before the next pixels once `is_due` returns
+    /// true. `is_due` is called again and again, from any thread.
     ///
-    /// A render that has stopped can be looked at, [saved](Self::save) and go on; the image in the end is the same.
+    /// A render that has stopped can be looked at, [saved](Self::save) and continued. The final image is the same.
     ///
     /// ```
     /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -214,41 +215,42 @@ impl Rendering {
         run_on(&self.threads, || self.passes.advance_until(progress, is_due))
     }
 
-    /// How much of the [`work`](Self::work) is done.
+    /// Returns how much of the [`work`](Self::work) is done.
     pub fn done(&self) -> u64 {
         self.passes.done()
     }
 
-    /// Camera samples taken so far.
+    /// Returns the number of camera samples taken so far.
     pub fn camera_samples(&self) -> u64 {
         self.passes.camera_samples()
     }
 
-    /// Writes a checkpoint: all sums so far, from which another run goes on to the same image.
+    /// Writes a checkpoint: all sums so far, from which another run continues to the same image.
     ///
     /// # Errors
-    /// If it cannot be written; a file that was there before is then untouched.
+    /// If it cannot be written. An existing file is then untouched.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         checkpoint::save(path.as_ref(), &self.identity, &Finished::default(), &self.passes)
     }
 
-    /// Writes the checkpoint of a finished render that has written its files: so [`has_written`](Self::has_written)
-    /// knows of them when it is resumed. `way` says how they were written, such as with which exposure.
+    /// Writes the checkpoint of a finished render that has written its files, so that
+    /// [`has_written`](Self::has_written) recognizes them after it is resumed. `way` describes how they were written,
+    /// for example with which exposure.
     ///
     /// # Errors
-    /// As of [`save`](Self::save).
+    /// Those of [`save`](Self::save).
     pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
         let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file, way)).collect();
         checkpoint::save(path.as_ref(), &self.identity, &Finished::new(&self.render, written), &self.passes)
     }
 
-    /// Whether the finished render that this was resumed from has written a file in the same way, and nobody has
-    /// changed it since.
+    /// Returns whether the finished render that this one was resumed from has written a file in the same way, and
+    /// nobody has changed it since.
     pub fn has_written(&self, file: impl AsRef<Path>, way: &str) -> bool {
         Written::of(file.as_ref(), way).is_some_and(|file| self.written.contains(&file))
     }
 
-    /// Goes on from a checkpoint of the same scene, seed, image, layers and plan; more samples may be asked for.
+    /// Continues from a checkpoint of the same scene, seed, image, layers and plan. More samples may be requested.
     ///
     /// ```
     /// # let scene = abbe::Scene::parse("camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
@@ -268,7 +270,7 @@ impl Rendering {
     ///
     /// # Errors
     /// [`Error::Arguments`] if it is a checkpoint of something else, or cannot become this image; [`Error::Decode`] if
-    /// it is damaged; then this render must not be used any more.
+    /// it is damaged. In that case this render must not be used any more.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<Resumed> {
         let (resumed, written) = checkpoint::resume(path.as_ref(), &self.identity, &mut self.passes)?;
         (self.written, self.resumed_at) = (written, self.done());
@@ -278,8 +280,7 @@ impl Rendering {
     /// Writes the finished tiles of a part of an image, for [`merge`](super::merge).
     ///
     /// # Errors
-    /// [`Error::Arguments`] if samples are left to be taken. If it cannot be written, a file that was there before is
-    /// untouched.
+    /// [`Error::Arguments`] if samples are left to take. If the file cannot be written, an existing one is untouched.
     pub fn write_part(&self, path: impl AsRef<Path>) -> Result<()> {
         if !self.passes.is_finished() {
             let message = "a part of an image is written when all its samples are taken".to_owned();
@@ -288,7 +289,7 @@ impl Rendering {
         part::write(path.as_ref(), &self.identity, self.shard, self.summary(), &self.passes)
     }
 
-    /// How far the image was off at the last look, where a stop rule looks.
+    /// Returns the error of the image at the last look, if a stop rule measures it.
     pub fn error(&self) -> Option<ImageError> {
         let &Measured { noise, blur, alpha } = self.passes.measured()?;
         let (model, stopped_by) = (self.plan.model_error, self.passes.stopped_by());
@@ -296,19 +297,19 @@ impl Rendering {
         Some(ImageError { asked: self.render.error, noise, blur, alpha, rare_light, model, stopped_by })
     }
 
-    /// The image of all samples so far.
+    /// Returns the image of all samples so far.
     pub fn image(&self) -> Image {
         self.image_of(run_on(&self.threads, || self.passes.film()))
     }
 
-    /// All that is known of the image so far, without its pixels and the values of its layers: it takes little memory.
+    /// Returns all that is known about the image so far, except its pixels and layer values. It takes little memory.
     pub fn summary(&self) -> Image {
         self.image_of(self.passes.frame())
     }
 
     fn image_of(&self, film: Film) -> Image {
         let (report, error) = (self.passes.report(), self.error());
-        // Within a pass some pixels are ahead: then it is the mean.
+        // Within a pass, some pixels have more samples than others. Then this is the mean.
         let within = report.samples.div_ceil((u64::from(film.width) * u64::from(film.height)).max(1));
         let samples = if self.passes.is_finished() { self.passes.samples().into() } else { within };
         let mut provenance = self.provenance.clone();
@@ -330,15 +331,15 @@ impl Rendering {
         Image { film, report, error, because, view: self.view, format, provenance, dark }
     }
 
-    /// Renders all passes that are left; `progress` as of [`advance`](Self::advance).
+    /// Renders all remaining passes. `progress` is called like by [`advance`](Self::advance).
     pub fn run(mut self, progress: &(dyn Fn(u64) + Sync)) -> Image {
         while self.advance(progress) {}
         self.image()
     }
 }
 
-/// Refuses a film that is known not to fit in memory before the first sample is taken: an allocation that fails later
-/// ends the process without a word. What is small always fits.
+/// Refuses a film that is known not to fit into memory, before the first sample is taken: an allocation that fails
+/// later ends the process without a message. A small film always fits.
 fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
     let bytes = (bytes_of_film(scene, method) + scene.layer_bytes()) / u64::from(shard.count());
     let is_there = || Vec::<u8>::new().try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX)).is_ok();
@@ -349,7 +350,7 @@ fn has_memory(scene: &Scene, method: &Method, shard: Shard) -> Result<()> {
     Err(Error::Io { doing: "keep", path, source: ErrorKind::OutOfMemory.into() })
 }
 
-/// What a file says of its image's error.
+/// Returns the facts about an image's error that its file records.
 fn facts_of_error(error: &ImageError) -> Vec<(Cow<'static, str>, Fact)> {
     let [at_most, noise] = [error.at_most(), error.noise.expected].map(Fact::Number);
     let facts = [("errorAtMost", at_most), ("noise", noise), ("modelError", Fact::Number(error.model))];

@@ -1,9 +1,9 @@
 use std::time::{Duration, Instant};
 
-/// So many times what the work took passes before it is done again.
+/// The minimum pause before the work is repeated, as a multiple of the time that it took.
 const SELDOM: u32 = 100;
 
-/// When work is done again, such as writing a checkpoint, that shall take at most 1 % of the time.
+/// Schedules repeated work, such as writing a checkpoint, so that it takes at most 1 % of the time.
 #[derive(Debug)]
 pub struct Timer {
     period: Option<Duration>,
@@ -11,17 +11,17 @@ pub struct Timer {
 }
 
 impl Timer {
-    /// Of work that is done so often; never, if absent.
+    /// Creates a timer for work that is repeated after each period, or never if there is none.
     pub fn new(period: Option<Duration>) -> Self {
         Self { period, due: due(period) }
     }
 
-    /// Whether it is time.
+    /// Returns whether the work is due.
     pub fn is_due(&self) -> bool {
         self.due.is_some_and(|due| Instant::now() >= due)
     }
 
-    /// Does it, and not again for a while.
+    /// Does the work, and schedules its next time.
     pub fn run<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
@@ -30,7 +30,7 @@ impl Timer {
     }
 }
 
-/// The end of a time from now on; none if it is absent, or beyond all times.
+/// Returns the end of a period that starts now, or none if there is no period or its end cannot be represented.
 fn due(period: Option<Duration>) -> Option<Instant> {
     period.and_then(|period| Instant::now().checked_add(period))
 }

@@ -1,4 +1,4 @@
-//! What whoever sees an image should know of it.
+//! Warnings for viewers of an image.
 
 use super::image_error::ImageError;
 use crate::film::{Layer, TELL_VARIANCE};
@@ -6,7 +6,7 @@ use crate::look::percent;
 use crate::scene::Scene;
 use crate::trace::{MOST_MEDIA, RareLight, Report};
 
-/// All that there is to warn of.
+/// Returns all warnings about a render.
 pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<String> {
     let mut warnings: Vec<String> = error
         .into_iter()
@@ -36,7 +36,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     warnings
 }
 
-/// A warning of an image without any light; none where that is meant or was warned of before.
+/// Returns a warning about an image without any light, or none if that is intended or already explained.
 pub(super) fn dark(scene: &Scene) -> Option<String> {
     let limits = [("max_bounces", scene.render.max_bounces), ("diffuse_bounces", scene.render.diffuse_bounces)];
     let limits: Vec<String> = limits.iter().filter_map(|(key, limit)| Some(format!("{key} = {}", (*limit)?))).collect();
@@ -47,7 +47,7 @@ pub(super) fn dark(scene: &Scene) -> Option<String> {
     scene.is_dark_by_surprise().then(|| format!("no light was found in any pixel{why}, so the image is black"))
 }
 
-/// A warning of layers that need more samples per pixel.
+/// Returns a warning about layers that need more samples per pixel.
 pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     let of_halves = [Layer::Variance, Layer::HalfA, Layer::HalfB];
     let asked: Vec<&str> = of_halves.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();
@@ -57,7 +57,7 @@ pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     })
 }
 
-/// Light that is too rare to know how much there is, unless an error was asked for that is reached all the same.
+/// Warns of light too rare to know how much there is, unless an error was requested and is reached all the same.
 fn outlier(error: &ImageError) -> Option<String> {
     let outlier = error.noise.outlier.filter(|_| error.asked.is_none() || !error.is_reached())?;
     let ([x, y], share) = (outlier.pixel, percent(outlier.share));
@@ -68,7 +68,7 @@ fn outlier(error: &ImageError) -> Option<String> {
     ))
 }
 
-/// An error that was asked for and is not reached.
+/// Warns that the requested error is not reached.
 fn missed(error: &ImageError) -> Option<String> {
     let asked = error.asked.filter(|_| !error.is_reached())?;
     let why = if error.model > asked {
@@ -83,13 +83,13 @@ fn missed(error: &ImageError) -> Option<String> {
     Some(format!("the error of {} that was asked for is not reached{why}", percent(asked)))
 }
 
-/// A warning of an image without any light, whose noise is not known.
+/// Warns of an image without any light, whose noise is unknown.
 fn unmeasured(report: &Report, error: &ImageError) -> Option<String> {
     let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
     is_dark.then(|| "no light was found in any pixel, so that nothing tells how far the image is off".into())
 }
 
-/// Rare light with its way.
+/// Describes rare light and its path.
 fn told(light: &RareLight) -> String {
     let RareLight { name, bounces, found } = light;
     let of = name.as_ref().map_or(String::new(), |name| format!(" of {name}"));

@@ -3,7 +3,7 @@ use std::f64::consts::{PI, TAU};
 use crate::film::Optics;
 use crate::math::{DVec2, DVec3, Frame, Ray, disk, unit};
 
-/// From where the scene is seen, and how directions become places in the image.
+/// The viewpoint, and the mapping from directions to positions in the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     position: DVec3,
@@ -11,21 +11,22 @@ pub struct Camera {
     up: DVec3,
     forward: DVec3,
     projection: Projection,
-    /// Half of the image in the plane one unit before the camera, or half of an orthographic view.
+    /// Half the size of the image in the plane one unit in front of the camera, or half the size of an orthographic
+    /// view.
     half: DVec2,
-    /// The middle of the image there.
+    /// Center of the image in that plane.
     center: DVec2,
     size: DVec2,
     near: f64,
     pub(super) lens: Option<Lens>,
-    /// Distance of the point looked at.
+    /// Distance of the point that the camera looks at.
     reach: f64,
-    /// Width of what is behind the lens, in mm. No ray depends on it.
+    /// Width of the sensor in mm. No ray depends on it.
     sensor_width: Option<f64>,
     filter: Option<PolarizingFilter>,
 }
 
-/// How directions become places in the image.
+/// The mapping from directions to positions in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Rays from one point through a window.
@@ -38,14 +39,15 @@ pub enum Projection {
         /// Height of the view in scene units.
         height: f64,
     },
-    /// Rays of the full sphere: longitude falls from half a turn at the left edge to minus half a turn at the right
-    /// one, latitude from a quarter turn at the top. The viewing direction is in the middle, the camera's left at the
-    /// left quarter: looking along +z, that is +x (OpenEXR, `ImfEnvmap.h`, `ENVMAP_LATLONG`).
+    /// Rays over the full sphere. The longitude falls from half a turn at the left edge to minus half a turn at the
+    /// right edge, the latitude from a quarter turn at the top. The viewing direction is in the middle, and the
+    /// camera's left is a quarter of the width from the left edge: when looking along +z, that is +x (OpenEXR,
+    /// `ImfEnvmap.h`, `ENVMAP_LATLONG`).
     Equirectangular,
 }
 
 impl Projection {
-    /// The name in a scene file.
+    /// Returns the name in a scene file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Perspective { .. } => "perspective",
@@ -55,34 +57,34 @@ impl Projection {
     }
 }
 
-/// A thin lens, on which the rays of a pixel start and behind which they meet again where it is focused.
+/// A thin lens. The rays of a pixel start on it and meet again in the plane of focus.
 ///
 /// Potmesil & Chakravarty 1981, *A Lens and Aperture Camera Model for Synthetic Image Generation*.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     pub(super) radius: f64,
-    /// One over the distance of the plane in focus: 0 where that is infinitely far away.
+    /// One over the distance of the plane of focus; 0 if that is infinitely far away.
     pub(super) inverse_focus: f64,
 }
 
-/// A linear polarizer before the camera.
+/// A linear polarizer in front of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PolarizingFilter {
-    /// The direction that it lets through, from the image's right toward its top, in radians.
+    /// Angle of the axis along which it transmits, from the image's right toward its top, in radians.
     pub angle: f64,
-    /// What it lets through of light across that direction, 0 to 1.
+    /// Transmittance across that axis, 0 to 1.
     pub extinction: f64,
 }
 
 impl PolarizingFilter {
-    /// What it lets through of unpolarized light.
+    /// Returns the transmittance of unpolarized light.
     pub fn transmittance(&self) -> f64 {
         0.5 * (1.0 + self.extinction)
     }
 }
 
 impl Lens {
-    /// A lens of a radius, in focus at a distance along the viewing direction, which may be infinite.
+    /// Creates a lens of a radius, focused at a distance along the viewing direction, which may be infinite.
     pub fn new(radius: f64, focus_distance: f64) -> Self {
         Self { radius, inverse_focus: 1.0 / focus_distance }
     }
@@ -91,25 +93,26 @@ impl Lens {
 /// Angle in radians below which `up` and the viewing direction count as parallel.
 const PARALLEL: f64 = 1e-4;
 
-/// How a camera sees a point of the world.
+/// A point of the world as the camera sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Where on the film, in pixels from the top left corner; beyond the image as well.
+    /// Position on the film, in pixels from the top left corner. It may lie outside the image.
     pub film: DVec2,
-    /// Where the camera's ray to the point starts.
+    /// Start of the camera ray to the point.
     pub start: DVec3,
     /// Unit vector from the point to the camera.
     pub direction: DVec3,
     /// Square pixels per unit of area at the point that faces the camera.
     ///
-    /// Light that leaves a surface with radiance L adds L x area x cosine x importance to the pixels it is spread over.
+    /// Light that leaves a surface with radiance L contributes L x area x cosine x importance to the pixels that it is
+    /// spread over.
     pub importance: f64,
 }
 
 impl Camera {
-    /// The pinhole camera at `position` that sees the point `target` in the middle of an image of `size` pixels.
+    /// Creates a pinhole camera at `position` that sees the point `target` in the middle of an image of `size` pixels.
     ///
-    /// The second answer says whether `up` was so nearly parallel to the viewing direction that another was taken.
+    /// Also returns whether `up` was so nearly parallel to the viewing direction that another direction was used.
     pub fn new(position: DVec3, target: DVec3, up: DVec3, projection: Projection, size: [u32; 2]) -> (Self, bool) {
         let forward = (target - position).normalize();
         let across = forward.cross(up.normalize());
@@ -139,40 +142,40 @@ impl Camera {
         (camera, parallel)
     }
 
-    /// The same camera with rays that start where their distance along the viewing direction is `near`; in an
-    /// equirectangular image, at that distance.
+    /// Returns the camera with rays that start at the distance `near`, measured along the viewing direction, or along
+    /// the ray in an equirectangular image.
     #[must_use]
     pub fn starting_at(self, near: f64) -> Self {
         Self { near, ..self }
     }
 
-    /// The same camera with the window onto the world moved to the right and up by fractions of the image's height.
+    /// Returns the camera with its image window shifted to the right and up, in fractions of the image's height.
     #[must_use]
     pub fn shifted(self, [right, up]: [f64; 2]) -> Self {
         Self { center: DVec2::new(right, up) * (2.0 * self.half.y), ..self }
     }
 
-    /// The same camera with a lens; one without extent is a pinhole.
+    /// Returns the camera with a lens. A lens of radius 0 is a pinhole.
     #[must_use]
     pub fn with_lens(self, lens: Option<Lens>) -> Self {
         Self { lens: lens.filter(|lens| lens.radius > 0.0), ..self }
     }
 
-    /// The same camera, whose full image a sensor of this width in mm takes up.
+    /// Returns the camera with a sensor of this width in mm, which the full image covers.
     #[must_use]
     pub fn on_sensor(self, width: Option<f64>) -> Self {
         Self { sensor_width: width, ..self }
     }
 
-    /// The same camera behind a filter.
+    /// Returns the camera with a filter in front of it.
     #[must_use]
     pub fn behind(self, filter: Option<PolarizingFilter>) -> Self {
         Self { filter, ..self }
     }
 
-    /// What the lens and the sensor are like, as far as the scene says it. Of a perspective view a sensor's width tells
-    /// how far behind the lens it is; a thin lens that is in focus at a distance d and has its image at a distance v is
-    /// of the focal length 1 / (1 / v + 1 / d).
+    /// Returns the data of the lens and the sensor that the scene gives. In a perspective view, the sensor's width
+    /// determines its distance behind the lens. A thin lens focused at a distance d whose image is at a distance v has
+    /// the focal length 1 / (1 / v + 1 / d).
     pub fn optics(&self, meters_per_unit: Option<f64>) -> Optics {
         let (width, is_flat) = (2.0 * self.half.x, matches!(self.projection, Projection::Perspective { .. }));
         let sensor = self.sensor_width.filter(|_| is_flat);
@@ -195,16 +198,17 @@ impl Camera {
         }
     }
 
-    /// The ray through a point of the film, in pixels from the top left corner, and the middle of the lens.
+    /// Returns the ray through a point of the film, in pixels from the top left corner, and the center of the lens.
     pub fn ray(&self, film: DVec2) -> Ray {
         let (start, along) = self.axis(film);
         Ray { origin: start + along * self.near, direction: unit(along) }
     }
 
-    /// The ray through a point of the film and the point of the lens that belongs to a point of the unit square.
+    /// Returns the ray through a point of the film and the point of the lens to which a point of the unit square is
+    /// mapped.
     ///
-    /// A ray that starts at a point of the lens runs along (x, y, 1) - point / F: so all rays of one point of the film
-    /// meet at distance F, and none is lost where 1 / F is 0.
+    /// A ray that starts at a point p of the lens has the direction (x, y, 1) - p / F. Therefore all rays of one point
+    /// of the film meet at distance F, and 1 / F may be 0.
     pub fn lens_ray(&self, film: DVec2, u: [f64; 2]) -> Ray {
         let Some(lens) = self.lens else { return self.ray(film) };
         let (start, along) = self.axis(film);
@@ -214,8 +218,8 @@ impl Camera {
         Ray { origin: start + place + along * self.near, direction: unit(along) }
     }
 
-    /// How far behind the start of a ray, whose direction is a unit vector, the camera is: as far as the near plane is
-    /// along it.
+    /// Returns the distance from the start of a ray back to the camera, which is that of the near plane along the ray.
+    /// The direction is a unit vector.
     pub fn way_to_start(&self, direction: DVec3) -> f64 {
         match self.projection {
             Projection::Equirectangular => self.near,
@@ -223,8 +227,8 @@ impl Camera {
         }
     }
 
-    /// Where the ray through the middle of the lens starts, but for the near plane, and where to: one unit forward, or
-    /// one unit in all in an equirectangular image.
+    /// Returns the ray through the center of the lens: its origin, without the near plane, and its direction. The
+    /// direction reaches one unit forward, or has length 1 in an equirectangular image.
     fn axis(&self, film: DVec2) -> (DVec3, DVec3) {
         let x = (2.0 * film.x / self.size.x - 1.0) * self.half.x + self.center.x;
         let y = (1.0 - 2.0 * film.y / self.size.y) * self.half.y + self.center.y;
@@ -240,8 +244,8 @@ impl Camera {
         }
     }
 
-    /// What the image records as the depth of a point: its distance along the viewing direction, or its distance in an
-    /// equirectangular image.
+    /// Returns the depth of a point as the image records it: its distance along the viewing direction, or its distance
+    /// from the camera in an equirectangular image.
     pub fn depth(&self, point: DVec3) -> f64 {
         match self.projection {
             Projection::Equirectangular => (point - self.position).length(),
@@ -249,7 +253,8 @@ impl Camera {
         }
     }
 
-    /// The diameter of the image of a point at a depth, in heights of the whole image: 0 in focus, and of a pinhole.
+    /// Returns the diameter of the blur circle of a point at a depth, in heights of the whole image. It is 0 in focus
+    /// and for a pinhole.
     pub fn blur(&self, depth: f64) -> f64 {
         let Some(lens) = self.lens else { return 0.0 };
         let spread = match self.projection {
@@ -259,22 +264,23 @@ impl Camera {
         lens.radius * spread.abs() / self.half.y
     }
 
-    /// Where the camera is.
+    /// Returns the position of the camera.
     pub fn position(&self) -> DVec3 {
         self.position
     }
 
-    /// The unit vector along the camera's axis, toward the middle of an image without shift.
+    /// Returns the unit vector along the camera's axis, toward the middle of an unshifted image.
     pub fn forward(&self) -> DVec3 {
         self.forward
     }
 
-    /// The projection onto the film.
+    /// Returns the projection onto the film.
     pub fn projection(&self) -> Projection {
         self.projection
     }
 
-    /// The horizontal of the image, to the right, across a ray in a direction: x of Stokes vectors. A unit vector.
+    /// Returns the unit vector perpendicular to a ray that points horizontally to the image's right: x of Stokes
+    /// vectors.
     pub fn image_right(&self, direction: DVec3) -> DVec3 {
         let right = match self.projection {
             Projection::Equirectangular => direction.cross(self.up),
@@ -283,36 +289,37 @@ impl Camera {
         right.try_normalize().unwrap_or(self.right)
     }
 
-    /// The share of unpolarized light that reaches it: 1 without a filter before it.
+    /// Returns the share of unpolarized light that reaches the camera; 1 without a filter.
     pub fn transmittance(&self) -> f64 {
         self.filter.map_or(1.0, |filter| filter.transmittance())
     }
 
-    /// The filter before it, if there is one.
+    /// Returns the filter in front of the camera, if there is one.
     pub fn filter(&self) -> Option<PolarizingFilter> {
         self.filter
     }
 
-    /// Whether the rays of a point of the film start on a lens with an extent.
+    /// Returns whether the rays of a point of the film start on a lens with an extent.
     pub fn has_lens(&self) -> bool {
         self.lens.is_some()
     }
 
-    /// Whether rays start away from the camera's position.
+    /// Returns whether rays may start away from the camera's position.
     pub fn starts_away(&self) -> bool {
         self.near > 0.0 || self.has_lens() || matches!(self.projection, Projection::Orthographic { .. })
     }
 
-    /// World to camera for row vectors: +x right, +y up, +z forward.
+    /// Returns the world-to-camera matrix for row vectors: +x right, +y up, +z forward.
     pub fn world_to_camera(&self) -> [[f64; 4]; 4] {
         let [x, y, z] = [self.right, self.up, self.forward];
         let shift = [x, y, z].map(|axis| -self.position.dot(axis));
         [[x.x, y.x, z.x, 0.0], [x.y, y.y, z.y, 0.0], [x.z, y.z, z.z, 0.0], [shift[0], shift[1], shift[2], 1.0]]
     }
 
-    /// World to normalized device coordinates for row vectors, after a division by the fourth number: x and y are 0 at
-    /// the top left corner of the full image and 1 at the bottom right one; z grows with the distance. None of a view
-    /// all around. What a lens blurs is where its middle sees it.
+    /// Returns the matrix from the world to normalized device coordinates, for row vectors and before the division by
+    /// the fourth component. x and y are 0 at the top left corner of the full image and 1 at the bottom right corner; z
+    /// increases with distance. An equirectangular view has none. What a lens blurs is mapped to where the lens's
+    /// center sees it.
     pub fn world_to_ndc(&self) -> Option<[[f64; 4]; 4]> {
         let (scale, middle) = (0.5 / self.half, self.center * 0.5 / self.half);
         let (x, y) = (0.5 - middle.x, 0.5 + middle.y);
@@ -329,10 +336,10 @@ impl Camera {
         Some(self.world_to_camera().map(product))
     }
 
-    /// The angle of a pixel in the middle of the image, in radians.
+    /// Returns the angle of a pixel in the middle of the image, in radians.
     ///
-    /// Pixels of an orthographic view have none; it is the angle under which one appears from as far away as the point
-    /// looked at, or as the view is wide if that is more.
+    /// Pixels of an orthographic view have no angle. It is then the angle of a pixel at a distance: that of the point
+    /// looked at, or the length of the view's diagonal if that is larger.
     pub fn pixel_angle(&self) -> f64 {
         let pixel = 2.0 * self.half.x / self.size.x;
         match self.projection {
@@ -342,7 +349,7 @@ impl Camera {
         }
     }
 
-    /// How wide a pixel in the middle of the image is at a distance.
+    /// Returns the width of a pixel in the middle of the image, at a distance.
     pub fn pixel_width(&self, distance: f64) -> f64 {
         match self.projection {
             Projection::Orthographic { .. } => 2.0 * self.half.x / self.size.x,
@@ -350,8 +357,8 @@ impl Camera {
         }
     }
 
-    /// Width of the image in the plane one unit before the camera; 1 in an equirectangular image, which has no such
-    /// width (OpenEXR, *Technical Introduction*).
+    /// Returns the width of the image in the plane one unit in front of the camera; 1 for an equirectangular image,
+    /// which has no such width (OpenEXR, *Technical Introduction*).
     pub fn screen_window_width(&self) -> f64 {
         match self.projection {
             Projection::Equirectangular => 1.0,
@@ -359,13 +366,13 @@ impl Camera {
         }
     }
 
-    /// The middle of the image in the plane one unit before the camera, to the right and up.
+    /// Returns the center of the image in the plane one unit in front of the camera, to the right and up.
     pub fn screen_window_center(&self) -> [f64; 2] {
         self.center.into()
     }
 
-    /// Where a point is seen through the point of the lens that belongs to a point of the unit square; none before the
-    /// near plane or behind the camera.
+    /// Returns how a point is seen through the point of the lens to which a point of the unit square is mapped. Returns
+    /// none for a point before the near plane or behind the camera.
     pub fn see(&self, point: DVec3, u: [f64; 2]) -> Option<Seen> {
         let to_point = point - self.position;
         if self.projection == Projection::Equirectangular {
@@ -389,9 +396,9 @@ impl Camera {
         let along = self.forward + in_world(slope);
         let length = along.length();
         let pixels = self.size.x * self.size.y / (4.0 * self.half.x * self.half.y);
-        // A unit of area that faces the ray fills `length` of the window of parallel rays; of one a unit before the
-        // camera it fills length / depth^2, as its solid angle is 1 / (length depth)^2 and the window's cosine 1 /
-        // length.
+        // A unit of area that faces the ray fills `length` of the window of parallel rays. Of a window one unit in
+        // front of the camera it fills length / depth^2, since its solid angle is 1 / (length depth)^2 and the window's
+        // cosine is 1 / length.
         let importance = if parallel { pixels * length } else { pixels * length / (depth * depth) };
         let start = self.position + in_world(corner + place) + along * self.near;
         Some(Seen { film, start, direction: -along / length, importance })
@@ -413,8 +420,8 @@ impl Camera {
         importance.is_finite().then_some(Seen { film, start, direction: -along, importance })
     }
 
-    /// All places of the film that show what one of them shows, no farther than `reach` pixels outside of the image:
-    /// itself and, in an equirectangular image, its copies beyond the seam and the poles.
+    /// Returns all positions on the film that show what the position `film` shows, up to `reach` pixels outside the
+    /// image: itself and, in an equirectangular image, its copies beyond the seam and the poles.
     pub fn places(&self, film: DVec2, reach: f64) -> Vec<DVec2> {
         if self.projection != Projection::Equirectangular {
             return vec![film];
@@ -422,7 +429,7 @@ impl Camera {
         let DVec2 { x: width, y: height } = self.size;
         let turns = |size: f64| (reach / size).ceil() as i32 + 1;
         let mut places = Vec::new();
-        // Beyond a pole the film goes on at the other side of it, upside down.
+        // Beyond a pole, the film continues on the opposite side, upside down.
         for start in [film, DVec2::new(film.x + 0.5 * width, -film.y)] {
             for (i, j) in
                 (-turns(width)..=turns(width)).flat_map(|i| (-turns(height)..=turns(height)).map(move |j| (i, j)))

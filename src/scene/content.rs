@@ -1,4 +1,4 @@
-//! What a scene holds, and what rays meet in it.
+//! The contents of a scene, and ray queries against it.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -15,43 +15,43 @@ use crate::material::Material;
 use crate::math::Ray;
 use crate::spectrum::{Curve, Quantity};
 
-/// A world in which every name has been found and every number checked.
+/// A world in which every name has been resolved and every number checked.
 #[derive(Clone, Debug)]
 pub struct Scene<S = Curve> {
     /// The camera.
     pub camera: Camera,
-    /// The image to make.
+    /// Size and meaning of the image.
     pub film: FilmSettings,
-    /// What its file holds.
+    /// What the image file contains.
     pub format: Format,
-    /// How to render the image.
+    /// How the image is rendered.
     pub render: RenderText,
-    /// Surfaces, in the order of the file: shared by all scenes that differ only in their spectra.
+    /// Surfaces, in the order of the file. Scenes that differ only in their spectra share them.
     pub objects: Arc<[Object]>,
-    /// Materials, in the order in which objects use them first.
+    /// Materials, in the order in which objects first use them.
     pub materials: Vec<NamedMaterial<S>>,
     /// Everything that shines.
     pub lights: Vec<Light<S>>,
-    /// The lights that rays see which meet nothing.
+    /// The lights that rays see when they hit nothing.
     pub infinite_lights: Vec<LightId>,
-    /// The group of each light, by its name: lights of one group share a layer.
+    /// The name of each light's group. Lights of one group share a layer.
     pub light_groups: Vec<String>,
     /// Infinite lights that the camera does not see directly.
     pub hidden_lights: Vec<LightId>,
-    /// What the author should know but need not change.
+    /// Warnings that the author should know about but need not act on.
     pub warnings: Vec<String>,
-    /// SHA-256 of the scene file, the values set in it and the files it names, 64 hexadecimal digits.
+    /// SHA-256 of the scene file, the values set in it and the files it names, as 64 hexadecimal digits.
     pub hash: String,
-    /// The files that it was read from: its own first, those that it includes, and all that these name.
+    /// The files that were read: the scene file first, then the files it includes, then all files that these name.
     pub files: Vec<PathBuf>,
-    /// Values that were put in place of those of the file, each as `KEY=VALUE`.
+    /// Overrides of values in the file, each as `KEY=VALUE`.
     pub settings: Vec<String>,
-    /// Whether the warnings say why there may be no light in the image.
+    /// Whether a warning already explains why the image may contain no light.
     pub(super) is_dark_told: bool,
     pub(super) index: Arc<Index>,
 }
 
-/// A material and the name its author gave it.
+/// A material and its name.
 #[derive(Clone, Debug)]
 pub struct NamedMaterial<S> {
     /// Its name in the scene file.
@@ -61,7 +61,8 @@ pub struct NamedMaterial<S> {
 }
 
 impl<S> Scene<S> {
-    /// The same world with every spectrum converted; `convert` gets the quantity that a spectrum describes.
+    /// Returns the same world with every spectrum converted. `convert` also receives the quantity that the spectrum
+    /// describes.
     pub fn map<T>(&self, mut convert: impl FnMut(Quantity, &S) -> T) -> Scene<T> {
         let materials = self.materials.iter();
         Scene {
@@ -86,14 +87,14 @@ impl<S> Scene<S> {
         }
     }
 
-    /// Whether an image without any light is neither meant nor explained by a warning.
+    /// Returns whether an image without any light would be neither intended nor explained by a warning.
     pub fn is_dark_by_surprise(&self) -> bool {
         let is_cut = |object: &Object| matches!(object.visibility, Visibility::ShadowCatcher | Visibility::Holdout);
         let is_whole = self.film.crop.is_none() && self.format.layers.is_empty();
         is_whole && !self.is_dark_told && !self.objects.iter().any(is_cut)
     }
 
-    /// Channels of the layers that are made beside the image, and of its spectra.
+    /// Returns the number of channels of all layers beside the image, and of its spectral bands.
     pub fn layer_channels(&self) -> u64 {
         let groups = self.light_groups.iter().collect::<BTreeSet<_>>().len();
         let images = |layer: &Layer| match layer {
@@ -106,71 +107,73 @@ impl<S> Scene<S> {
         (layers + components * self.format.spectral.map_or(0, |bands| bands.count())) as u64
     }
 
-    /// Bytes of memory that layers take: of each number a sum in 64 bits, another where a filter subtracts samples, and
-    /// its value in 32; and the sums of which alpha is made where there are shadow catchers.
+    /// Returns the memory of all layers, in bytes. Each number takes a 64-bit sum, another one if the filter has
+    /// negative lobes, and a 32-bit value. With shadow catchers, the sums from which alpha is computed are added.
     pub fn layer_bytes(&self) -> u64 {
         let sums = if self.film.filter.is_signed() { 16 } else { 8 };
         let caught = if self.has_shadow_catchers() { 8 * sums } else { 0 };
         (self.layer_channels() * (sums + 4) + caught) * self.film.window().pixels()
     }
 
-    /// The light that fills the whole sky, if there is one.
+    /// Returns the environment light, if there is one.
     pub fn environment(&self) -> Option<LightId> {
         self.infinite_lights.iter().copied().find(|&sky| matches!(self.lights[sky], Light::Environment(_)))
     }
 
-    /// The material of an object.
+    /// Returns the material of an object.
     pub fn material_of(&self, object: u32) -> &Material<S> {
         &self.materials[self.objects[object as usize].material as usize].material
     }
 
-    /// Whether an object is a clear body, or a part of its surface.
+    /// Returns whether an object is a clear body, or a part of the surface of one.
     pub(super) fn is_clear(&self, object: u32) -> bool {
         self.material_of(object).medium().is_some()
     }
 
-    /// The nearest surface along a ray; of equally near ones, that of the object listed first.
+    /// Returns the nearest hit along a ray. Of equally near hits, returns that of the object listed first.
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         self.intersect_from(ray, None)
     }
 
-    /// The nearest surface along a ray that leaves a surface.
+    /// Returns the nearest hit along a ray that may start on the primitive `left`.
     pub fn intersect_from(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
         self.index.nearest(&self.objects, ray, f64::INFINITY, left, every)
     }
 
-    /// The nearest surface along a ray of the camera, which may have left one through which light goes straight on.
+    /// Returns the nearest hit along a camera ray. The ray may start on a primitive `left` that it passed straight
+    /// through.
     pub fn intersect_seen(&self, ray: &Ray, left: Option<Primitive>) -> Option<Hit> {
         self.nearest_from(ray, left, &|object| self.is_seen(object))
     }
 
-    /// Whether the camera sees an object, or at least its hole.
+    /// Returns whether the camera sees an object, or at least the hole that it cuts.
     pub fn is_seen(&self, object: u32) -> bool {
         self.objects[object as usize].visibility != Visibility::Hidden
     }
 
-    /// The nearest surface of the plate's world along a ray, which may be of the camera: see [`Scene::is_of_plate`].
+    /// Returns the nearest hit along a ray in the world of the plate ([`Scene::is_of_plate`]). A camera ray
+    /// (`of_camera`) does not hit what is hidden from the camera.
     pub fn intersect_plate(&self, ray: &Ray, left: Option<Primitive>, of_camera: bool) -> Option<Hit> {
         self.nearest_from(ray, left, &|object| self.is_of_plate(object) && (!of_camera || self.is_seen(object)))
     }
 
-    /// Whether an object stands for something that is in the plate, or lights it: a shadow catcher, a holdout, a lamp.
+    /// Returns whether an object stands for something in the plate or lights it: a shadow catcher, a holdout or a lamp.
     pub fn is_of_plate(&self, object: u32) -> bool {
         let object = &self.objects[object as usize];
         object.light.is_some() || matches!(object.visibility, Visibility::ShadowCatcher | Visibility::Holdout)
     }
 
-    /// Whether any object is a shadow catcher.
+    /// Returns whether any object is a shadow catcher.
     pub fn has_shadow_catchers(&self) -> bool {
         self.objects.iter().any(|object| object.visibility == Visibility::ShadowCatcher)
     }
 
-    /// The nearest surface along a ray up to a distance, of those objects that count.
+    /// Returns the nearest hit along a ray up to a distance, among the objects for which `counts` holds.
     pub fn nearest(&self, ray: &Ray, distance: f64, counts: &dyn Fn(u32) -> bool) -> Option<Hit> {
         self.index.nearest(&self.objects, ray, distance, None, counts)
     }
 
-    /// Objects without bounds: planes.
+    /// Returns the objects without bounds, which are planes, with their numbers.
     pub fn unbounded(&self) -> impl Iterator<Item = (u32, &Object)> {
         let all = self.index.always.iter().map(|&number| (number, &self.objects[number as usize]));
         all.filter(|(_, object)| !object.shape.is_bounded())
@@ -180,9 +183,11 @@ impl<S> Scene<S> {
         self.index.nearest(&self.objects, ray, f64::INFINITY, left, counts)
     }
 
-    /// Whether anything lies before a light at `distance`; the light's own object does not hide it.
+    /// Returns whether anything lies before a light at `distance`. The light's own object does not occlude it, unless
+    /// `ends` names one of its parts: then its other parts may.
     ///
-    /// `last_occluder` remembers what hid a light last: it is asked first, for it often hides the next one as well.
+    /// `last_occluder` caches the object that last occluded a light. It is tested first, since it often occludes the
+    /// next one as well.
     pub fn is_occluded(
         &self,
         ray: &Ray,
@@ -193,7 +198,8 @@ impl<S> Scene<S> {
         self.index.is_occluded(&self.objects, ray, distance, ends.into(), last_occluder, every)
     }
 
-    /// Whether any object that counts lies before a light at `distance`; the light's own does not occlude it.
+    /// Returns whether an object for which `counts` holds lies before a light at `distance`. The light's own object
+    /// does not occlude it, unless `ends` names one of its parts: then its other parts may.
     pub fn is_occluded_by(
         &self,
         ray: &Ray,

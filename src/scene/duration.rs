@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-/// A time with its unit, such as `90s`, `10m`, `1.5h` or `20ms`; none if it is not one, or not above 0.
+/// Parses a time with its unit, such as `90s`, `10m`, `1.5h` or `20ms`. Returns none if it is not one, or not above 0.
 pub fn duration(text: &str) -> Option<Duration> {
     let units = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("min", 60.0), ("h", 3600.0)];
     let (number, unit) = text.split_at(text.find(|letter: char| letter.is_ascii_alphabetic()).unwrap_or(text.len()));

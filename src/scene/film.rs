@@ -8,47 +8,47 @@ pub struct FilmSettings {
     pub width: u32,
     /// Rows of the format.
     pub height: u32,
-    /// Where in its pixel a sample falls.
+    /// The pixel filter, which decides where in its pixel a sample falls.
     pub filter: Filter,
-    /// What the numbers mean.
+    /// The color space of the numbers.
     pub color_space: ColorSpace,
-    /// What there is around the format.
+    /// Extra pixels around the format.
     pub overscan: Overscan,
-    /// The part of the image and its overscan that is made; all of both if absent.
+    /// The part of the image and its overscan that is rendered; all of it if absent.
     pub crop: Option<Window>,
 }
 
 impl FilmSettings {
-    /// Most pixels in a row or column, with the overscan.
+    /// Maximum number of pixels in a row or column, with the overscan.
     pub const MAX_SIDE: u32 = 65_536;
-    /// Most pixels, with the overscan: 19 GB of sums and values, without layers.
+    /// Maximum number of pixels, with the overscan: 19 GB of sums and values, without layers.
     pub const MAX_PIXELS: u64 = MOST_PIXELS as u64;
 
-    /// The part of the image that is made.
+    /// Returns the part of the image that is rendered.
     pub fn window(&self) -> Window {
         self.crop.unwrap_or(self.with_overscan())
     }
 
-    /// The format: what the camera frames, and all that the plan looks at.
+    /// Returns the format: what the camera frames, and all that the plan looks at.
     pub fn whole(&self) -> Window {
         Window { left: 0, top: 0, width: self.width, height: self.height }
     }
 
-    /// The format and its overscan.
+    /// Returns the format with its overscan.
     pub fn with_overscan(&self) -> Window {
         let Overscan { left, top, right, bottom } = self.overscan;
         let (width, height) = (self.width + left + right, self.height + top + bottom);
         Window { left: -(left as i32), top: -(top as i32), width, height }
     }
 
-    /// The same film of which just the format is made: what decides how pixels are made looks at no other part of it,
-    /// so that all parts are made alike.
+    /// Returns the same film restricted to the format. The decisions on how pixels are rendered look at no other part
+    /// of it, so that all parts are rendered in the same way.
     #[must_use]
     pub fn of_the_format(self) -> Self {
         Self { overscan: Overscan::default(), crop: None, ..self }
     }
 
-    /// What is wrong with the overscan, if anything.
+    /// Returns what is wrong with the overscan, if anything.
     pub fn objection_to_overscan(&self) -> Option<String> {
         let Overscan { left, top, right, bottom } = self.overscan;
         let side = |size: u32, before: u32, behind: u32| u64::from(size) + u64::from(before) + u64::from(behind);
@@ -61,7 +61,7 @@ impl FilmSettings {
         (all > fit).then(|| format!("{width} x {height} pixels with the overscan are {all}; at most {fit} fit"))
     }
 
-    /// What is wrong with the crop, if anything, where nothing is with the overscan.
+    /// Returns what is wrong with the crop, if anything. The overscan must be valid.
     pub fn objection_to_crop(&self) -> Option<String> {
         let crop = self.crop?;
         let Window { width, height, .. } = crop;

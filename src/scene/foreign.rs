@@ -1,4 +1,4 @@
-//! Files that are given as a scene and are none.
+//! Files that are given as a scene but are something else.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::error::ends_in;
 pub(super) const A_SCENE: &str = "a scene is a TOML file, such as scene.toml";
 const EXPORT: &str = "export its meshes as PLY, OBJ or glTF, and write a scene in TOML around them";
 
-/// What files of some endings are, and what to do with one; `FILE` is its name.
+/// What files with these extensions are, and what to do with one. `FILE` stands for its name.
 const KINDS: [(&[&str], &str, &str); 11] = [
     (&["exr"], "an image", "`render view FILE` shows it; a scene is a TOML file"),
     (
@@ -34,8 +34,8 @@ const KINDS: [(&[&str], &str, &str); 11] = [
     (&["py"], "a program", "`python3 FILE` runs it; a scene is a TOML file"),
 ];
 
-/// What a file that is no TOML is by the ending of its name, and what to do with it; `shown` is what it is called
-/// there.
+/// Returns what a file that is not TOML is, judged by its extension, and what to do with it. `shown` is its name in the
+/// help.
 pub(super) fn foreign(path: &Path, shown: &str) -> Option<(&'static str, String)> {
     let (_, what, help) = KINDS.iter().find(|(endings, ..)| ends_in(path, endings))?;
     Some((what, help.replace("FILE", shown)))

@@ -1,18 +1,18 @@
-//! What rays meet, leave and lead to.
+//! Ray hits, and the surfaces at both ends of a ray.
 
 use crate::shape::Intersection;
 
-/// Where a ray first meets the world.
+/// The first intersection of a ray with the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// The object met.
+    /// The object that was hit.
     pub object: u32,
-    /// Where on it.
+    /// The intersection with it.
     pub intersection: Intersection,
 }
 
 impl Hit {
-    /// What was met.
+    /// Returns the primitive that was hit.
     pub fn primitive(&self) -> Primitive {
         Primitive { object: self.object, part: self.intersection.part }
     }
@@ -23,28 +23,29 @@ impl Hit {
 pub struct Primitive {
     /// The object.
     pub object: u32,
-    /// The part, 0 of other shapes.
+    /// The part; 0 for other shapes.
     pub part: u32,
 }
 
 impl Primitive {
-    /// None.
+    /// No primitive.
     pub(super) const NONE: Self = Self { object: u32::MAX, part: 0 };
 
-    /// The part, if it is one of this object.
+    /// Returns the part, if it belongs to this object.
     pub(super) fn of(self, object: u32) -> Option<u32> {
         (self.object == object).then_some(self.part)
     }
 }
 
-/// What a ray leads from and to, if those are surfaces.
+/// The surfaces that a ray leaves and leads to, if there are any.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayEnds {
-    /// What the ray leaves. A triangle is not met again by a ray that leaves it, which is not tested.
+    /// The primitive that the ray leaves. A ray that leaves a triangle cannot hit it again, so this triangle is not
+    /// tested.
     pub left: Option<Primitive>,
-    /// The object of the light that it leads to, which does not occlude itself ..
+    /// The object of the light that the ray leads to, which does not occlude itself unless `part` is given.
     pub light: Option<u32>,
-    /// .. but where one of its triangles is meant, which the others do occlude.
+    /// The triangle of that object that the ray leads to. The object's other triangles can occlude it.
     pub part: Option<u32>,
 }
 

@@ -1,5 +1,5 @@
-//! How rays find surfaces. What is asked here knows nothing of lanes or spectra, so that it is compiled once for all:
-//! for all objects, and for those that a function counts.
+//! How rays find surfaces. Nothing here depends on lanes or spectra, so it is compiled once for all of them: in one
+//! version for all objects, and in one for the objects that a predicate selects.
 
 use std::cell::Cell;
 
@@ -8,18 +8,18 @@ use super::object::Object;
 use crate::math::Ray;
 use crate::shape::{Bvh, Pool, Shape, Vectors, Visitor, is_before};
 
-/// Objects up to this many are tried one by one: a tree saves nothing there.
+/// Up to this many objects are tested one by one, since a tree saves nothing there.
 const FEW: usize = 12;
 
-/// Finds the objects a ray may meet.
+/// Finds the objects that a ray may hit.
 #[derive(Clone, Debug)]
 pub(super) struct Index {
-    /// Objects to try always: infinite ones, or all of a few.
+    /// Objects that every ray tests: unbounded ones, or all of them if there are few.
     pub(super) always: Vec<u32>,
     tree: Bvh,
-    /// Object of each item of the tree.
+    /// The object of each item in the tree.
     bounded: Vec<u32>,
-    /// The triangles of small objects, if there are several.
+    /// The triangles of all small objects, if there is more than one such object.
     pool: Option<Pool>,
 }
 
@@ -38,8 +38,8 @@ impl Index {
         Self { always, tree: Bvh::of_parts::<1>(boxes.into_iter()), bounded, pool }
     }
 
-    /// The nearest surface along a ray up to a distance, of those objects that count; of equally near ones, that of the
-    /// object listed first.
+    /// Finds the nearest hit along a ray up to a distance, among the objects for which `counts` holds. Of equally near
+    /// hits, returns that of the object listed first.
     pub(super) fn nearest(
         &self,
         objects: &[Object],
@@ -69,7 +69,8 @@ impl Index {
         nearest
     }
 
-    /// Whether any object that counts lies before a light at `distance`; the light's own does not occlude it.
+    /// Returns whether an object for which `counts` holds lies before a light at `distance`. The light's own object
+    /// does not occlude it, unless `ends` names one of its parts: then its other parts may.
     pub(super) fn is_occluded(
         &self,
         objects: &[Object],
@@ -80,7 +81,7 @@ impl Index {
         counts: impl Fn(u32) -> bool,
     ) -> bool {
         let RayEnds { left, light, part } = ends;
-        // An object listed after the light's own does not hide it by an equal distance.
+        // An object listed after the light's own does not hide it at an equal distance.
         let hides_at = |[object, other]: [u32; 2], t: f64| match light {
             Some(light) if light == object => part.is_some_and(|part| is_before([other, part], [t, distance])),
             _ if !counts(object) => false,
@@ -118,8 +119,8 @@ impl Index {
         hidden
     }
 
-    /// Calls `test(object, t_max)` for objects beside the pool that the ray may meet before `t_max`, nearer ones first
-    /// if `ORDERED`; `test` returns the new `t_max`, or none to end.
+    /// Calls `test(object, t_max)` for the objects outside the pool that the ray may hit before `t_max`, nearer ones
+    /// first if `ORDERED`. `test` returns the new `t_max`, or none to stop.
     #[inline]
     fn search<const ORDERED: bool>(&self, ray: &Ray, mut t_max: f64, mut test: impl FnMut(u32, f64) -> Option<f64>) {
         for &object in &self.always {
@@ -137,7 +138,7 @@ pub(super) fn every(_: u32) -> bool {
     true
 }
 
-/// Shows the objects of a leaf to a test, which returns the new `t_max`, or none to end the walk.
+/// Passes the objects of a leaf to a test, which returns the new `t_max`, or none to stop the traversal.
 struct Objects<'a, F> {
     index: &'a Index,
     test: F,

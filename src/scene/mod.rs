@@ -1,7 +1,7 @@
 //! Floor 3: the world, with every reference resolved.
 //!
-//! `Scene<Curve>` is what the scene file means; the plan looks at it. `Scene<Table>` has the same surfaces with every
-//! spectrum on the lanes; the tracer reads it.
+//! `Scene<Curve>` is the scene as its file describes it, which the plan examines. `Scene<Table>` has the same surfaces,
+//! with every spectrum sampled on the lanes, and is what the tracer reads.
 
 mod camera;
 mod checks;

@@ -1,4 +1,4 @@
-//! Surfaces that look rougher than they are: an image bends the normal by which a material scatters.
+//! Surfaces that look rougher than they are: an image perturbs the shading normal.
 
 use std::sync::Arc;
 
@@ -6,26 +6,26 @@ use crate::math::DVec3;
 use crate::shape::{Coordinates, Intersection, Shape, SurfacePoint};
 use crate::spectrum::Texture;
 
-/// An image on an object that bends its normal; the surface itself stays where it is.
+/// An image on an object that perturbs its shading normal. The surface itself stays where it is.
 #[derive(Clone, Debug)]
 pub struct NormalPerturbation {
-    /// Where points of the surface lie in the image.
+    /// Texture coordinates of the surface.
     pub coordinates: Arc<Coordinates>,
-    /// The image and where it lies.
+    /// The image and its placement.
     pub texture: Texture,
-    /// What its numbers are.
+    /// The meaning of its numbers.
     pub kind: PerturbationKind,
 }
 
-/// What the numbers of an image on an object mean for its normal.
+/// What the numbers of the image mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PerturbationKind {
-    /// Directions: red along u, green at right angles to it on the side of v, blue out of the surface.
+    /// Directions: red along u, green perpendicular to it on the side of v, blue out of the surface.
     Directions {
         /// Factor on red and green.
         strength: f64,
     },
-    /// Heights over the front of the surface.
+    /// Heights above the front of the surface.
     Heights {
         /// Height of white in scene units.
         depth: f64,
@@ -33,19 +33,19 @@ pub enum PerturbationKind {
 }
 
 impl NormalPerturbation {
-    /// The unit normal by which a point of the surface scatters, on the front side; not a bit different where the image
-    /// is flat.
+    /// Returns the unit shading normal at a point, on the front side. Where the image is flat, it is the unperturbed
+    /// normal to the last bit.
     ///
     /// Heights h move the tangents to P_u + h_u n and P_v + h_v n, whose cross product is the normal: Blinn 1978,
-    /// *Simulation of Wrinkled Surfaces*, equation 3. The tangents are taken at right angles to the normal of a smooth
-    /// mesh.
+    /// *Simulation of Wrinkled Surfaces*, equation 3. The tangents are first made perpendicular to the interpolated
+    /// normal of a smooth mesh.
     #[inline(never)]
     pub fn normal(&self, shape: &Shape, intersection: &Intersection, point: &SurfacePoint) -> DVec3 {
         let n = point.shading;
         let Some(tangents) = self.coordinates.tangents(shape, intersection, point) else { return n };
         let [along_u, along_v] = tangents.map(|tangent| tangent - n * tangent.dot(n));
         let uv = self.coordinates.at(shape, intersection, point.position);
-        // In images that lie on the surface as in a mirror, u and v turn the other way around.
+        // Where an image is mirrored on the surface, u and v have the opposite orientation.
         let side = 1f64.copysign(along_u.cross(along_v).dot(n));
         let bent = match self.kind {
             PerturbationKind::Directions { strength } => {
@@ -66,7 +66,7 @@ impl NormalPerturbation {
             }
         };
         let Some(bent) = bent.try_normalize() else { return n };
-        // A normal never looks into the surface: one that would is seen as in a mirror.
+        // A normal must not point into the surface: one that would is reflected at the tangent plane.
         let inward = bent.dot(point.normal).min(0.0);
         (bent - point.normal * (2.0 * inward)).try_normalize().unwrap_or(n)
     }

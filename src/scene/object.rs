@@ -7,7 +7,7 @@ use crate::light::LightId;
 use crate::math::Ray;
 use crate::shape::{Coordinates, Intersection, Shape, SurfacePoint};
 
-/// Number of a material in its scene.
+/// Index of a material in its scene.
 pub type MaterialId = u32;
 
 /// A surface with its material.
@@ -15,27 +15,28 @@ pub type MaterialId = u32;
 pub struct Object {
     /// Its name, or `object N` counted from 1.
     pub name: String,
-    /// Where it is.
+    /// Its geometry.
     pub shape: Arc<Shape>,
-    /// What it does with light.
+    /// The material of its surface.
     pub material: MaterialId,
-    /// The light it is, if it shines.
+    /// The light that it is, if it shines.
     pub light: Option<LightId>,
-    /// Where its points lie in images; none of a mesh that does not say.
+    /// The texture coordinates of its points; none for a mesh without any.
     pub coordinates: Option<Arc<Coordinates>>,
     /// Whether its material varies over the surface.
     pub varies: bool,
-    /// The name of what it is one of, if it is one of several instances; else its own.
+    /// The name of the object of which it is an instance, or its own name if it is not one of several.
     pub asset: String,
-    /// The group of lights that it belongs to if it shines; its asset alone if absent.
+    /// The light group that it belongs to if it shines; if absent, its asset alone.
     pub group: Option<String>,
     /// What the camera sees of it.
     pub visibility: Visibility,
-    /// The image that bends its normal, if there is one.
+    /// The image that perturbs its normal, if there is one.
     pub relief: Option<Arc<NormalPerturbation>>,
 }
 
-/// What the camera sees of an object where it looks straight at it. Light, mirrors and shadows know no difference.
+/// What the camera sees of an object when it looks at it directly. Lighting, reflections and shadows do not depend on
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Visibility {
     /// All of it.
@@ -45,12 +46,13 @@ pub enum Visibility {
     Hidden,
     /// Nothing: a hole in the image, of coverage 0.
     Holdout,
-    /// What other objects change of the light on it: it stands for a surface of the plate that the image is laid over.
+    /// The change that other objects make to the light on it. It stands for a surface in the plate that the image is
+    /// composited over.
     ShadowCatcher,
 }
 
 impl Object {
-    /// The surface at a crossing, with the normal that its relief gives it.
+    /// Returns the surface at an intersection, with its shading normal perturbed by the relief if there is one.
     #[inline]
     pub fn point(&self, ray: &Ray, intersection: &Intersection) -> SurfacePoint {
         let mut point = self.shape.point(ray, intersection);
@@ -60,13 +62,14 @@ impl Object {
         point
     }
 
-    /// Where a point of its surface would lie in an image on it; (0, 0) if it has no coordinates.
+    /// Returns the texture coordinates of a point on its surface, or (0, 0) if it has none.
     pub fn chart_uv(&self, intersection: &Intersection, point: &SurfacePoint) -> [f64; 2] {
         let coordinates = self.coordinates.as_ref();
         coordinates.map_or([0.0; 2], |coordinates| coordinates.at(&self.shape, intersection, point.position))
     }
 
-    /// Where a point of its surface lies in the images of its material; (0, 0) if that is the same everywhere.
+    /// Returns the texture coordinates that its material uses at a point, or (0, 0) if the material is the same
+    /// everywhere.
     pub fn uv(&self, intersection: &Intersection, point: &SurfacePoint) -> [f64; 2] {
         if self.varies { self.chart_uv(intersection, point) } else { [0.0; 2] }
     }

@@ -1,9 +1,9 @@
-//! How the image is made, as the scene says.
+//! How the image is rendered, as the scene file says.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// How the image is made.
+/// How the image is rendered.
 ///
 /// ```toml
 /// [render]
@@ -12,37 +12,39 @@ use std::time::Duration;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RenderText {
-    /// How spectra are carried.
+    /// The model of color: how spectra are carried.
     pub model: ModelText,
-    /// Relative error of the image at which it is good enough: a third of it is what the model of color may miss, the
-    /// rest is noise. Then no more samples are taken.
+    /// Target relative error of the image, at which no more samples are taken. A third of it is the budget of the color
+    /// model, the rest is noise.
     pub error: Option<f64>,
-    /// How long it may render.
+    /// Time limit of the render.
     pub time: Option<Duration>,
-    /// Length of a scene unit in meters: needed where a glass brings its own absorption.
+    /// Length of a scene unit in meters. Needed for the absorption of catalog glasses, and for intensities in absolute
+    /// units.
     pub meters_per_unit: Option<f64>,
-    /// Camera samples per pixel; beside an error or a time, the most.
+    /// Camera samples per pixel; with an error or a time, the maximum.
     pub samples: Option<u32>,
-    /// Chooses another set of random numbers.
+    /// Seed that selects another set of random numbers.
     pub seed: u64,
-    /// How often light may leave a diffuse surface for another before it is gathered from the lights; no limit if
-    /// absent.
+    /// Maximum number of times that light may leave a diffuse surface for another before it is gathered from the
+    /// lights; no limit if absent.
     pub diffuse_bounces: Option<u32>,
-    /// How often light may leave any surface, glass and mirrors included; no limit if absent.
+    /// Maximum number of times that light may leave any surface, glass and mirrors included; no limit if absent.
     pub max_bounces: Option<u32>,
-    /// Whether caustics may have a light pass of their own: photons, where the scene needs them.
+    /// Whether caustics may get a light pass of their own, which traces photons where the scene needs them.
     pub caustics: AutoText,
-    /// Whether pixels may take more samples where the noise is, and fewer elsewhere: if an equal error comes clearly
-    /// sooner.
+    /// Whether pixels may take more samples where there is more noise, and fewer elsewhere, if that reaches an equal
+    /// error clearly sooner.
     pub adaptive: AutoText,
     /// Whether polarization is traced.
     pub polarization: PolarizationText,
-    /// Whether a part of the image is made, which does not know the error of the whole: then all samples are taken.
+    /// Whether only a part of the image is rendered. A part does not know the error of the whole, so all samples are
+    /// taken.
     pub is_part: bool,
 }
 
 impl RenderText {
-    /// Relative errors that may be asked for.
+    /// The relative errors that may be requested.
     pub const ERRORS: RangeInclusive<f64> = 1e-6..=1.0;
 }
 
@@ -53,16 +55,16 @@ impl RenderText {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PolarizationText {
-    /// Where leaving it out would be wrong by more than is tolerated.
+    /// Where ignoring it would cause more than the tolerated error.
     #[default]
     Auto,
     /// Yes.
     On,
-    /// No: light is taken for unpolarized at every surface.
+    /// No: light is treated as unpolarized at every surface.
     Off,
 }
 
-/// Whether a render may help itself where plain paths are slow.
+/// Whether a render may use other techniques where plain paths are slow.
 ///
 /// ```toml
 /// render.adaptive = "auto"     # "off"
@@ -70,10 +72,10 @@ pub enum PolarizationText {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AutoText {
-    /// Where the plan finds that it pays.
+    /// Where the plan finds that it pays off.
     #[default]
     Auto,
-    /// No: all pixels take as many samples, and caustics are left to chance.
+    /// No: all pixels take the same number of samples, and caustics are left to chance.
     Off,
 }
 
@@ -84,13 +86,13 @@ pub enum AutoText {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ModelText {
-    /// The least that the scene needs.
+    /// The cheapest model that is accurate enough for the scene.
     #[default]
     Auto,
     /// Three bands: red, green, blue.
     Rgb,
-    /// As many fixed wavelengths: 8, 12, 16 or 32.
+    /// A number of fixed wavelengths: 8, 12, 16 or 32.
     Bands(u32),
-    /// Fixed wavelengths, and some that are drawn and part in dispersive glass.
+    /// Fixed wavelengths, and some that are drawn at random and part in dispersive glass.
     Hero,
 }

@@ -1,7 +1,7 @@
-/// The share that is written in percent, such as `5 %`; none if it is not one.
+/// Parses a share written in percent, such as `5 %`. Returns none if it is not one.
 pub fn share(text: &str) -> Option<f64> {
     let percent: f64 = text.strip_suffix('%')?.trim().parse().ok()?;
-    // Division by 100 would round once more.
+    // A division by 100 would round a second time.
     format!("{percent}e-2").parse().ok()
 }
 

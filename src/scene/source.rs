@@ -1,4 +1,4 @@
-//! Scenes that are read: a file, a text, or a table that a program has built.
+//! Ways to read a scene: from a file, a text, or a table that a program has built.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -16,13 +16,13 @@ use super::text::{
 };
 use crate::error::{Error, Result, nearest_file};
 
-/// What the text of settings is called in messages; each has a line of it.
+/// The name that messages use for the text of all settings. Each setting is one line of it.
 pub const SETTINGS: &str = "--set";
 
-/// A scene file that was read.
+/// The text of a scene file.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Its path as it was named.
+    /// Its path as the caller gave it.
     pub path: PathBuf,
     /// Its text.
     pub text: String,
@@ -58,7 +58,7 @@ impl Source {
         }
     }
 
-    /// Reads a scene from standard input. Files that it names are looked for in the current folder.
+    /// Reads a scene from standard input. Files that it names are looked up in the current folder.
     ///
     /// # Errors
     /// If it cannot be read or is not UTF-8.
@@ -70,8 +70,8 @@ impl Source {
         }
     }
 
-    /// The scene that the text describes, with the files that it includes, and the meshes, images and tables that they
-    /// name.
+    /// Compiles the scene that the text describes. Reads the files that it includes, and the meshes, images and tables
+    /// that they name.
     ///
     /// # Errors
     /// [`Error::Scene`] with all mistakes that can be found, in the order of the file, each with its line and what to
@@ -80,9 +80,10 @@ impl Source {
         self.compile_with(&[])
     }
 
-    /// The same with other values: each setting is the path of a key, `=` and a TOML value, such as `film.width=320` or
-    /// `object.ball.material="gold"`. What is not TOML is a text. Entries of lists go by their `name`, or by their
-    /// number from 1. A path of one word sets the variable of that name.
+    /// Compiles the scene with some of its values replaced. Each setting is the path of a key, `=` and a TOML value,
+    /// such as `film.width=320` or `object.ball.material="gold"`. A value that is not TOML is taken as a text. List
+    /// entries are addressed by their `name`, or by their number, counted from 1. A path of one word sets the variable
+    /// of that name.
     ///
     /// ```
     /// let text = "set.width = 8
@@ -96,14 +97,15 @@ impl Source {
     /// ```
     ///
     /// # Errors
-    /// As [`compile`](Self::compile). A mistake in a setting is told of a file called `--set`, in which each has a
-    /// line.
+    /// As [`compile`](Self::compile). A mistake in a setting is reported in a file called `--set`, with one line for
+    /// each setting.
     pub fn compile_with(&self, settings: &[String]) -> Result<Scene> {
         self.compile_by(LocatedBy::Line, settings, Vec::new(), true)
     }
 
-    /// The same of a text that a program has written, with rows of numbers beside it. Each mistake in it is told with
-    /// the path of its key, such as `object[3].shape.sphere.radius`.
+    /// Compiles a text that a program has written, with settings as in [`compile_with`](Self::compile_with) and with
+    /// rows of numbers given beside the text. Each mistake in it is reported with the path of its key, such as
+    /// `object[3].shape.sphere.radius`.
     ///
     /// ```
     /// use abbe::scene::{Numbers, Rows, Source};
@@ -156,14 +158,14 @@ impl Source {
         Ok(scene)
     }
 
-    /// Where the names of its files begin.
+    /// Returns the folder that the names of its files are relative to.
     fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 }
 
-/// What the texts of files say together, with the values of settings and of variables in their places; beside it, the
-/// variables that are not used.
+/// Merges the texts of all files, and puts the values of settings and variables in their places. Also returns the names
+/// of variables that are not used.
 fn whole<'d>(
     texts: &'d Texts,
     files: &[Range<usize>],
@@ -180,14 +182,14 @@ fn whole<'d>(
     Ok((root, unused))
 }
 
-/// The keys where mistakes in the first file stand.
+/// Returns the paths of the keys at which mistakes in the first file stand.
 fn keys(texts: &Texts, files: &[Range<usize>], mistakes: &[Mistake]) -> HashMap<Range<usize>, String> {
     let spans = mistakes.iter().map(|mistake| mistake.span.clone()).filter(|span| texts.is_in_first(span.start));
     let first = files.first().and_then(|file| parsed(&texts.whole[file.clone()], file.start).ok());
     first.map(|root| Document::new(texts, &root).paths(spans)).unwrap_or_default()
 }
 
-/// All bytes, or one more than there may be.
+/// Reads all bytes, but stops one byte beyond the limit.
 fn all_of(reader: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     reader.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
@@ -211,7 +213,7 @@ impl Scene {
         Source::read(path.as_ref())?.compile()
     }
 
-    /// Reads a scene from a text of the same form as a scene file. Files that it names are looked for in `folder`.
+    /// Parses a scene from a text in the form of a scene file. Files that it names are looked up in `folder`.
     ///
     /// # Errors
     /// As [`Scene::read`]; the file is called `scene.toml` in messages.
@@ -220,10 +222,11 @@ impl Scene {
         source.compile_by(LocatedBy::Line, &[], Vec::new(), false)
     }
 
-    /// Reads a scene that a program has built: a value that means what a scene file with the same keys means.
+    /// Reads a scene from a table that a program has built. The table means what a scene file with the same keys means.
     ///
     /// # Errors
-    /// As [`Scene::parse`], but each mistake is told with the path of its key, such as `object[3].shape.sphere.radius`.
+    /// As [`Scene::parse`], but each mistake is reported with the path of its key, such as
+    /// `object[3].shape.sphere.radius`.
     pub fn from_table(table: &toml::Table, folder: impl AsRef<Path>) -> Result<Self> {
         let source = Source { path: folder.as_ref().join("scene.toml"), text: table.to_string() };
         source.compile_written(&[], Vec::new())

@@ -1,9 +1,10 @@
-//! Colors as they are written elsewhere, in linear light.
+//! Colors as web pages and other programs write them, converted to linear light.
 
 use crate::spectrum::decode_srgb;
 
-/// Linear red, green and blue of a color as programs for painting and the web write it, in a text that shows it as a
-/// scene would: `#ff8800`, `#f80`, `0xff8800`, `rgb(255, 136, 0)` or `255, 136, 0`. None if the text is no such color.
+/// Converts a color as paint programs and the web write it (`#ff8800`, `#f80`, `0xff8800`, `rgb(255, 136, 0)` or
+/// `255, 136, 0`) to linear red, green and blue, as a text that can be pasted into a scene. Returns none if the text is
+/// no such color.
 pub fn web_color(text: &str) -> Option<String> {
     let text = text.trim().to_lowercase();
     match text.strip_prefix('#').or_else(|| text.strip_prefix("0x")) {
@@ -17,20 +18,21 @@ pub fn web_color(text: &str) -> Option<String> {
     }
 }
 
-/// sRGB numbers from 0 to 255, one of them above 1, as linear light; none if they are not that.
+/// Converts sRGB numbers from 0 to 255, at least one of them above 1, to linear light. Returns none for other numbers.
 pub fn of_bytes(bytes: [f64; 3]) -> Option<String> {
     let are_bytes = bytes.iter().all(|x| (0.0..=255.0).contains(x) && x.fract() == 0.0);
     (are_bytes && bytes.iter().any(|x| *x > 1.0)).then(|| of_srgb(bytes.map(|x| x / 255.0)))
 }
 
-/// sRGB numbers from 0 to 1 as linear light, to three digits.
+/// Converts sRGB numbers from 0 to 1 to linear light, rounded to three digits.
 pub fn of_srgb(color: [f64; 3]) -> String {
     let three_digits = |x: f64| format!("{:.2e}", decode_srgb(x)).parse().unwrap_or(x);
     let color: Vec<String> = color.map(three_digits).iter().map(f64::to_string).collect();
     format!("[{}]", color.join(", "))
 }
 
-/// Two digits, or one that counts twice, for each of red, green and blue; what follows is how opaque it is.
+/// Converts two hexadecimal digits each for red, green and blue, or one that counts twice. Digits for alpha may follow
+/// and are ignored.
 fn of_digits(digits: &str) -> Option<String> {
     let width = match digits.len() {
         3 | 4 => 1,
@@ -48,7 +50,7 @@ fn of_digits(digits: &str) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// 136 of 255 is 0.2462 of the light, 51 is 0.03310 (IEC 61966-2-1).
+    /// In linear light, 136 of 255 is 0.2462 and 51 is 0.03310 (IEC 61966-2-1).
     #[test]
     fn a_color_of_the_web_is_told_in_linear_light() {
         for orange in ["#ff8800", "#FF8800", "#f80", "#ff8800cc", "0xff8800", "rgb(255, 136, 0)", "255 136 0"] {

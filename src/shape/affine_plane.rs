@@ -3,7 +3,8 @@ use super::triangle::difference_of_products;
 use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DVec3, Ray, Transform, gamma};
 
-/// A plane with affine coordinates (a, b): the points `center + a u + b v`. Disc and quad are regions of it.
+/// A plane with affine coordinates (a, b): the points `center + a u + b v`. Discs and quads are regions of such a
+/// plane.
 #[derive(Clone, Debug)]
 pub struct AffinePlane {
     pub(super) center: DVec3,
@@ -12,14 +13,15 @@ pub struct AffinePlane {
     pub(super) normal: DVec3,
     dual_u: DVec3,
     dual_v: DVec3,
-    /// Largest terms of the sums behind a point of the plane, coordinate by coordinate.
+    /// Largest terms in the sums that give a point of the plane, per coordinate.
     terms: DVec3,
 }
 
 impl AffinePlane {
-    /// The plane spanned by two independent vectors; its front is the side of `normal`'s half space.
+    /// Creates the plane spanned by two independent vectors. Its front is the side that `front` points to.
     pub(super) fn new(center: DVec3, u: DVec3, v: DVec3, front: DVec3) -> Self {
-        // Each coordinate exact to a rounding, however narrow the angle: the points' height over the plane needs it.
+        // Each coordinate is accurate to one rounding, however small the angle between both vectors: the height of
+        // points over the plane depends on it.
         let (a, b) = (u.normalize(), v.normalize());
         let coordinate = |i: usize, j: usize| difference_of_products(a[i], b[j], a[j], b[i]);
         let cross = DVec3::new(coordinate(1, 2), coordinate(2, 0), coordinate(0, 1)).normalize();
@@ -33,12 +35,12 @@ impl AffinePlane {
         Self { center, u, v, normal, dual_u: dual(u, v), dual_v: dual(v, u), terms }
     }
 
-    /// The same plane as a side of a body whose own test works with terms as large as these.
+    /// Returns the plane as a face of a body whose own intersection test works with terms as large as these.
     pub(super) fn with_terms(self, terms: DVec3) -> Self {
         Self { terms, ..self }
     }
 
-    /// The crossing with the whole plane; `uv` tells whether it lies in the region.
+    /// Returns the crossing with the whole plane. Its `uv` tells whether it lies in the region.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let to_center = self.center - ray.origin;
         let t = to_center.dot(self.normal) / ray.direction.dot(self.normal);
@@ -49,10 +51,10 @@ impl AffinePlane {
         Some(Intersection { t, part: 0, uv: [d.dot(self.dual_u), d.dot(self.dual_v)] })
     }
 
-    /// The point with the given coordinates.
+    /// Returns the point with the given coordinates.
     pub(super) fn point(&self, [a, b]: [f64; 2]) -> SurfacePoint {
         let position = self.at([a, b]);
-        // Two products and two sums, and 3 roundings of the normal: 7 on the largest terms.
+        // Two products and two sums, and 3 roundings of the normal: 7 roundings on the largest terms.
         SurfacePoint { position, error: self.terms * gamma(7), normal: self.normal, shading: self.normal }
     }
 
@@ -60,7 +62,7 @@ impl AffinePlane {
         self.center + self.u * a + self.v * b
     }
 
-    /// The parallelogram |a| <= 1, |b| <= 1 as seen from a point, if it is near.
+    /// Returns the outline of the parallelogram |a| <= 1, |b| <= 1 as seen from a point, if it is near.
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
         let Self { center, u, v, .. } = *self;
         if !is_near(center - from, u.length_squared() + v.length_squared()) {
@@ -69,17 +71,17 @@ impl AffinePlane {
         Outline::seen(from, &[center - u - v, center + u - v, center + u + v, center - u + v], 4.0 * u.cross(v))
     }
 
-    /// Area of that parallelogram.
+    /// Returns the area of the parallelogram |a| <= 1, |b| <= 1.
     pub(super) fn area(&self) -> f64 {
         4.0 * self.u.cross(self.v).length()
     }
 
-    /// A point of it, uniform by area.
+    /// Samples a point of the parallelogram |a| <= 1, |b| <= 1 uniformly by area.
     pub(super) fn sample_area(&self, u: [f64; 2]) -> DVec3 {
         self.at([2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0])
     }
 
-    /// Its box.
+    /// Returns the bounding box of the parallelogram |a| <= 1, |b| <= 1.
     pub(super) fn bounds(&self) -> Bounds {
         let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
         Bounds::around(corners.map(|uv| self.at(uv))).padded(8)

@@ -1,25 +1,26 @@
-//! What a mesh's vertices carry besides their places.
+//! What the vertices of a mesh carry besides their positions.
 
 use super::Vertices;
 use crate::math::{DVec3, Transform};
 
-/// Numbers of each vertex, interpolated over the triangles; lists are empty where a mesh has none.
+/// Attributes of each vertex, interpolated over the triangles. Lists are empty where a mesh has no such attribute.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attributes {
-    /// Normals of the surface that the triangles stand for, of any length; one of length 0 stands for none.
+    /// Normals of the surface that the triangles approximate, of any length. A normal of length 0 means that there is
+    /// none.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates, v up.
+    /// Texture coordinates, with v up.
     pub coordinates: Vec<[f32; 2]>,
-    /// Triangles that have no texture coordinates where others have: zeros stand for them.
+    /// Number of triangles without texture coordinates in a mesh where others have them. Zeros take their place.
     pub bare: usize,
 }
 
 impl Attributes {
-    /// The unit normal at affine coordinates of a triangle whose own normal is `flat`.
+    /// Returns the unit normal at affine coordinates of a triangle whose own normal is `flat`.
     ///
-    /// Of no use are interpolated normals that vanish or look away from the triangle's front. Where those of all three
-    /// corners look away, it is the triangle that runs the other way around, as in meshes that a program has mirrored:
-    /// they are turned.
+    /// Returns `flat` if the interpolated normal vanishes or points away from the triangle's front. If the normals of
+    /// all three corners point away, then it is the triangle whose winding is reversed, as in meshes that a program has
+    /// mirrored. In this case the interpolated normal is flipped.
     pub(super) fn shading(&self, corners: [u32; 3], uv: [f64; 2], flat: DVec3) -> DVec3 {
         if self.normals.is_empty() {
             return flat;
@@ -34,13 +35,14 @@ impl Attributes {
         }
     }
 
-    /// The texture coordinates at affine coordinates of a triangle.
+    /// Returns the texture coordinates at affine coordinates of a triangle.
     pub(super) fn coordinates(&self, corners: [u32; 3], uv: [f64; 2]) -> Option<[f64; 2]> {
         (!self.coordinates.is_empty()).then(|| interpolated(&self.coordinates, corners, uv))
     }
 
     pub(super) fn transformed(&self, map: &Transform) -> Self {
-        // Not normalized, so that they are interpolated as before the map; the largest number of the map is made 1.
+        // Normals are not normalized, so that they are interpolated as before the map. The map is scaled so that its
+        // largest number is 1.
         let Some(back) = map.inverse() else { return self.clone() };
         let size = back.size();
         let turned =
@@ -55,8 +57,8 @@ fn interpolated<const K: usize>(numbers: &[[f32; K]], corners: [u32; 3], [u, v]:
     std::array::from_fn(|i| f64::from(a[i]) * (1.0 - u - v) + f64::from(b[i]) * u + f64::from(c[i]) * v)
 }
 
-/// Normals of vertices, from the triangles around each, weighted by their angles there; vertices at the same place have
-/// one.
+/// Computes vertex normals from the triangles around each vertex, weighted by their angles there. Vertices at the same
+/// place share one normal.
 ///
 /// Thuermer & Wuethrich 1998, *Computing Vertex Normals from Polygonal Facets*.
 pub fn vertex_normals(vertices: &Vertices, faces: &[[u32; 3]]) -> Vec<[f32; 3]> {

@@ -1,21 +1,21 @@
 use crate::math::{Bounds, Cone, DVec3, one_minus_cos_of_cone};
 
-/// A ball around something.
+/// A bounding ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its middle.
+    /// Center of the ball.
     pub center: DVec3,
-    /// Its radius.
+    /// Radius of the ball.
     pub radius: f64,
 }
 
 impl Ball {
-    /// Through the corners of a box.
+    /// Creates the ball through the corners of a box.
     pub fn of_box(bounds: &Bounds) -> Self {
         Self { center: bounds.center(), radius: 0.5 * bounds.size().length() }
     }
 
-    /// The cone of directions in which the ball is seen from a point; all directions from inside of it.
+    /// Returns the cone of directions in which the ball is seen from a point, or all directions if the point is inside.
     pub fn cone_from(&self, from: DVec3) -> Cone {
         let way = self.center - from;
         let sin_squared = self.radius * self.radius / way.length_squared();
@@ -26,12 +26,12 @@ impl Ball {
         }
     }
 
-    /// Whether a point lies inside.
+    /// Returns whether a point lies inside the ball.
     pub fn contains(&self, point: DVec3) -> bool {
         (point - self.center).length_squared() <= self.radius * self.radius
     }
 
-    /// The smallest ball around two.
+    /// Returns the smallest ball that contains two balls.
     pub fn around(self, other: Self) -> Self {
         let way = other.center - self.center;
         let distance = way.length();
@@ -45,8 +45,9 @@ impl Ball {
         Self { center: self.center + way * ((radius - self.radius) / distance), radius }
     }
 
-    /// The unit normals of those points of the ball's surface that see some of another ball: n . (c - l) > r - R, if
-    /// the other lies outside; else all of them.
+    /// Returns the unit normals n of the points of the ball's surface that see some part of another ball. With centers
+    /// l and c and radii r and R, these satisfy n . (c - l) > r - R if the balls lie apart. Otherwise returns all
+    /// normals.
     pub fn cap_toward(&self, other: &Self) -> Cone {
         let way = other.center - self.center;
         let distance = way.length();
@@ -73,7 +74,7 @@ mod tests {
         let Cone { axis, one_minus_cos } = Ball { center, radius }.cap_toward(&toward);
         let sees = |normal: DVec3| {
             let point = center + normal * radius;
-            // The farthest that the ball reaches beyond the plane that touches the sphere in this point.
+            // How far the ball reaches beyond the plane that touches the sphere at this point.
             normal.dot(toward.center - point) + toward.radius > 0.0
         };
         let mut within = 0;
@@ -84,7 +85,7 @@ mod tests {
             within += i32::from(inside);
         }
         assert!((f64::from(within) / 1e4 - 0.5 * one_minus_cos).abs() < 1e-3);
-        // Points drawn, each over its density, measure the cap: its area, and that of its inner half.
+        // Sums of 1 / density over sampled points estimate the area of the cap, and that of its inner half.
         let (mut all, mut inner) = (0.0, 0.0);
         for i in 0..10_000 {
             let u = [(f64::from(i) + 0.5) / 1e4, (f64::from(i) * 0.618_034).fract()];

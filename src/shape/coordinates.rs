@@ -1,4 +1,4 @@
-//! Where the points of shapes lie in images on them.
+//! Texture coordinates: where the points of shapes lie in the images on them.
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Neg;
@@ -6,21 +6,21 @@ use std::ops::Neg;
 use super::{Disc, Intersection, Quad, Shape, SurfacePoint};
 use crate::math::{DMat3, DVec3, Transform, level};
 
-/// The coordinates (u, v) of the points of a shape, by which images lie on it; a transform carries them along.
+/// The texture coordinates (u, v) of the points of a shape. Transforms carry them along.
 ///
-/// - quad: 0 to 1 along its u and its v; disc: so on the square around it;
+/// - quad: 0 to 1 along its u and its v; disc: the same on the square around it;
 /// - triangle: (0, 0), (1, 0), (0, 1) at its points;
 /// - cube: 0 to 1 on each face, seen upright from outside; on the top face v runs to -z, on the bottom face to +z;
 /// - mesh: as its file says;
-/// - sphere: longitude and latitude, seen from outside, +z in the middle, +x at u = 3/4, +y at v = 1;
+/// - sphere: longitude and latitude, seen from outside, with +z in the middle, +x at u = 3/4, +y at v = 1;
 /// - plane: scene units from its `point`, u horizontal and v up; on a horizontal one u = +x, so that v = -z on a floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coordinates {
     /// A quad or a disc.
     Square,
-    /// A triangle, and whether its last two points changed places.
+    /// A triangle, and whether its last two points were swapped.
     Triangle {
-        /// By a mirroring transform.
+        /// Whether a mirroring transform has swapped the points.
         swapped: bool,
     },
     /// A cube.
@@ -29,14 +29,14 @@ pub enum Coordinates {
     Mesh,
     /// A sphere or an ellipsoid.
     Sphere {
-        /// Its center in the world.
+        /// Center of the sphere in the world.
         center: DVec3,
-        /// From the world's directions to its own.
+        /// Takes directions from the world to the sphere's own space.
         inverse: DMat3,
     },
     /// A plane.
     Plane {
-        /// Where u = v = 0.
+        /// The point where u = v = 0.
         origin: DVec3,
         /// The gradient of u.
         u: DVec3,
@@ -46,7 +46,8 @@ pub enum Coordinates {
 }
 
 impl Coordinates {
-    /// Of a shape before a transform; none if the shape has no coordinates.
+    /// Creates the coordinates of a shape after the transform `map`. `shape` itself is not yet transformed. Returns
+    /// `None` if the shape has no coordinates.
     pub fn new(shape: &Shape, map: &Transform) -> Option<Self> {
         let inverse = map.inverse_linear();
         Some(match shape {
@@ -65,7 +66,7 @@ impl Coordinates {
         })
     }
 
-    /// At a crossing of the shape, whose point in the world is known.
+    /// Returns the coordinates at a crossing of the shape. `position` is the point in the world.
     pub fn at(&self, shape: &Shape, intersection: &Intersection, position: DVec3) -> [f64; 2] {
         let unit = |uv: [f64; 2]| uv.map(|x| 0.5 + 0.5 * x);
         match self {
@@ -86,10 +87,10 @@ impl Coordinates {
         }
     }
 
-    /// The derivatives of a point of the shape by its coordinates u and v, in the world; none where a mesh has no
-    /// coordinates or a triangle of it lies on a line in the image.
+    /// Returns the derivatives of a point of the shape with respect to its coordinates u and v, in the world. Returns
+    /// `None` if a mesh has no coordinates or if one of its triangles is mapped to a line in the image.
     ///
-    /// At the poles of a sphere, where u turns without moving the point, the first is 0.
+    /// At the poles of a sphere, where a change of u does not move the point, the first derivative is 0.
     pub fn tangents(&self, shape: &Shape, intersection: &Intersection, point: &SurfacePoint) -> Option<[DVec3; 2]> {
         match self {
             Self::Square => {
@@ -120,7 +121,7 @@ impl Coordinates {
                 Some(along.map(|own| forward * own))
             }
             Self::Plane { u, v, .. } => {
-                // The directions in the plane in which one coordinate rests.
+                // The directions in the plane along which one of the coordinates is constant.
                 let [along_u, along_v] = [v.cross(point.normal), point.normal.cross(*u)];
                 Some([along_u / along_u.dot(*u), along_v / along_v.dot(*v)])
             }
@@ -132,9 +133,9 @@ fn swapped_if<T>(swapped: bool, [a, b]: [T; 2]) -> [T; 2] {
     if swapped { [b, a] } else { [a, b] }
 }
 
-/// From a pair along the own coordinates of a face of a cube, the pair along those of an image that stands upright.
+/// Converts a pair along a cube face's own coordinates to the pair along the coordinates of an upright image.
 ///
-/// The own ones of faces -x, +x, -y, +y, -z, +z run along the next two axes.
+/// The own coordinates of the faces -x, +x, -y, +y, -z, +z run along the next two axes.
 fn upright<T: Neg<Output = T>>(face: u32, [a, b]: [T; 2]) -> [T; 2] {
     match face {
         0 | 2 => [b, a],
@@ -151,7 +152,7 @@ mod tests {
     use crate::math::Ray;
     use crate::shape::{Attributes, Cube, Mesh, Plane, Sphere, Triangle, Vertices};
 
-    /// Coordinates of the point that a ray toward -`from` first meets.
+    /// Returns the coordinates of the first point that a ray from `from` to `toward` meets.
     fn seen(shape: Shape, map: &Transform, from: DVec3, toward: DVec3) -> [f64; 2] {
         let coordinates = Coordinates::new(&shape, map).expect("the shape has coordinates");
         let shape = shape.transformed(map);
@@ -165,7 +166,7 @@ mod tests {
         assert!(near, "{found:?} is not {expected:?}");
     }
 
-    /// Shapes, and a point of each.
+    /// Returns shapes, each with one of its points.
     fn shapes() -> Vec<(Shape, DVec3)> {
         let quad = Quad::new(DVec3::new(1.0, 0.5, 0.0), DVec3::new(2.0, 0.3, 0.0), DVec3::Y);
         let disc = Disc::new(DVec3::ZERO, DVec3::new(0.2, 0.0, 1.0), 2.0, Some(DVec3::X)).unwrap();
@@ -191,7 +192,7 @@ mod tests {
         ]
     }
 
-    /// Whatever moves, turns, stretches or mirrors a shape carries its coordinates along.
+    /// Whatever moves, rotates, stretches or mirrors a shape carries its coordinates along.
     #[test]
     fn a_point_keeps_its_coordinates_under_every_transform() {
         let cube = Cube::new(DVec3::new(0.1, 0.2, 0.3), DVec3::splat(2.0));
@@ -206,7 +207,7 @@ mod tests {
 
     #[test]
     fn images_on_discs_stand_upright_as_on_planes() {
-        // Toward who looks, to the right and up.
+        // The directions toward the viewer, to the right and up.
         for (normal, right, up) in [
             (DVec3::NEG_Z, DVec3::NEG_X, DVec3::Y),
             (DVec3::Z, DVec3::X, DVec3::Y),
@@ -223,7 +224,7 @@ mod tests {
     #[test]
     fn images_on_a_cube_stand_upright_seen_from_outside() {
         let cube = || Shape::Cube(Cube::new(DVec3::ZERO, DVec3::splat(2.0)));
-        // Outward, to the right and up as one sees the face.
+        // The directions outward, to the right and up, as seen from outside.
         let faces = [
             (DVec3::Z, DVec3::X, DVec3::Y),
             (-DVec3::Z, -DVec3::X, DVec3::Y),
@@ -263,7 +264,7 @@ mod tests {
         assert_near(at(DVec3::X, DVec3::new(0.0, 5.0, 3.0)), [-3.0, 5.0]);
     }
 
-    /// A square whose second triangle shows the image in a mirror.
+    /// Returns a square whose second triangle shows the image mirrored.
     fn mirrored_mesh() -> Shape {
         let points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.2, 1.0, 0.1), DVec3::Y, DVec3::new(1.2, 1.0, 0.1)];
         let faces = vec![[0, 1, 2], [0, 4, 3]];
@@ -272,7 +273,7 @@ mod tests {
         Shape::Mesh(mesh.with(Attributes { coordinates, ..Default::default() }).into())
     }
 
-    /// Steps along a surface change its coordinates as the tangents say, under every transform.
+    /// Steps along a surface change its coordinates as the tangents predict, under every transform.
     #[test]
     fn tangents_are_the_derivatives_of_points_by_coordinates() {
         let mut cases = shapes();
@@ -314,8 +315,8 @@ mod tests {
             let [(_, ahead, [u1, v1]), (_, behind, [u2, v2])] = [STEP, -STEP].map(|step| see(place + way * step));
             let moved = ahead.position - behind.position;
             let expected = along_u * (u1 - u2) + along_v * (v1 - v2);
-            // What is left is of third order in the step, beside roundings of places and coordinates: 1e-15 times
-            // tangents up to 40 long. A wrong tangent is off by the step.
+            // The remaining error is of third order in the step, plus roundings of positions and coordinates: 1e-15
+            // times tangents up to 40 long. A wrong tangent gives an error as large as the step.
             assert!((moved - expected).length() < 1e-12, "{shape:?} at {u} {v}: {moved}, not {expected}");
         }
     }

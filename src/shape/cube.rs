@@ -10,15 +10,15 @@ use crate::math::{Bounds, DVec3, Ray, Transform, UNIT_ROUNDOFF};
 #[derive(Clone, Debug)]
 pub struct Cube {
     pub(super) center: DVec3,
-    /// From the center to the middles of three of its faces.
+    /// Vectors from the center to the centers of three faces.
     pub(super) half_edges: [DVec3; 3],
     duals: [DVec3; 3],
-    /// Face 2 i + s lies at the end (s = 1) or the start (s = 0) of half edge i.
+    /// Face 2 i + s lies at the positive (s = 1) or the negative (s = 0) end of half edge i.
     faces: Box<[AffinePlane; 6]>,
 }
 
 impl Cube {
-    /// The box with edges of the given full lengths along the axes.
+    /// Creates the box with edges of the given full lengths along the axes.
     pub fn new(center: DVec3, size: DVec3) -> Self {
         let half = size * 0.5;
         Self::spanned(center, [DVec3::X * half.x, DVec3::Y * half.y, DVec3::Z * half.z])
@@ -40,7 +40,8 @@ impl Cube {
         Self { center, half_edges, duals, faces: Box::new(faces) }
     }
 
-    /// Slabs |coordinate| <= 1 in the cube's own coordinates: convex, so no ray slips through an edge.
+    /// Intersects the slabs |coordinate| <= 1 in the cube's own coordinates. They are convex, so no ray slips through
+    /// an edge.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let d = ray.origin - self.center;
         let (mut enter, mut leave) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
@@ -71,15 +72,15 @@ impl Cube {
 
     fn intersection(&self, ray: &Ray, t: f64, face: usize) -> Intersection {
         let d = ray.at(t) - self.center;
-        // Kept inside the edges by more than the rounding of a slab coordinate, so that a ray that goes on inside
-        // starts inside all slabs and meets no face it did not cross.
+        // The point is kept inside the edges by more than the rounding of a slab coordinate. A ray that continues
+        // inside then starts inside all slabs, and hits no face that it did not cross.
         let limit = 1.0 - 64.0 * UNIT_ROUNDOFF * (1.0 + (self.center.abs() + self.extent()).dot(self.reach()));
         let limit = limit.max(0.0);
         let coordinate = |axis: usize| d.dot(self.duals[axis]).clamp(-limit, limit);
         Intersection { t, part: face as u32, uv: [coordinate((face / 2 + 1) % 3), coordinate((face / 2 + 2) % 3)] }
     }
 
-    /// How much a rounding of a world coordinate can move a slab coordinate.
+    /// Returns how much the rounding of a world coordinate can move a slab coordinate.
     fn reach(&self) -> DVec3 {
         self.duals.iter().fold(DVec3::ZERO, |reach, dual| reach.max(dual.abs()))
     }
@@ -88,12 +89,12 @@ impl Cube {
         self.faces[intersection.part as usize].point(intersection.uv)
     }
 
-    /// Three of its edges, each along one axis before a transform.
+    /// Returns three of the edges, each along one axis before a transform.
     pub fn edges(&self) -> [DVec3; 3] {
         self.half_edges.map(|half| 2.0 * half)
     }
 
-    /// How far the cube reaches from its center along each axis of the world.
+    /// Returns how far the cube extends from its center along each axis of the world.
     fn extent(&self) -> DVec3 {
         let [a, b, c] = self.half_edges.map(|edge| edge.abs());
         a + b + c
@@ -112,18 +113,18 @@ impl Cube {
         (0..3).map(|axis| 2.0 * self.faces[2 * axis].area()).sum()
     }
 
-    /// The plane of a face, which fills its unit square.
+    /// Returns the plane of a face, which is the plane's parallelogram |a| <= 1, |b| <= 1.
     pub(super) fn face(&self, index: u32) -> &AffinePlane {
         &self.faces[index as usize]
     }
 
-    /// A point uniform by area, and the face it lies on.
+    /// Samples a point uniformly by area. Returns it with the face it lies on.
     pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
         let (face, along) = self.choose(u[0]);
         (self.face(face).sample_area([along, u[1]]), face)
     }
 
-    /// A face by its area, and what is left of the random number.
+    /// Draws a face in proportion to its area. Returns it with the rest of the random number.
     pub(super) fn choose(&self, u: f64) -> (u32, f64) {
         let mut left = u * self.area();
         for face in 0..6 {

@@ -4,24 +4,24 @@ use super::Intersection;
 use super::affine_plane::AffinePlane;
 use crate::math::{Bounds, DMat3, DVec3, Ray, disk, level};
 
-/// A flat disc; its front is the side `normal` points to. An uneven scale makes it an ellipse.
+/// A flat disc; its front is the side `normal` points to. A non-uniform scale makes it an ellipse.
 ///
-/// Its coordinates (u, v) run from -1 to 1 along the radius `u` and the radius at right angles, counterclockwise
-/// seen from the front.
+/// Its coordinates (u, v) run from -1 to 1 along the radius `u` and along the radius perpendicular to it,
+/// counterclockwise as seen from the front.
 ///
 /// ```toml
 /// shape.disc = { center = [0, 0, 0], normal = [0, 1, 0], radius = 1, u = [1, 0, 0] }    # u is optional
 /// ```
 #[derive(Clone, Debug)]
 pub struct Disc {
-    /// The plane it lies in, whose unit circle it fills.
+    /// The plane of the disc, which fills the plane's unit circle.
     pub(super) plane: AffinePlane,
 }
 
 impl Disc {
-    /// A disc with a normal of any length above 0; `u` gives the direction of its first coordinate, made
-    /// perpendicular to the normal; without it images stand upright, as on a plane. None if `u` is parallel to the
-    /// normal.
+    /// Creates a disc with a normal of any length above 0. `u` gives the direction of the first coordinate, and is made
+    /// perpendicular to the normal. Without `u`, images stand upright, as on a plane. Returns `None` if `u` is parallel
+    /// to the normal.
     pub fn new(center: DVec3, normal: DVec3, radius: f64, u: Option<DVec3>) -> Option<Self> {
         let normal = normal.normalize();
         let u = match u {

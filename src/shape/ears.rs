@@ -1,15 +1,15 @@
-//! Polygons in a plane, cut into triangles.
+//! Triangulation of polygons in a plane.
 
 use crate::math::DVec2;
 
-/// Most corners of a polygon that is cut: the time grows with their square.
+/// Maximum number of corners of a polygon that is cut. The time grows with the square of the number.
 pub(super) const MOST_CORNERS: usize = 1 << 12;
 
-/// The triangles of a polygon that runs counterclockwise, given by its corners, of which each is off by up to `reach`;
-/// none if its sides cross. Every corner is one of a triangle.
+/// Returns the triangles of a counterclockwise polygon, given by its corners, each of which is off by up to `reach`.
+/// Returns `None` if its sides cross. Every corner of the polygon is a corner of a triangle.
 ///
-/// A corner is an ear where the triangle with both its neighbors lies inside: it is cut off, and what is left has ears
-/// again (Meisters 1975, *Polygons Have Ears*). A polygon may touch itself, as one does that goes around a hole.
+/// A corner is an ear if the triangle with its two neighbors lies inside. It is cut off, and the remaining polygon has
+/// ears again (Meisters 1975, *Polygons Have Ears*). A polygon may touch itself, like one that goes around a hole.
 pub(super) fn ears(corners: &[DVec2], reach: f64) -> Option<Vec<[usize; 3]>> {
     let count = corners.len();
     let ring = Ring { corners, reach, next: Vec::new(), before: Vec::new() };
@@ -19,8 +19,8 @@ pub(super) fn ears(corners: &[DVec2], reach: f64) -> Option<Vec<[usize; 3]>> {
     let next = (1..count).chain([0]).collect();
     let before = [count - 1].into_iter().chain(0..count - 1).collect();
     let (mut ring, mut triangles, mut left, mut at) = (Ring { next, before, ..ring }, Vec::new(), count, 0);
-    // Ears that are right whatever rounding did come first. Which corners are none changes only beside one that was
-    // cut off, but for corners that others touch: these are asked again in the next round.
+    // Ears that are certain in spite of rounding are cut first. After a cut, only the two corners next to it can become
+    // ears, apart from corners that others touch. Those are tested again in the next round.
     for is_sure in [true, true, true, false, false] {
         let (mut asked, mut waiting) = (vec![false; count], left);
         while left > 3 && waiting > 0 {
@@ -44,7 +44,7 @@ pub(super) fn ears(corners: &[DVec2], reach: f64) -> Option<Vec<[usize; 3]>> {
     (left == 3 && turn >= -rounding).then_some(triangles)
 }
 
-/// The corners that are left.
+/// The corners that are not yet cut off.
 struct Ring<'a> {
     corners: &'a [DVec2],
     reach: f64,
@@ -53,13 +53,15 @@ struct Ring<'a> {
 }
 
 impl Ring<'_> {
-    /// Twice the area of a triangle, above 0 if it runs counterclockwise, and what rounding makes of 0.
+    /// Returns twice the area of a triangle, above 0 if it runs counterclockwise, and the largest value that rounding
+    /// makes of 0.
     fn turn(&self, [a, b, c]: [DVec2; 3]) -> (f64, f64) {
         let (along, across, opposite) = (b - a, c - a, c - b);
         (along.perp_dot(across), self.reach * (along.length() + across.length() + opposite.length()))
     }
 
-    /// Whether a corner can be cut off: surely, or as far as rounding lets one tell.
+    /// Returns whether a corner can be cut off: with certainty if `is_sure`, otherwise as far as rounding allows one to
+    /// tell.
     fn is_ear(&self, at: usize, is_sure: bool) -> bool {
         let (first, last) = (self.before[at], self.next[at]);
         let [a, b, c] = [first, at, last].map(|corner| self.corners[corner]);
@@ -90,7 +92,7 @@ impl Ring<'_> {
         (0..count).any(|one| (one + 2..count).any(|other| cross(one, other)))
     }
 
-    /// Whether two points lie on different sides of the line through two others.
+    /// Returns whether two points lie on different sides of the line through two others.
     fn separates(&self, [from, to]: [DVec2; 2], points: [DVec2; 2]) -> bool {
         let [(one, near), (other, far)] = points.map(|point| self.turn([from, to, point]));
         one.abs() > near && other.abs() > far && (one > 0.0) != (other > 0.0)
@@ -108,7 +110,8 @@ mod tests {
         0.5 * corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
     }
 
-    /// The triangles lie side by side if they are none with a negative area, and together have that of the polygon.
+    /// Returns whether the polygon is cut. The triangles lie side by side if none has a negative area and their total
+    /// area is that of the polygon.
     fn is_cut(corners: &[DVec2]) -> bool {
         let Some(triangles) = ears(corners, 1e-15) else { return false };
         let areas: Vec<f64> = triangles.iter().map(|corner| area(&corner.map(|at| corners[at]))).collect();
@@ -118,7 +121,7 @@ mod tests {
         true
     }
 
-    /// The polygon, whichever corner is listed first.
+    /// Returns whether the polygon is cut, whichever corner is listed first.
     fn is_cut_from_everywhere(corners: &[[f64; 2]]) -> bool {
         (0..corners.len()).all(|first| {
             let turned: Vec<DVec2> =
@@ -132,7 +135,7 @@ mod tests {
         let dart = [[0.0, 0.0], [2.0, 2.0], [0.0, 0.5], [-2.0, 2.0]];
         let corner = [[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]];
         let points_on_sides = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 2.0], [1.0, 1.0], [0.0, 1.0]];
-        // Around a square hole and back the same way.
+        // Around a square hole, and back the same way.
         let hole = [
             [0.0, 0.0],
             [4.0, 0.0],

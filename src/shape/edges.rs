@@ -2,9 +2,9 @@
 
 use super::Vertices;
 
-/// Edges that keep triangles from enclosing a volume, vertices at the same place counting as one.
+/// Counts the edges that keep triangles from enclosing a volume. Vertices at the same place count as one.
 pub(super) fn open_edges(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
-    // Where every edge has its counterpart, it also has one after vertices have become one.
+    // If every edge has its counterpart, it also has one after vertices are merged.
     match unbalanced(vertices.count(), triangles, |corner| corner) {
         0 => 0,
         _ => {
@@ -14,13 +14,14 @@ pub(super) fn open_edges(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
     }
 }
 
-/// Edges that do not run as often one way as the other.
+/// Counts the edges that do not run equally often in both directions.
 ///
-/// The ends of the edges that leave each vertex are gathered side by side, 12 bytes for a triangle.
+/// The ends of the edges that leave each vertex are stored side by side, in 12 bytes per triangle.
 fn unbalanced(vertices: usize, triangles: &[[u32; 3]], corner: impl Fn(u32) -> u32) -> usize {
     let edges = || triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
     let edges = || edges().map(|(a, b)| (corner(a), corner(b)));
-    // Counted in advance, then filled in backward: at the end, `first` is where each vertex's ends begin.
+    // The ends are counted in advance, then filled in backward. In the end, `first` is where the ends of each vertex
+    // begin.
     let mut first = vec![0usize; vertices + 1];
     edges().for_each(|(a, _)| first[a as usize] += 1);
     let mut sum = 0;
@@ -41,7 +42,7 @@ fn unbalanced(vertices: usize, triangles: &[[u32; 3]], corner: impl Fn(u32) -> u
         let bad = leaving(a).chunk_by(|b, c| b == c).filter(|same| {
             let ends = leaving(same[0]);
             let back = ends.partition_point(|&end| end <= a) - ends.partition_point(|&end| end < a);
-            // Seen from both ends where it runs both ways: counted at the lower one.
+            // An edge that runs both ways is seen from both ends. It is counted at the lower one.
             back != same.len() && (back == 0 || a < same[0])
         });
         bad.count()

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use super::{Intersection, SurfacePoint};
 use crate::math::{Bounds, DMat3, DVec3, Ray, Transform, gamma};
 
-/// A sphere after an uneven scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
+/// A sphere after a non-uniform scale: all points `center + axes * x` with |x| = 1. Its front is the outside.
 #[derive(Clone, Debug)]
 pub struct Ellipsoid {
     pub(super) center: DVec3,
@@ -12,12 +12,12 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// The image of the unit sphere under an invertible matrix.
+    /// Creates the image of the unit sphere under an invertible matrix.
     pub fn new(center: DVec3, axes: DMat3) -> Self {
         Self { center, axes, inverse: axes.inverse() }
     }
 
-    /// Both roots, by the sphere's cross-product form in the space where the ellipsoid is the unit sphere.
+    /// Returns both roots, by the sphere's cross-product form in the space where the ellipsoid is the unit sphere.
     fn roots(&self, ray: &Ray) -> Option<[f64; 2]> {
         let d = self.inverse * (self.center - ray.origin);
         let direction = self.inverse * ray.direction;
@@ -41,12 +41,12 @@ impl Ellipsoid {
         self.point_at(self.unit_of(hit))
     }
 
-    /// The point of the unit sphere under a point of the surface.
+    /// Returns the point of the unit sphere that corresponds to a point of the surface.
     pub(super) fn unit_of(&self, point: DVec3) -> DVec3 {
         (self.inverse * (point - self.center)).normalize()
     }
 
-    /// From the center to three points of it, which need not be at right angles.
+    /// Returns the vectors from the center to three points of the surface, which need not be at right angles.
     pub(super) fn half_axes(&self) -> [DVec3; 3] {
         [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis]
     }
@@ -55,18 +55,19 @@ impl Ellipsoid {
         (self.inverse * (point - self.center)).length_squared() > 1.0
     }
 
-    /// The surface over a point of the unit sphere.
+    /// Returns the point of the surface that corresponds to a point of the unit sphere.
     pub(super) fn point_at(&self, unit: DVec3) -> SurfacePoint {
         let arm = self.axes * unit;
         let position = self.center + arm;
         let gradient = self.inverse.transpose() * unit;
         let length = gradient.length();
         let normal = gradient / length;
-        // As on a sphere, with 3 more roundings for the matrix, on the sizes of its terms; the unit vector itself comes
-        // from the inverse matrix, whose own rounding grows with the axes' ratio and moves the point along the surface.
+        // As on a sphere, with 3 more roundings for the matrix, relative to its terms. The unit vector itself comes
+        // from the inverse matrix. The rounding of that grows with the ratio of the axes, and moves the point along the
+        // surface.
         let terms = self.axes.abs() * unit.abs();
-        // The roots of the ray that leaves are off by up to 24 roundings on the unit sphere, on the sizes of the terms
-        // of the inverse matrix; a step along the normal changes the height over that sphere by the gradient's length.
+        // The roots of a ray that leaves are off by up to 24 roundings on the unit sphere, relative to the terms of the
+        // inverse matrix. A step along the normal changes the height over that sphere by the length of the gradient.
         let height = unit.abs().dot(self.inverse.abs() * terms) / length;
         let error = terms * gamma(12) + position.abs() * gamma(6) + normal.abs() * height * gamma(24);
         SurfacePoint { position, error, normal, shading: normal }
@@ -81,34 +82,36 @@ impl Ellipsoid {
         Self::new(map.point(self.center), DMat3::from_cols(x, y, z))
     }
 
-    /// At most 16 % too large, of flat ones: it only weighs lights against each other.
+    /// Returns an approximate area, at most 16 % too large for flat ellipsoids. It only weights lights against each
+    /// other.
     ///
-    /// Thomsen's formula with p = 2, whose sum of squares needs no principal axes: those of the products of two axes
-    /// are the same for any three that make the ellipsoid (Cauchy and Binet).
+    /// This is Thomsen's formula with p = 2. Its sum of squares needs no principal axes: the sum over the products of
+    /// two axes is the same for any three axes that span the ellipsoid (Cauchy and Binet).
     pub(super) fn area(&self) -> f64 {
         let [a, b, c] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
         let squares = a.cross(b).length_squared() + b.cross(c).length_squared() + c.cross(a).length_squared();
         4.0 * PI * (squares / 3.0).sqrt()
     }
 
-    /// Both crossings along a direction are drawn, so their densities add.
+    /// Returns the density per steradian of the direction of a ray. Either crossing along it can be drawn, so their
+    /// densities add.
     pub(super) fn pdf(&self, ray: &Ray) -> f64 {
         let roots = self.roots(ray).into_iter().flatten();
         roots.filter(|&t| t > 0.0).map(|t| self.density_at(ray, t)).sum()
     }
 
-    /// Density per steradian of one crossing.
+    /// Returns the density per steradian of one crossing.
     fn density_at(&self, ray: &Ray, t: f64) -> f64 {
         let unit = self.unit_of(ray.at(t));
         t * t / (4.0 * PI * self.area_normal(unit).dot(ray.direction).abs())
     }
 
-    /// Density per unit of area of points uniform on the unit sphere.
+    /// Returns the density per unit area of points that are uniform on the unit sphere.
     pub(super) fn density_over(&self, unit: DVec3) -> f64 {
         1.0 / (4.0 * PI * self.area_normal(unit).length())
     }
 
-    /// How much area grows from the unit sphere, along the normal: Nanson's relation, |det A| A^-T n.
+    /// Returns the normal, its length the growth of area from the unit sphere: Nanson's relation, |det A| A^-T n.
     fn area_normal(&self, unit: DVec3) -> DVec3 {
         self.inverse.transpose() * unit * self.axes.determinant().abs()
     }
@@ -118,7 +121,8 @@ impl Ellipsoid {
 mod tests {
     use super::*;
 
-    /// Of a sphere, a flat disc seen from both sides, and a needle, turned before they are stretched or not.
+    /// Tests a sphere, a flat disc seen from both sides, and a needle, each with and without a rotation before the
+    /// stretch.
     #[test]
     fn areas_of_thin_ellipsoids_are_a_sixth_too_large_at_most_whichever_way_their_axes_are_given() {
         let cases = [

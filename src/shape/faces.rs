@@ -1,4 +1,4 @@
-//! Faces of meshes, with any number of corners, as triangles.
+//! Triangulation of mesh faces with any number of corners.
 
 use std::ops::Range;
 
@@ -6,16 +6,16 @@ use super::Vertices;
 use super::ears::{MOST_CORNERS, ears};
 use crate::math::{DVec2, DVec3};
 
-/// The triangles of faces, which share the first corner of their face until they are cut.
+/// The triangles of faces. Each face is a fan about its first corner until it is cut.
 #[derive(Debug, Default)]
 pub struct Faces {
     fans: Vec<[u32; 3]>,
-    /// Where the triangles stand of each face that has several.
+    /// Ranges of the triangles of each face that has several.
     several: Vec<Range<usize>>,
 }
 
 impl Faces {
-    /// One more face; with fewer than 3 corners it has no triangle.
+    /// Adds a face. With fewer than 3 corners it has no triangle.
     pub fn push(&mut self, corners: &[u32]) {
         let first = self.fans.len();
         let rest = corners.get(1..).unwrap_or_default();
@@ -25,13 +25,13 @@ impl Faces {
         }
     }
 
-    /// The triangles. Those that share a corner are right for convex faces: of others they would overlap, and these are
-    /// cut anew. So are faces with corners on their sides, where that leaves fewer triangles without area: these are
-    /// dropped, and what their corners carry with them. Faces whose sides cross stay as they are, as do those whose
-    /// corners are no finite vertices.
+    /// Returns the triangles. A fan about one corner is right for a convex face. Fans of other faces would overlap, so
+    /// these faces are cut again. So are faces with corners on their sides, if that leaves fewer triangles without
+    /// area: such triangles are dropped later, and with them what their corners carry. Faces whose sides cross stay as
+    /// they are, and so do faces whose corners are not finite vertices.
     ///
     /// # Errors
-    /// A sentence on a face that has too many corners.
+    /// A sentence about a face that has too many corners.
     pub fn triangles(mut self, vertices: &Vertices) -> Result<Vec<[u32; 3]>, String> {
         for place in self.several {
             let fan = &mut self.fans[place];
@@ -59,7 +59,7 @@ impl Faces {
     }
 }
 
-/// What triangles make up.
+/// The plane of a face, given by its triangles.
 struct FacePlane<'v> {
     vertices: &'v Vertices,
     normal: DVec3,
@@ -67,10 +67,10 @@ struct FacePlane<'v> {
 }
 
 impl<'v> FacePlane<'v> {
-    /// None if it has no area.
+    /// Returns `None` if the face has no area.
     ///
-    /// The normals of its triangles add up to that of Newell's method (Sutherland, Sproull & Schumacker 1974, *A
-    /// Characterization of Ten Hidden-Surface Algorithms*), which weighs the whole polygon.
+    /// The normals of the triangles add up to that of Newell's method (Sutherland, Sproull & Schumacker 1974, *A
+    /// Characterization of Ten Hidden-Surface Algorithms*), which accounts for the whole polygon.
     fn new(fan: &[[u32; 3]], vertices: &'v Vertices) -> Option<Self> {
         let points = || fan.iter().flatten().map(|&corner| vertices.at(corner));
         let mut polygon = Self { vertices, normal: DVec3::ZERO, reach: reach(points(), vertices) };
@@ -78,26 +78,26 @@ impl<'v> FacePlane<'v> {
         Some(polygon)
     }
 
-    /// The normal of a triangle, twice its area long, and what rounding makes of a length of 0.
+    /// Returns the normal of a triangle, with twice its area as length, and the length that rounding makes of 0.
     fn turned(&self, face: &[u32; 3]) -> (DVec3, f64) {
         let [a, b, c] = face.map(|corner| self.vertices.at(corner));
         let rounding = self.reach * ((b - a).length() + (c - b).length() + (a - c).length());
         ((b - a).cross(c - a), rounding)
     }
 
-    /// Whether one of the triangles looks the other way.
+    /// Returns whether one of the triangles faces the other way.
     fn overlaps(&self, faces: &[[u32; 3]]) -> bool {
         faces.iter().map(|face| self.turned(face)).any(|(normal, rounding)| normal.dot(self.normal) < -rounding)
     }
 
-    /// How many triangles have no area.
+    /// Counts the triangles that have no area.
     fn flat(&self, faces: &[[u32; 3]]) -> usize {
         faces.iter().map(|face| self.turned(face)).filter(|(normal, rounding)| normal.length() <= *rounding).count()
     }
 }
 
-/// How far points may be from where they were meant, by the digits of their coordinates, and what is reckoned with them
-/// from what it stands for.
+/// Returns how far points may be off because of the precision of their coordinates, including the rounding in what is
+/// computed from them.
 fn reach(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
     let digits = match vertices {
         Vertices::Single(_) => f64::from(f32::EPSILON),
@@ -106,8 +106,8 @@ fn reach(points: impl Iterator<Item = DVec3>, vertices: &Vertices) -> f64 {
     2.0 * digits * points.map(|point| point.abs().max_element()).fold(0.0, f64::max)
 }
 
-/// Points as they are seen against a direction, counterclockwise about it. What lies in a plane across an axis keeps
-/// its coordinates to the last bit.
+/// Projects points along a direction, counterclockwise about it. Points in a plane across an axis keep their
+/// coordinates to the last bit.
 fn seen_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
     let axis = normal.abs().max_position();
     let (mut across, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -123,7 +123,7 @@ fn seen_along(normal: DVec3, points: &[DVec3]) -> Vec<DVec2> {
 mod tests {
     use super::*;
 
-    /// The triangles of one face, and how much of its area they have.
+    /// Returns the triangles of one face, and the ratio of their area to that of the face.
     fn cut(points: &[[f64; 3]], single: bool) -> (Vec<[u32; 3]>, f64) {
         let vertices = match single {
             true => Vertices::Single(points.iter().map(|point| point.map(|x| x as f32)).collect()),
@@ -178,7 +178,7 @@ mod tests {
                 let point = |corner: DVec2| (DVec3::ONE * 10.0 + u * corner.x + v * corner.y).to_array();
                 let points: Vec<[f64; 3]> = (0..count).map(|i| point(around(i))).collect();
                 assert_eq!(cut(&points, single).0, fan(count));
-                // But for the rounding of their coordinates.
+                // Every other corner lies on a side, but for the rounding of its coordinates.
                 let corners = (0..count).flat_map(|i| [around(i), (around(i) + around(i + 1)) / 2.0]);
                 let mut points: Vec<[f64; 3]> = corners.map(point).collect();
                 for _ in 0..2 {

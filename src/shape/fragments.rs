@@ -1,8 +1,8 @@
-//! Boxes around parts of triangles, for those that fill their own boxes badly.
+//! Boxes around parts of triangles, for triangles that fill their own boxes badly.
 //!
-//! A long triangle that runs aslant leaves most of its box empty, and rays enter it for nothing. Cut into parts with a
-//! box each, it costs little more than a compact one (Ernst & Greiner 2007, *Early Split Clipping for Bounding
-//! Volume Hierarchies*). First comes the cut that saves most (Karras & Aila 2013, *Fast Parallel Construction of
+//! A long diagonal triangle leaves most of its box empty, and rays enter that box for nothing. Cut into parts with a
+//! box each, it costs little more than a compact triangle (Ernst & Greiner 2007, *Early Split Clipping for Bounding
+//! Volume Hierarchies*). The cut that saves most comes first (Karras & Aila 2013, *Fast Parallel Construction of
 //! High-Quality Bounding Volume Hierarchies*, section 5).
 
 use std::cmp::Ordering;
@@ -12,21 +12,22 @@ use super::Bvh;
 use super::bvh::GROUP;
 use crate::math::{Bounds, DVec3, gamma};
 
-/// A cut saves at least this many times half the surface of a box that the triangle would fill.
+/// Minimum gain of a cut, in multiples of half the surface area of a box that the triangle would fill.
 const LEAST_GAIN: f64 = 8.0;
-/// Cuts at most for each triangle, unless these are more than `FREE` in all.
+/// Maximum number of cuts per triangle, on average over a mesh, unless these are more than `FREE` in all.
 const MOST_CUTS: usize = 8;
-/// So many cuts are allowed in any mesh, for they take some 200 bytes each. A mesh of more triangles has one for each.
+/// Number of cuts that are allowed in any mesh. It is limited because each cut takes some 200 bytes. A mesh of more
+/// triangles than this may have one cut per triangle.
 const FREE: usize = 1 << 20;
 
-/// What a box holds of a triangle.
+/// The part of a triangle that lies in a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fragment {
     triangle: u32,
     bounds: Bounds,
 }
 
-/// The tree over some triangles, of which those that fill their boxes badly are cut.
+/// Builds the tree over some triangles, and cuts those that fill their boxes badly.
 pub(super) fn tree(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Bvh {
     let cut = fragments(count, &corners);
     let is_whole = |triangle: &u32| cut.binary_search_by_key(triangle, |fragment| fragment.triangle).is_err();
@@ -34,14 +35,14 @@ pub(super) fn tree(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Bvh {
     Bvh::of_parts::<GROUP>(whole.chain(cut.iter().map(|fragment| (fragment.triangle, fragment.bounds))))
 }
 
-/// The fragments of those of some triangles that are worth cutting, sorted by triangle.
+/// Returns the fragments of the triangles that are worth cutting, sorted by triangle.
 fn fragments(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Fragment> {
     let well = |triangle| filled(corners(triangle));
     let mean = (0..count).map(well).sum::<f64>() / f64::from(count);
     let cut = |fragment: Fragment| Cut::new(fragment, &corners(fragment.triangle));
     let pays = |cut: &Cut| cut.gain > mean.max(LEAST_GAIN * well(cut.fragment.triangle));
     let whole = |triangle| Fragment { triangle, bounds: Bounds::around(corners(triangle)) };
-    // A cut cannot save more than there is.
+    // A cut cannot save more than the surface area of the whole box.
     let large = (0..count).map(whole).filter(|fragment| fragment.bounds.half_area() > mean);
     let mut open: BinaryHeap<Cut> = large.map(cut).filter(pays).collect();
     let most = open.len() + (MOST_CUTS * count as usize).min(FREE.max(count as usize));
@@ -59,7 +60,8 @@ fn fragments(count: u32, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Fragment> {
     done
 }
 
-/// Half the surface of a triangle's box, were it to lie along two axes with a right angle at a corner of the box.
+/// Returns half the surface area that a triangle's box would have if the triangle lay along two axes, with a right
+/// angle at a corner of the box.
 fn filled([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).abs().element_sum()
 }
@@ -67,7 +69,7 @@ fn filled([a, b, c]: [DVec3; 3]) -> f64 {
 struct Cut {
     fragment: Fragment,
     halves: [Bounds; 2],
-    /// By how much half the surface of the box exceeds those of both halves.
+    /// Half the surface area of the box, minus those of both halves.
     gain: f64,
 }
 
@@ -76,7 +78,7 @@ impl Cut {
     fn new(fragment: Fragment, corners: &[DVec3; 3]) -> Self {
         let Bounds { min, max } = fragment.bounds;
         let axis = (max - min).max_position();
-        // Boxes of the tree meet where both are cut: in 32 bits.
+        // The cut is rounded to 32 bits, so that the boxes of the tree, which are in 32 bits, meet there.
         let middle = f64::from((0.5 * min[axis] + 0.5 * max[axis]) as f32);
         if !(min[axis] < middle && middle < max[axis]) {
             return Self { fragment, halves: [fragment.bounds; 2], gain: 0.0 };
@@ -87,7 +89,7 @@ impl Cut {
     }
 }
 
-/// The boxes around what a triangle has on both sides of a plane across an axis.
+/// Returns the boxes around the parts of a triangle on both sides of a plane across an axis.
 fn sides(corners: &[DVec3; 3], axis: usize, at: f64) -> [Bounds; 2] {
     let mut sides = [Bounds::EMPTY; 2];
     for (i, &a) in corners.iter().enumerate() {
@@ -100,7 +102,7 @@ fn sides(corners: &[DVec3; 3], axis: usize, at: f64) -> [Bounds; 2] {
         }
         if (a[axis] < at) != (b[axis] < at) && b[axis] != at && a[axis] != at {
             let intersection = a + (b - a) * ((at - a[axis]) / (b[axis] - a[axis]));
-            // Five roundings of the product, of at most twice the larger coordinate, and that of the sum.
+            // Five roundings of the product, which is at most twice the larger coordinate, and one of the sum.
             let error = a.abs().max(b.abs()) * gamma(11);
             let around = Bounds { min: intersection - error, max: intersection + error };
             sides = sides.map(|side| side.union(around));
@@ -137,7 +139,7 @@ mod tests {
     use crate::math::{Frame, triangle_coordinates};
     use libm::{cos, sin};
 
-    /// A pipe of two triangles a side, along a direction.
+    /// Returns a pipe along a direction, with two triangles per side.
     fn pipe(sides: u32, along: DVec3) -> Vec<[DVec3; 3]> {
         let frame = Frame::about(along);
         let at = |side: u32, end: f64| {
@@ -161,7 +163,7 @@ mod tests {
         let whole: f64 = aslant.iter().map(|&points| Bounds::around(points).half_area()).sum();
         let parts: f64 = fragments.iter().map(|fragment| fragment.bounds.half_area()).sum();
         assert!(parts < 0.15 * whole, "{parts} of {whole}");
-        // Along an axis, boxes are hardly larger than what is in them. Large is not long.
+        // Along an axis, boxes are hardly larger than their contents. A large triangle need not be long.
         assert_eq!(cut(&pipe(100, DVec3::Z)), []);
         let mut compact = pipe(40, DVec3::new(0.5, 0.6, 0.7).normalize());
         compact.push([DVec3::X, DVec3::Y, DVec3::Z].map(|corner| 100.0 * corner));

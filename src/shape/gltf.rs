@@ -11,7 +11,7 @@ use super::mesh_data::MeshFile;
 use super::{Attributes, Vertices};
 use crate::math::{DMat3, DVec3, Transform};
 
-/// What Abbe reads of a file. Indices refer to lists of the same document.
+/// The parts of a file that Abbe reads. Indices refer to lists of the same document.
 #[derive(Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 struct Document {
@@ -78,22 +78,22 @@ struct AttributesText {
     coordinates: Option<usize>,
 }
 
-/// The value of `mode` that means separate triangles.
+/// Returns the value of `mode` that means separate triangles.
 fn triangles() -> u32 {
     4
 }
 
-/// Beginnings of the names of required extensions that change nothing but looks.
+/// Prefixes of the names of required extensions that only change appearance.
 const HARMLESS: [&str; 4] = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_punctual"];
-/// Places, normals and texture coordinates in whole numbers, which are read in every file.
+/// Extension that stores positions, normals and texture coordinates as integers. They are read in every file.
 const QUANTIZED: &str = "KHR_mesh_quantization";
-/// What moves the texture coordinates of materials.
+/// Extension that transforms the texture coordinates of materials.
 const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
-/// What places a mesh many times; where it is not required, programs that do not know it place it once.
+/// Extension that places a mesh many times. If it is not required, programs that do not support it place the mesh once.
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
-/// How far the last row of an affine matrix may be from 0, 0, 0, 1 where one was made of others in 32 bits.
+/// Tolerance for the last row of an affine matrix, 0, 0, 0, 1, if the matrix was computed from others in 32 bits.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
-/// Most triangles of a file: a small one may place a large mesh as often as it likes.
+/// Maximum number of triangles of a file. A small file may place a large mesh as often as it likes.
 const MOST: usize = 1 << 27;
 
 /// Reads the triangles of a file's default scene, placed by its nodes.
@@ -132,7 +132,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     Ok(file)
 }
 
-/// The JSON and the binary chunk of a .glb file (section 4 of the specification).
+/// Returns the JSON and the binary chunk of a .glb file (section 4 of the specification).
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     let number = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let chunk = |at: usize, kind: &[u8]| {
@@ -151,7 +151,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 }
 
 impl Document {
-    /// The meshes of the default scene, each with the map from its node's space to the scene's.
+    /// Returns the meshes of the default scene, each with the map from its node's space to the scene's.
     fn placed(&self) -> Result<Vec<(&MeshText, Transform)>, String> {
         let scene = match self.scene {
             Some(scene) => Some(self.scenes.get(scene).ok_or_else(|| format!("there is no scene {scene}"))?),
@@ -175,7 +175,7 @@ impl Document {
         Ok(placed)
     }
 
-    /// The nodes that are no children.
+    /// Returns the nodes that are not children of other nodes.
     fn roots(&self) -> Vec<usize> {
         let mut is_root = vec![true; self.nodes.len()];
         for &child in self.nodes.iter().flat_map(|node| &node.children) {
@@ -221,7 +221,7 @@ impl Document {
         Ok(MeshFile { vertices, faces, attributes, ..MeshFile::default() })
     }
 
-    /// The corners of a primitive with `count` vertices.
+    /// Returns the corners of a primitive with `count` vertices.
     fn corners(&self, primitive: &Primitive, count: usize, store: &Store) -> Result<Vec<u32>, String> {
         let corners = match primitive.indices {
             Some(indices) => self.accessor(indices, store)?.whole_numbers()?,
@@ -233,7 +233,8 @@ impl Document {
         }
     }
 
-    /// The normals and texture coordinates of the `count` vertices of a primitive; zeros where it has none.
+    /// Returns the normals and texture coordinates of the `count` vertices of a primitive, with zeros where it has
+    /// none.
     fn attributes(
         &self,
         primitive: &Primitive,
@@ -246,7 +247,7 @@ impl Document {
             own.normals = self.accessor(normals, store)?.floats()?;
         }
         if let Some(coordinates) = primitive.attributes.coordinates {
-            // Images begin at their top in glTF.
+            // In glTF, images begin at the top.
             let flipped = |[u, v]: [f32; 2]| [u, 1.0 - v];
             own.coordinates = self.accessor(coordinates, store)?.floats()?.into_iter().map(flipped).collect();
         }
@@ -264,7 +265,7 @@ impl Document {
     }
 }
 
-/// The triangles of a list, a strip or a fan of corners (section 3.7.2.1 of the specification).
+/// Returns the triangles of a list, a strip or a fan of corners (section 3.7.2.1 of the specification).
 fn cut(corners: &[u32], mode: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
     let count = if mode == triangles() { corners.len() / 3 } else { corners.len().saturating_sub(2) };
     (0..count).map(move |i| {
@@ -278,7 +279,7 @@ fn cut(corners: &[u32], mode: u32) -> impl Iterator<Item = [u32; 3]> + '_ {
 }
 
 impl GltfNode {
-    /// The map to the space of the node above; none if the matrix does more than an affine map.
+    /// Returns the map to the space of the parent node, or `None` if the matrix is not affine.
     fn map(&self) -> Option<Transform> {
         if let Some(m) = self.matrix {
             let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);

@@ -1,4 +1,4 @@
-//! The numbers of glTF files: buffers, the views of them, and what accessors read there.
+//! The numbers in glTF files: buffers, views of buffers, and accessors, which read from views.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use serde::Deserialize;
 
-/// Reads base 64 (RFC 4648, section 4) with its padding and without.
+/// Decodes base 64 (RFC 4648, section 4) with or without padding.
 const BASE_64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new()
@@ -16,7 +16,7 @@ const BASE_64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// A block of bytes: in a file beside, in the text of its address, or in the binary chunk.
+/// A block of bytes: in a separate file, in a data URI, or in the binary chunk.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct Buffer {
@@ -51,8 +51,7 @@ pub(super) struct Accessor {
     sparse: Option<Sparse>,
 }
 
-/// Entries that differ from those of the view, or from zeros where there is none (section 3.6.2.3 of the
-/// specification).
+/// Entries that replace those of the view, or zeros if there is no view (section 3.6.2.3 of the specification).
 #[derive(Deserialize)]
 struct Sparse {
     count: usize,
@@ -73,7 +72,7 @@ struct SparsePlace {
 /// The bytes of all buffers.
 pub(super) struct Store {
     buffers: Vec<Vec<u8>>,
-    /// The files beside that they were read from.
+    /// The separate files that they were read from.
     pub(super) files: Vec<PathBuf>,
 }
 
@@ -111,7 +110,7 @@ impl Store {
     }
 }
 
-/// An accessor with what it reads from.
+/// An accessor with the views and buffers that it reads from.
 pub(super) struct Data<'a> {
     accessor: &'a Accessor,
     number: usize,
@@ -132,7 +131,7 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// Bytes of a component.
+/// Returns the number of bytes of a component.
 fn size(component_type: u32) -> usize {
     match component_type {
         BYTE | UNSIGNED_BYTE => 1,
@@ -142,8 +141,8 @@ fn size(component_type: u32) -> usize {
 }
 
 impl<'a> Data<'a> {
-    /// Entries of K numbers; whole ones stand for 0 to 1, or -1 to 1, where they are normalized (section 3.6.2.2 of the
-    /// specification).
+    /// Reads entries of K numbers. Normalized integers stand for 0 to 1, or for -1 to 1 if they are signed (section
+    /// 3.6.2.2 of the specification).
     pub(super) fn floats<const K: usize>(&self) -> Result<Vec<[f32; K]>, String> {
         let Accessor { component_type, normalized, kind, .. } = self.accessor;
         let is_vector = *kind == format!("VEC{K}");
@@ -166,7 +165,7 @@ impl<'a> Data<'a> {
         self.entries(K * step, |entry| std::array::from_fn(|i| read(&entry[i * step..])))
     }
 
-    /// Whole numbers of any width.
+    /// Reads unsigned integers of any width.
     pub(super) fn whole_numbers(&self) -> Result<Vec<u32>, String> {
         let Accessor { component_type, kind, .. } = self.accessor;
         let (true, Some(read)) = (kind == "SCALAR", whole_number(*component_type)) else {
@@ -179,7 +178,7 @@ impl<'a> Data<'a> {
         let Accessor { buffer_view, byte_offset, count, sparse, .. } = self.accessor;
         let mut entries: Vec<T> = match (buffer_view, sparse) {
             (Some(view), _) => self.view(*view, *byte_offset, *count, width)?.map(&read).collect(),
-            // Zeros take no bytes, but what they belong to does.
+            // Zeros take no bytes, but the data that they belong to does.
             (None, Some(_)) if *count > self.store.buffers.iter().map(Vec::len).sum() => {
                 return Err(format!("accessor {} has more entries than the buffers have bytes", self.number));
             }
@@ -202,7 +201,7 @@ impl<'a> Data<'a> {
         Ok(entries)
     }
 
-    /// The bytes of each entry that a view holds from an offset on.
+    /// Returns the bytes of each entry of a view, starting at an offset.
     fn view(
         &self,
         number: usize,
@@ -236,7 +235,7 @@ fn whole_number(component_type: u32) -> Option<fn(&[u8]) -> u32> {
     }
 }
 
-/// An address with its %20 and the like as the bytes they stand for (RFC 3986, section 2.1).
+/// Decodes %20 and the like in an address into the bytes that they stand for (RFC 3986, section 2.1).
 fn unescaped(uri: &str) -> String {
     let (mut bytes, mut rest) = (Vec::new(), uri.as_bytes());
     while let Some((&first, after)) = rest.split_first() {

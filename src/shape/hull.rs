@@ -1,27 +1,28 @@
 //! Boxes around pieces of long shapes.
 //!
-//! A long shape that runs aslant leaves most of its box empty: among blades and wires, rays enter many boxes for
-//! nothing. Cut across its longest axis, it has a box for each piece, as triangles have for their
+//! A long diagonal shape leaves most of its box empty: among blades and wires, rays enter many boxes for nothing. Cut
+//! across its longest axis, the shape has a box for each piece, just as triangles have for their
 //! [`fragments`](super::fragments).
 
 use crate::math::{Bounds, DVec3};
 
-/// A further piece saves at least this many times half the surface of a box that the shape would fill. It is less than
-/// for triangles, several of which are tested at once.
+/// Minimum gain of a further piece, in multiples of half the surface area of a box that the shape would fill. It is
+/// smaller than for triangles, because several of those are tested at once.
 const LEAST_GAIN: f64 = 2.0;
-/// Pieces of a shape at most.
+/// Maximum number of pieces of a shape.
 const MOST: usize = 16;
-/// Pieces that any scene may have, for their boxes take memory. With more shapes than this each has two at most.
+/// Maximum number of pieces in a scene, because their boxes take memory. If this leaves fewer than two pieces for each
+/// shape, each may still have two.
 const FREE: usize = 1 << 20;
 
-/// What contains a shape that may run aslant: `center` and each of three axes up to its length either way. What is
-/// `round` is the ellipsoid of these axes, else it may be all that lies between.
+/// A volume that contains a shape, which may be diagonal: `center`, plus or minus up to each of three axes. If
+/// `is_round`, it is the ellipsoid with these axes, otherwise all that lies between.
 pub(super) struct Hull {
     center: DVec3,
-    /// The longest one first.
+    /// Half axes, the longest one first.
     axes: [DVec3; 3],
     is_round: bool,
-    /// How far points of the shape may lie outside by rounding.
+    /// How far rounding may move points of the shape outside.
     pad: DVec3,
 }
 
@@ -31,7 +32,7 @@ impl Hull {
         Self { center, axes, is_round, pad }
     }
 
-    /// How many pieces are worth their boxes in a scene of `shapes` shapes.
+    /// Returns the number of pieces that are worth their boxes in a scene of `shapes` shapes.
     pub(super) fn count(&self, shapes: usize) -> usize {
         let [a, b, c] = self.axes.map(|axis| 2.0 * axis.length());
         let (most, least) = (MOST.min((FREE / shapes.max(1)).max(2)), LEAST_GAIN * (a * b + b * c + c * a));
@@ -47,7 +48,7 @@ impl Hull {
         count
     }
 
-    /// The boxes of `count` pieces of equal length.
+    /// Returns the boxes of `count` pieces of equal length.
     pub(super) fn pieces(&self, count: usize) -> impl Iterator<Item = Bounds> {
         let [a, b, c] = self.axes;
         let half = 1.0 / count as f64;
@@ -70,7 +71,8 @@ mod tests {
     use super::*;
     use crate::math::Frame;
 
-    /// Half the surfaces of the boxes of a shape of three half axes in some frame, over that of one box.
+    /// Returns the surface area of the boxes of a shape, divided by that of a single box. The shape has three half axes
+    /// of the given lengths in a frame.
     fn left(axes: [f64; 3], frame: &Frame, is_round: bool) -> f64 {
         let [x, y, z] = axes;
         let axes = [DVec3::X * x, DVec3::Y * y, DVec3::Z * z].map(|axis| frame.to_world(axis));

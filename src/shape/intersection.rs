@@ -1,4 +1,4 @@
-//! Where a ray crosses a shape, and the point that it finds there.
+//! Where a ray crosses a shape, and the surface point there.
 
 use crate::math::{DVec3, Ray, offset_origin};
 
@@ -7,9 +7,9 @@ use crate::math::{DVec3, Ray, offset_origin};
 pub struct Intersection {
     /// Distance along the ray, above 0.
     pub t: f64,
-    /// Triangle of a mesh, face of a cube; 0 elsewhere.
+    /// Triangle of a mesh or face of a cube; 0 for other shapes.
     pub part: u32,
-    /// Affine coordinates on a triangle, disc, quad or cube face; 0 elsewhere.
+    /// Affine coordinates on a triangle, disc, quad or cube face; 0 for other shapes.
     pub uv: [f64; 2],
 }
 
@@ -19,7 +19,7 @@ impl Intersection {
     }
 }
 
-/// A point of a surface, as good as arithmetic can place it.
+/// A point of a surface, as accurate as arithmetic can place it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The point, in the world.
@@ -28,18 +28,19 @@ pub struct SurfacePoint {
     pub error: DVec3,
     /// Geometric unit normal on the front side.
     pub normal: DVec3,
-    /// Unit normal by which materials scatter, on the front side: `normal` but on smooth meshes and under maps of
-    /// relief.
+    /// Shading normal: the unit normal by which materials scatter, on the front side. It equals `normal`, except on
+    /// smooth meshes and under relief maps.
     pub shading: DVec3,
 }
 
 impl SurfacePoint {
-    /// A point that lies on no surface: rays start where it is. Its normals are 0.
+    /// Creates a point that lies on no surface. Rays start exactly there. Its normals are 0.
     pub fn in_space(position: DVec3) -> Self {
         Self { position, error: DVec3::ZERO, normal: DVec3::ZERO, shading: DVec3::ZERO }
     }
 
-    /// The ray that leaves the surface at this point along a unit vector and cannot hit it again there.
+    /// Returns the ray that leaves the surface at this point along a unit vector. It cannot hit the surface there
+    /// again.
     pub fn leave(&self, direction: DVec3) -> Ray {
         let origin = offset_origin(self.position, self.error, self.normal, direction);
         Ray { origin, direction }

@@ -18,7 +18,7 @@ pub enum Shape {
     Triangle(Triangle),
     /// A sphere.
     Sphere(Sphere),
-    /// A sphere after an uneven scale.
+    /// A sphere after a non-uniform scale.
     Ellipsoid(Ellipsoid),
     /// A flat disc or ellipse.
     Disc(Disc),
@@ -28,17 +28,17 @@ pub enum Shape {
     Cube(Cube),
     /// Many triangles.
     Mesh(Arc<Mesh>),
-    /// Many triangles that other places share.
+    /// Many triangles that other instances share.
     Instance(Box<Instance>),
 }
 
 impl Shape {
-    /// The nearest crossing with 0 < t <= `t_max`.
+    /// Returns the nearest crossing with 0 < t <= `t_max`.
     pub fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         self.intersect_from(ray, t_max, None)
     }
 
-    /// The nearest crossing with 0 < t <= `t_max` of a ray that may leave the triangle `left` of the shape.
+    /// Returns the nearest crossing with 0 < t <= `t_max` of a ray that may leave the triangle `left` of the shape.
     pub fn intersect_from(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
         match self {
             Self::Plane(plane) => plane.intersect(ray, t_max),
@@ -53,7 +53,7 @@ impl Shape {
         }
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` of a ray that may leave one of the shape's own parts.
+    /// Returns whether a ray has a crossing with 0 < t <= `t_max`. The ray may leave the triangle `left` of the shape.
     pub fn is_crossed(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> bool {
         if self.has_triangles() {
             self.are_triangles_crossed(ray, t_max, left, |_, _| true)
@@ -77,7 +77,8 @@ impl Shape {
         }
     }
 
-    /// The crossing with the triangle of a mesh alone, whatever lies before it; none of other shapes.
+    /// Returns the crossing with one triangle of a mesh alone, whatever lies before it. Returns `None` for other
+    /// shapes.
     pub fn intersect_triangle(&self, ray: &Ray, part: u32) -> Option<Intersection> {
         let intersection = match self {
             Self::Mesh(mesh) => mesh.triangle(part).intersect(ray, f64::INFINITY),
@@ -87,17 +88,17 @@ impl Shape {
         Some(Intersection { part, ..intersection? })
     }
 
-    /// Whether `intersect` finds another triangle than this one, which the ray crosses at t.
+    /// Returns whether `intersect` finds another triangle than `part`, which the ray crosses at t.
     pub fn hides(&self, ray: &Ray, part: u32, t: f64) -> bool {
         self.are_triangles_crossed(ray, t, None, |other, nearer| is_before([other, part], [nearer, t]))
     }
 
-    /// Whether it is made of triangles, which can be tested one by one.
+    /// Returns whether the shape is made of triangles, which can be tested one by one.
     pub fn has_triangles(&self) -> bool {
         self.mesh().is_some()
     }
 
-    /// The mesh that it is or places.
+    /// Returns the mesh that the shape is or places.
     pub fn mesh(&self) -> Option<&Arc<Mesh>> {
         match self {
             Self::Mesh(mesh) => Some(mesh),
@@ -106,7 +107,7 @@ impl Shape {
         }
     }
 
-    /// The surface at a crossing that `intersect` found on this ray.
+    /// Returns the surface point at a crossing that `intersect` found on this ray.
     pub fn point(&self, ray: &Ray, intersection: &Intersection) -> SurfacePoint {
         match self {
             Self::Plane(plane) => plane.point(ray.at(intersection.t)),
@@ -120,7 +121,7 @@ impl Shape {
         }
     }
 
-    /// The geometric unit normal there.
+    /// Returns the geometric unit normal at a crossing.
     pub fn normal(&self, ray: &Ray, intersection: &Intersection) -> DVec3 {
         if let Self::Mesh(mesh) = self {
             mesh.polygon(intersection.part).normal()
@@ -129,12 +130,12 @@ impl Shape {
         }
     }
 
-    /// Whether the shape is finite, as all are but planes.
+    /// Returns whether the shape is finite. All shapes except planes are.
     pub fn is_bounded(&self) -> bool {
         !matches!(self, Self::Plane(_))
     }
 
-    /// The box the shape fills, or none for an infinite one.
+    /// Returns the box that the shape fills, or `None` for an infinite shape.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {
             Self::Plane(_) => None,
@@ -149,11 +150,11 @@ impl Shape {
         }
     }
 
-    /// Calls `add` with boxes that contain all there is of the shape together, if it is finite: one, or several of a
-    /// long one that runs aslant. `shapes` is the number of shapes in the scene.
+    /// Calls `add` with boxes that together contain the whole shape, if it is finite. There is one box, or several if
+    /// the shape is long and diagonal. `shapes` is the number of shapes in the scene.
     pub fn boxes(&self, shapes: usize, mut add: impl FnMut(Bounds)) {
         let Some(whole) = self.bounds() else { return };
-        // Points are rounded up to 12 times, as often as the boxes.
+        // Points have up to 12 roundings, as many as the boxes.
         let pad = whole.min.abs().max(whole.max.abs()) * gamma(32);
         let hull = match self {
             Self::Ellipsoid(ellipsoid) => Hull::new(ellipsoid.center, ellipsoid.half_axes(), true, pad),
@@ -174,7 +175,7 @@ impl Shape {
         }
     }
 
-    /// The shape after an invertible affine map.
+    /// Returns the shape after an invertible affine map.
     #[must_use]
     pub fn transformed(&self, map: &Transform) -> Self {
         if *map == Transform::IDENTITY {
@@ -199,7 +200,7 @@ impl Shape {
         }
     }
 
-    /// Another one of many such shapes, after an invertible affine map; they share the triangles of a mesh.
+    /// Returns a copy of the shape after an invertible affine map. Copies of a mesh share its triangles.
     pub fn copied(&self, map: &Transform) -> Self {
         let shared = match self {
             Self::Mesh(mesh) if *map != Transform::IDENTITY => Instance::new(mesh.clone(), *map),
@@ -208,7 +209,7 @@ impl Shape {
         shared.map_or_else(|| self.transformed(map), |instance| Self::Instance(Box::new(instance)))
     }
 
-    /// Whether the shape has an inside: a dielectric on it fills that, or the half space behind a plane.
+    /// Returns whether the shape has an inside. A dielectric fills the inside, or the half space behind a plane.
     pub fn is_closed(&self) -> bool {
         match self {
             Self::Plane(_) | Self::Sphere(_) | Self::Ellipsoid(_) | Self::Cube(_) => true,
@@ -218,7 +219,7 @@ impl Shape {
         }
     }
 
-    /// The shape's area, infinite for a plane.
+    /// Returns the area, which is infinite for a plane.
     pub fn area(&self) -> f64 {
         match self {
             Self::Plane(_) => f64::INFINITY,
@@ -233,7 +234,7 @@ impl Shape {
         }
     }
 
-    /// The unit normal of the front of a flat shape.
+    /// Returns the unit normal on the front of a flat shape.
     pub fn flat_normal(&self) -> Option<DVec3> {
         match self {
             Self::Plane(plane) => Some(plane.normal()),
@@ -243,7 +244,8 @@ impl Shape {
         }
     }
 
-    /// A ball around the shape: itself if it is one, else that around its box; none for an infinite shape.
+    /// Returns a ball around the shape: a sphere's own ball, or the ball around the box of another shape. Returns
+    /// `None` for an infinite shape.
     pub fn ball(&self) -> Option<Ball> {
         if let Self::Sphere(sphere) = self {
             return Some(sphere.ball());
@@ -251,10 +253,11 @@ impl Shape {
         self.bounds().as_ref().map(Ball::of_box)
     }
 
-    /// A direction from a point toward the shape; none where the draw sees it exactly edge-on.
+    /// Samples a direction from a point toward the shape. Returns `None` for a plane, or if the sampled point coincides
+    /// with `from`.
     ///
-    /// Spheres are drawn by the cone they fill, triangles and quads nearby by their solid angle, ellipsoids as the
-    /// sphere that they are a map of, other shapes by their area.
+    /// Spheres are sampled by the cone that they fill, and triangles and quads nearby by their solid angle. Ellipsoids
+    /// are sampled as images of a sphere, and other shapes by their area.
     pub fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         let (point, part) = match self {
             Self::Plane(_) => return None,
@@ -275,7 +278,8 @@ impl Shape {
         Some(ShapeSample::along(point - from)?.with_part(part).with_density(self.density_of_part(part)))
     }
 
-    /// Density per steradian with which `sample` draws the direction of a ray that first meets the shape at a crossing.
+    /// Returns the density per steradian with which `sample` draws the direction of a ray that first meets the shape at
+    /// a crossing.
     pub fn pdf(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let density = match self {
             Self::Plane(_) => return 0.0,
@@ -290,7 +294,7 @@ impl Shape {
         self.toward(density, ray, intersection)
     }
 
-    /// How densely the area of a part is drawn.
+    /// Returns the density with which the area of a part is sampled.
     fn density_of_part(&self, part: u32) -> Density {
         match self {
             Self::Instance(instance) => Density::Area(instance.density(part)),
@@ -302,7 +306,8 @@ impl Shape {
         density.toward(intersection.t, self.normal(ray, intersection).dot(ray.direction).abs())
     }
 
-    /// How many parts may be sampled one by one: triangles of a mesh, faces of a cube; 0 of other shapes.
+    /// Returns the number of parts that can be sampled one by one: triangles of a mesh or faces of a cube, 0 for other
+    /// shapes.
     pub fn part_count(&self) -> u32 {
         match self {
             Self::Cube(_) => 6,
@@ -310,7 +315,7 @@ impl Shape {
         }
     }
 
-    /// One of the parts, where it stands in the world; none of a shape that has none.
+    /// Returns one of the parts in the world, or `None` if the shape has no parts.
     pub fn part(&self, part: u32) -> Option<Polygon<'_>> {
         match self {
             Self::Cube(cube) => Some(Polygon::Parallelogram(cube.face(part))),
@@ -320,22 +325,23 @@ impl Shape {
         }
     }
 
-    /// A direction from a point toward one of the parts.
+    /// Samples a direction from a point toward one of the parts.
     pub fn sample_part(&self, part: u32, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         Some(self.part(part)?.sample(from, u)?.with_part(part))
     }
 
-    /// Density per steradian with which `sample_part` draws the direction of a ray that first meets the part at a
-    /// crossing.
+    /// Returns the density per steradian with which `sample_part` draws the direction of a ray that first meets the
+    /// part at a crossing.
     pub fn pdf_part(&self, ray: &Ray, intersection: &Intersection) -> f64 {
         let part = self.part(intersection.part);
         part.map_or(0.0, |part| self.toward(part.density(ray.origin), ray, intersection))
     }
 
-    /// A point from which light may reach a ball; none of an infinite shape, and of an instance, whose triangles are
-    /// drawn one by one.
+    /// Samples a point from which light may reach a ball. Returns `None` for an infinite shape, and for an instance,
+    /// whose triangles are sampled one by one.
     ///
-    /// Of a sphere, in the cap that sees some of the ball; of other shapes, anywhere on the surface.
+    /// On a sphere, the point lies in the cap that sees some of the ball. On other shapes, it lies anywhere on the
+    /// surface.
     pub fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> Option<SurfacePoint> {
         Some(match self {
             Self::Plane(_) | Self::Instance(_) => return None,
@@ -355,12 +361,12 @@ impl Shape {
         })
     }
 
-    /// Whether its shading normals may differ from its own.
+    /// Returns whether shading normals may differ from geometric normals.
     pub fn is_smooth(&self) -> bool {
         self.mesh().is_some_and(|mesh| mesh.is_smooth())
     }
 
-    /// Density per unit of area with which `sample_emission` draws a point of the shape for a ball.
+    /// Returns the density per unit area with which `sample_emission` draws a point of the shape for a ball.
     pub fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
         match self {
             Self::Sphere(sphere) => sphere.pdf_emission(toward, point),
@@ -370,8 +376,8 @@ impl Shape {
     }
 }
 
-/// Whether the first of two triangles that a ray crosses at some t is the one that it meets: of equally near ones, that
-/// which is listed first.
+/// Returns whether a ray meets the first of two triangles before the second, given the t at which it crosses each. If
+/// both are equally near, it meets the one that is listed first.
 pub fn is_before(parts: [u32; 2], t: [f64; 2]) -> bool {
     parts[0] != parts[1] && (t[0] < t[1] || t[0] == t[1] && parts[0] < parts[1])
 }

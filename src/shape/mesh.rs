@@ -7,7 +7,7 @@ use super::turned::turned;
 use super::{Attributes, Intersection, Polygon, SurfacePoint, Triangle, Vertices};
 use crate::math::{Bounds, DVec3, Distribution, Ray, Transform};
 
-/// Triangles over shared vertices, with a tree of boxes.
+/// Triangles with shared vertices, under a tree of boxes.
 ///
 /// ```toml
 /// shape.mesh = { file = "bunny.ply" }                          # PLY, OBJ or glTF, relative to the scene file
@@ -20,29 +20,29 @@ pub struct Mesh {
     vertices: Vertices,
     triangles: Vec<[u32; 3]>,
     packed: Packed,
-    /// The triangles of a small mesh, at which more rays arrive than it has of them.
+    /// Precomputed triangles of a small mesh. More rays arrive at such a mesh than it has triangles.
     facets: Vec<Facet>,
     bounds: Bounds,
-    /// The triangles by their areas; only lights ask for it.
+    /// Distribution of the triangles by area. Computed on demand, because only lights need it.
     areas: OnceLock<Distribution>,
     attributes: Attributes,
     degenerate: usize,
     open_edges: usize,
 }
 
-/// Triangles of a mesh up to which memory does not matter.
+/// Number of triangles up to which the memory of a mesh does not matter.
 pub(super) const SMALL: u32 = 1024;
 
 impl Mesh {
-    /// The mesh of triangles whose corners index existing, finite vertices; those without area are dropped. None if no
-    /// triangle has an area.
+    /// Creates the mesh of triangles whose corners index existing, finite vertices. Triangles without area are dropped.
+    /// Returns `None` if no triangle has an area.
     pub fn new(vertices: Vertices, faces: Vec<[u32; 3]>) -> Option<Self> {
         let is_flat = |face: &[u32; 3]| Triangle::is_degenerate(face.map(|corner| vertices.at(corner)));
         let (flat, triangles): (Vec<_>, Vec<_>) = faces.into_iter().partition(is_flat);
         if triangles.is_empty() {
             return None;
         }
-        // A triangle without area closes what is beside it, such as the tip of a sphere.
+        // A triangle without area may close a gap beside it, such as one at the tip of a sphere.
         let open_edges = match open_edges(&vertices, &triangles) {
             open if open > 0 && !flat.is_empty() => open.min(open_edges(&vertices, &[&*triangles, &flat].concat())),
             open => open,
@@ -59,27 +59,27 @@ impl Mesh {
         Self { packed, facets, vertices, triangles, bounds, areas, attributes, degenerate, open_edges }
     }
 
-    /// Number of triangles, at least one.
+    /// Returns the number of triangles, at least one.
     pub fn count(&self) -> u32 {
         self.triangles.len() as u32
     }
 
-    /// How many triangles without area were dropped.
+    /// Returns the number of triangles that were dropped because they have no area.
     pub fn degenerate(&self) -> usize {
         self.degenerate
     }
 
-    /// Edges along which triangles do not run as often one way as the other.
+    /// Returns the number of edges along which triangles do not run equally often in both directions.
     pub fn open_edges(&self) -> usize {
         self.open_edges
     }
 
-    /// Whether it encloses a volume.
+    /// Returns whether the mesh encloses a volume.
     pub fn is_closed(&self) -> bool {
         self.open_edges == 0
     }
 
-    /// One of the triangles.
+    /// Returns one of the triangles.
     pub(super) fn polygon(&self, index: u32) -> Polygon<'_> {
         match self.facets.get(index as usize) {
             Some(facet) => Polygon::Facet(facet),
@@ -98,14 +98,14 @@ impl Mesh {
         self.triangles[index as usize].map(|corner| self.vertices.at(corner))
     }
 
-    /// The nearest crossing of a ray that may leave one of the triangles; of equally near ones, that of the triangle
-    /// listed first.
+    /// Returns the nearest crossing of a ray that may leave the triangle `left`. Of equally near crossings, it is that
+    /// of the triangle listed first.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64, left: Option<u32>) -> Option<Intersection> {
         self.packed.nearest(ray, t_max, |part| left == Some(part), |_| true)
     }
 
-    /// Whether a ray that may leave one of the triangles has a crossing with 0 < t <= `t_max` that counts, by its
-    /// triangle and t.
+    /// Returns whether a ray that may leave the triangle `left` has a crossing with 0 < t <= `t_max` for which `counts`
+    /// is true, given its triangle and t.
     pub(super) fn is_crossed(
         &self,
         ray: &Ray,
@@ -127,27 +127,29 @@ impl Mesh {
         SurfacePoint { shading, ..point }
     }
 
-    /// The mesh with what its vertices carry; lists that are not empty have an entry for each vertex.
+    /// Returns the mesh with vertex attributes. Lists that are not empty have an entry for each vertex.
     pub fn with(self, attributes: Attributes) -> Self {
         Self { attributes, ..self }
     }
 
-    /// Whether its shading normals are interpolated.
+    /// Returns whether the shading normals are interpolated.
     pub fn is_smooth(&self) -> bool {
         !self.attributes.normals.is_empty()
     }
 
-    /// Whether it has texture coordinates.
+    /// Returns whether the mesh has texture coordinates.
     pub fn has_coordinates(&self) -> bool {
         !self.attributes.coordinates.is_empty()
     }
 
-    /// How many triangles are to be turned over to close the mesh; 0 if it is closed, or that does not close it.
+    /// Returns how many triangles must be flipped to close the mesh. Returns 0 if the mesh is closed, or if flipping
+    /// does not close it.
     pub fn turned(&self) -> usize {
         if self.is_closed() { 0 } else { turned(&self.vertices, &self.triangles) }
     }
 
-    /// The largest angle in degrees between a triangle and a normal by which it is shaded; 0 if the mesh is not smooth.
+    /// Returns the largest angle in degrees between a triangle's normal and a normal by which it is shaded, or 0 if the
+    /// mesh is not smooth.
     pub fn bend(&self) -> f64 {
         let normals = &self.attributes.normals;
         let cosine = |triangle: &[u32; 3]| {
@@ -160,17 +162,17 @@ impl Mesh {
         least.map_or(0.0, |cosine| libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees())
     }
 
-    /// How many triangles have no texture coordinates, in a mesh of which others have.
+    /// Returns the number of triangles without texture coordinates, in a mesh where others have them.
     pub fn bare(&self) -> usize {
         self.attributes.bare
     }
 
-    /// Texture coordinates at affine coordinates of a triangle; none if the mesh has none.
+    /// Returns the texture coordinates at affine coordinates of a triangle, or `None` if the mesh has none.
     pub fn coordinates(&self, part: u32, uv: [f64; 2]) -> Option<[f64; 2]> {
         self.attributes.coordinates(self.triangles[part as usize], uv)
     }
 
-    /// The derivatives of the points of a triangle by its texture coordinates.
+    /// Returns the derivatives of the points of a triangle with respect to its texture coordinates.
     pub(super) fn tangents(&self, part: u32) -> Option<[DVec3; 2]> {
         let corners = self.triangles[part as usize];
         let at = |corner: u32| self.attributes.coordinates[corner as usize];
@@ -201,13 +203,13 @@ impl Mesh {
         self.areas().total()
     }
 
-    /// A point uniform by area, and the triangle it lies on.
+    /// Samples a point uniformly by area. Returns it with the triangle it lies on.
     pub(super) fn sample_area(&self, u: [f64; 2]) -> (DVec3, u32) {
         let (index, along) = self.choose(u[0]);
         (self.triangle(index).sample_area([along, u[1]]), index)
     }
 
-    /// A triangle by its area, and what is left of the random number.
+    /// Draws a triangle in proportion to its area. Returns it with the rest of the random number.
     pub(super) fn choose(&self, u: f64) -> (u32, f64) {
         let drawn = self.areas().sample(u);
         (drawn.index as u32, drawn.u)

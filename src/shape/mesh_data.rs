@@ -2,27 +2,27 @@ use std::path::PathBuf;
 
 use super::{Attributes, Vertices};
 
-/// What a mesh file holds.
+/// The contents of a mesh file.
 #[derive(Default)]
 pub struct MeshFile {
-    /// Its vertices, in the precision of the file.
+    /// Vertices, in the precision of the file.
     pub vertices: Vertices,
-    /// Corners of its triangles; polygons are cut.
+    /// Corners of the triangles. Polygons are cut into triangles.
     pub faces: Vec<[u32; 3]>,
-    /// What its vertices carry.
+    /// What the vertices carry besides their positions.
     pub attributes: Attributes,
-    /// How many materials the file asks for, which Abbe takes from the scene instead.
+    /// Number of materials that the file refers to. Abbe takes materials from the scene instead.
     pub materials: usize,
-    /// What else the file holds that moves its points, which are taken as they stand.
+    /// Other contents that would move points or texture coordinates, which are ignored.
     pub ignored: Vec<&'static str>,
-    /// Other files that it was read from.
+    /// Other files that the mesh was read from.
     pub others: Vec<PathBuf>,
 }
 
-/// Refuses vertices that are not finite, or that carry something which is not.
+/// Rejects vertices that are not finite, or that carry something that is not finite.
 ///
 /// # Errors
-/// A sentence that says which.
+/// A sentence that says which vertex it is.
 pub(super) fn check_finite(vertices: &Vertices, attributes: &Attributes) -> Result<(), String> {
     if let Some(vertex) = (0..vertices.count() as u32).find(|&index| !vertices.at(index).is_finite()) {
         return Err(format!("vertex {vertex} (counted from 0) is not finite"));
@@ -37,10 +37,10 @@ pub(super) fn check_finite(vertices: &Vertices, attributes: &Attributes) -> Resu
     Ok(())
 }
 
-/// Stands for a negative index: no mesh has so many vertices.
+/// Stands for a negative index: no mesh has this many vertices.
 pub(super) const NO_VERTEX: u32 = u32::MAX;
 
-/// What is wrong with a corner beyond the last vertex.
+/// Returns the error message for a corner beyond the last vertex.
 pub(super) fn no_such_vertex(corner: u32, count: usize) -> String {
     let vertex = if corner == NO_VERTEX { "a negative vertex".into() } else { format!("vertex {corner}") };
     format!("a face asks for {vertex}, but the {count} vertices count from 0")

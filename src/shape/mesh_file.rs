@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::mesh_data::{MeshFile, check_finite, no_such_vertex};
 
-/// Reads a mesh file by its ending, `.ply`, `.obj`, `.gltf` or `.glb`, and the normals of its vertices if it is to be
-/// `smooth`; checks that corners exist and that vertices and what they carry are finite.
+/// Reads a mesh file according to its extension, `.ply`, `.obj`, `.gltf` or `.glb`. Reads the normals of its vertices
+/// if `smooth`. Checks that corners exist and that vertices and what they carry are finite.
 ///
 /// # Errors
 /// A sentence that says what is wrong with the file.
@@ -33,7 +33,7 @@ pub fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     Ok(file)
 }
 
-/// Whether a file begins as gzip begins (RFC 1952, section 2.3.1).
+/// Returns whether a file begins like gzip (RFC 1952, section 2.3.1).
 fn is_packed(path: &Path) -> bool {
     let mut start = [0; 2];
     File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == [0x1f, 0x8b]

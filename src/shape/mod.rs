@@ -1,7 +1,8 @@
-//! Floor 1: where surfaces are; knows no spectra.
+//! Floor 1: the geometry of surfaces. Does not depend on spectra.
 //!
-//! A shape answers four questions: where a ray crosses it, what the surface is like there, what box it fills, and, as a
-//! light, in which directions it is seen. Every answer carries the error bound that lets a new ray leave the surface.
+//! A shape answers four questions: where a ray crosses it, what the surface is like there, what box it fills, and, if
+//! it is a light, in which directions it is seen. Every answer carries the error bound that lets a new ray leave the
+//! surface.
 
 mod affine_plane;
 mod attributes;

@@ -1,9 +1,9 @@
-//! Numbers for what is different.
+//! Numbers for distinct values.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// Different values, numbered from 0 in the order in which they came.
+/// Distinct values, numbered from 0 in the order in which they arrived.
 pub(super) struct Numbered<T> {
     values: Vec<T>,
     numbers: HashMap<T, u32>,
@@ -23,7 +23,7 @@ impl<T: Copy + Eq + Hash> Numbered<T> {
         })
     }
 
-    /// All of them, each at the place of its number.
+    /// Returns all values, each at the index of its number.
     pub(super) fn all(self) -> Vec<T> {
         self.values
     }

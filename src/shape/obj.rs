@@ -12,9 +12,10 @@ use super::numbered::Numbered;
 use super::{Attributes, Vertices};
 use crate::math::{Bounds, DVec3};
 
-/// Reads the triangles of all objects of a file, and the normals of its vertices if they are wanted.
+/// Reads the triangles of all objects of a file, and the normals of its vertices if `smooth`.
 ///
-/// A vertex with several texture coordinates, or normals that are wanted, becomes several.
+/// A vertex with several texture coordinates becomes several vertices, and so does one with several normals if they are
+/// read.
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
     // Names and comments may be in any encoding.
@@ -31,7 +32,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
                 lists.coordinates.push(coordinates.map_err(refused)?);
             }
             "vn" => {
-                // Programs write normals that are no numbers for faces without area.
+                // Some programs write normals that are not numbers for faces without area.
                 let normal = if smooth { numbers(words) } else { Ok([0.0; 3]) };
                 let normal = normal.map_err(|what| format!("the normal in line {line} {what}"))?;
                 lists.normals.push(normal.map(|x| x as f32));
@@ -45,8 +46,8 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     lists.file()
 }
 
-/// What stands in a text line by line, without comments, each with the number of its line; a backslash at the end of a
-/// line takes the next one to it.
+/// Returns the statements of a text, one per line and without comments, each with its line number. A backslash at the
+/// end of a line continues it on the next one.
 fn statements(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     // A carriage return ends a line as well, unless a line feed follows it: then it is white space at the line's end.
     let lines = text.split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'));
@@ -69,7 +70,7 @@ fn number(word: &str) -> Result<f64, &'static str> {
     if (number as f32).is_finite() { Ok(number) } else { Err("is not finite") }
 }
 
-/// The first K numbers of a line.
+/// Returns the first K numbers of a line.
 fn numbers<const K: usize>(words: &[&str]) -> Result<[f64; K], &'static str> {
     let words = words.first_chunk::<K>().ok_or("has too few numbers")?;
     let mut numbers = [0.0; K];
@@ -79,7 +80,7 @@ fn numbers<const K: usize>(words: &[&str]) -> Result<[f64; K], &'static str> {
     Ok(numbers)
 }
 
-/// A fourth number is a weight; colors make it six or more, and are left out.
+/// Reads a position. A fourth number is a weight. With a color there are six numbers or more, and the color is ignored.
 fn place(words: &[&str]) -> Result<[f64; 3], &'static str> {
     let place = numbers::<3>(words)?;
     let [_, _, _, weight] = words else { return Ok(place) };
@@ -88,17 +89,18 @@ fn place(words: &[&str]) -> Result<[f64; 3], &'static str> {
     if place.iter().all(|&x| (x as f32).is_finite()) { Ok(place) } else { Err("is not finite") }
 }
 
-/// One number is enough for a texture that is a line, and a third one is its depth.
+/// Reads texture coordinates. One number is enough for a one-dimensional texture. A third number is a depth and is
+/// ignored.
 fn coordinates(words: &[&str]) -> Result<[f32; 2], &'static str> {
     let of_both = if let [u] = words { [number(u)?, 0.0] } else { numbers(words)? };
     Ok(of_both.map(|x| x as f32))
 }
 
-/// How many times as far from the origin as they are wide places may lie to be kept in 32 bits: roundings are then at
-/// most a millionth of the width, 2^-24 times this.
+/// Largest ratio of the positions' distance from the origin to their extent at which they are kept in 32 bits.
+/// Roundings are then at most a millionth of the extent, 2^-24 times this ratio.
 const FARTHEST: f64 = 16.0;
 
-/// The places of vertices, in 64 bits where 32 would round them by too much.
+/// Returns the positions of vertices, in 64 bits where 32 would round them by too much.
 fn vertices(places: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
     let bounds = Bounds::around(places.clone().map(DVec3::from));
     let widest = bounds.size().max_element();
@@ -109,7 +111,7 @@ fn vertices(places: impl Iterator<Item = [f64; 3]> + Clone) -> Vertices {
     }
 }
 
-/// Where a corner has its place, its texture coordinates and its normal, each in a list of its own.
+/// Indices of a corner's position, texture coordinates and normal, each into a list of its own.
 type Corner = [u32; 3];
 
 /// Stands for texture coordinates or a normal that a corner does not have.
@@ -121,7 +123,7 @@ fn no_such(kind: usize) -> String {
     format!("asks for a {} that the file does not have", NAMES[kind])
 }
 
-/// What was read of a file so far.
+/// What has been read from a file so far.
 #[derive(Default)]
 struct ObjData {
     places: Vec<[f64; 3]>,
@@ -129,12 +131,12 @@ struct ObjData {
     normals: Vec<[f32; 3]>,
     corners: Numbered<Corner>,
     faces: Faces,
-    /// Triangles of faces that leave out texture coordinates.
+    /// Number of triangles in faces that leave out texture coordinates.
     bare: usize,
-    /// The highest place in each list that a face asks for, and its line: lists may be filled later.
+    /// The highest index into each list that a face uses, with its line. Lists may be filled later.
     highest: [(u32, usize); 3],
     has_library: bool,
-    /// Their names.
+    /// Names of the materials.
     materials: BTreeSet<String>,
 }
 
@@ -154,7 +156,8 @@ impl ObjData {
         Ok(())
     }
 
-    /// A corner such as 3, 3/2, 3//1 or 3/2/1: numbers that count from 1, or back from the last entry so far.
+    /// Reads a corner such as 3, 3/2, 3//1 or 3/2/1. Numbers count from 1, or, if negative, back from the last entry so
+    /// far.
     fn corner(&mut self, line: usize, word: &str) -> Result<Corner, String> {
         let counts = [self.places.len(), self.coordinates.len(), self.normals.len()];
         let mut corner = [NONE; 3];
@@ -177,7 +180,7 @@ impl ObjData {
     fn file(self) -> Result<MeshFile, String> {
         let counts = [self.places.len(), self.coordinates.len(), self.normals.len()];
         for (kind, (highest, line)) in self.highest.into_iter().enumerate() {
-            // Some programs leave out a list, but not the numbers that ask for it.
+            // Some programs leave out a list, but not the indices into it.
             let is_left_out = kind > 0 && counts[kind] == 0;
             if line > 0 && !is_left_out && highest as usize >= counts[kind] {
                 return Err(format!("the face in line {line} {}", no_such(kind)));

@@ -1,20 +1,22 @@
 use crate::math::{DVec3, unit};
 
-/// A triangle or parallelogram as it is seen from a point: drawn with the same density from every direction within.
+/// A triangle or parallelogram as seen from a point, sampled uniformly in solid angle.
 ///
-/// Peters 2021, *BRDF Importance Sampling for Polygonal Lights*, section 4.1: a fan of spherical triangles about the
-/// first corner, whose far side is swept by the first number, and an arc from the corner to it, divided by the second.
+/// Peters 2021, *BRDF Importance Sampling for Polygonal Lights*, section 4.1: the polygon is a fan of spherical
+/// triangles about the first corner. The first random number sweeps along the far side of the fan. The second divides
+/// the arc from the corner to that point.
 pub(super) struct Outline {
     corners: [DVec3; 4],
     parts: [Part; 2],
-    /// Steradians within.
+    /// Solid angle in steradians.
     pub(super) solid_angle: f64,
 }
 
-/// Terms of one spherical triangle's solid angle, 2 atan2(volume, across + along).
+/// Terms of the solid angle of one spherical triangle, 2 atan2(volume, across + along).
 ///
 /// Van Oosterom & Strackee 1983, *The Solid Angle of a Plane Triangle*: for the unit vectors a, b, c to the corners,
-/// the volume is a . (b x c) and the other term 1 + a . b + b . c + c . a; `along` is 1 + a . b, `across` the rest.
+/// the volume is a . (b x c) and the other term is 1 + a . b + b . c + c . a. `along` is 1 + a . b, and `across` is the
+/// rest.
 #[derive(Clone, Copy, Default)]
 struct Part {
     volume: f64,
@@ -22,22 +24,24 @@ struct Part {
     along: f64,
 }
 
-/// Least solid angle that is divided evenly: directions are right to 2^-51, so that beside an outline at most 2 pi long
-/// lies less than a millionth of what is drawn. Also the least length of a complex number whose argument is taken: its
-/// terms are right to a few 2^-52, and both vanish only where the point lies on the fan's diagonal.
+/// Smallest solid angle that is sampled uniformly. Directions are accurate to 2^-51, so that for an outline at most 2
+/// pi long, less than a millionth of the samples lies outside. It is also the smallest absolute value of a complex
+/// number whose argument is taken. The terms of that number are accurate to a few 2^-52, and both vanish only if the
+/// point lies on the fan's diagonal.
 const LEAST: f64 = 1.0 / (1u64 << 28) as f64;
 
-/// Distance, in half diagonals, beyond which drawing by area does as well: benches/README.md.
+/// Distance, in half diagonals, beyond which sampling by area does as well: benches/README.md.
 const NEAR: f64 = 4.0;
 
-/// Whether solid angles are worth their cost, at the far end of a vector from a shape of this squared half diagonal.
+/// Returns whether solid angles are worth their cost for a shape at the end of the vector `way`. `squared` is the
+/// square of the shape's half diagonal.
 pub(super) fn is_near(way: DVec3, squared: f64) -> bool {
     way.length_squared() < NEAR * NEAR * squared
 }
 
 impl Outline {
-    /// The outline of flat corners, three or four in order, whose first two edges span twice a triangle's area
-    /// `spanned`, a vector; none where it is too narrow to be divided.
+    /// Returns the outline of a flat polygon with three or four corners, in order. `spanned` is the cross product of
+    /// its first two edges, twice the area of a triangle. Returns `None` if the outline is too narrow to be sampled.
     pub(super) fn seen(from: DVec3, corners: &[DVec3], spanned: DVec3) -> Option<Self> {
         let ways: [DVec3; 4] = std::array::from_fn(|i| corners[i.min(corners.len() - 1)] - from);
         let lengths = ways.map(|way| way.length());
@@ -50,7 +54,7 @@ impl Outline {
             let volume = height / (lengths[apex] * lengths[a] * lengths[b]);
             let across = units[a].dot(units[b]) + units[apex].dot(units[b]);
             *part = Part { volume, across, along: 1.0 + units[apex].dot(units[a]) };
-            // Half solid angles add up as the arguments of complex numbers.
+            // Half solid angles add up like the arguments of complex numbers.
             let sum = part.across + part.along;
             if volume.max(sum.abs()) < LEAST {
                 return None;
@@ -61,12 +65,12 @@ impl Outline {
         (solid_angle >= LEAST).then_some(Self { corners: units, parts, solid_angle })
     }
 
-    /// A direction within, with density 1 / `solid_angle`.
+    /// Samples a direction within the outline, with density 1 / `solid_angle`.
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         let (mut sin, mut cos) = libm::sincos(0.5 * u[0] * self.solid_angle);
         let (mut part, mut number) = (self.parts[0], 0);
         if self.parts[1].volume > 0.0 {
-            // What is left behind the first triangle, by the sine and cosine of the difference of the angles.
+            // The rest beyond the first triangle, from the sine and cosine of the difference of the angles.
             let sum = part.across + part.along;
             let left = sin * sum - cos * part.volume;
             if left > 0.0 {
@@ -76,11 +80,12 @@ impl Outline {
             }
         }
         let [apex, a, b] = [self.corners[0], self.corners[number + 1], self.corners[number + 2]];
-        // The direction m = x a + y b for which a, the apex and a's mirror image behind m enclose what is asked for:
-        // the formula's two terms are linear in m.
+        // The direction m = x a + y b for which a, the apex and the mirror image of a behind m enclose the requested
+        // solid angle. Both terms of the formula are linear in m.
         let middle = a * (part.volume * cos - part.across * sin) + b * (part.along * sin);
         let far = middle * (2.0 * a.dot(middle) / middle.length_squared()) - a;
-        // Heights above the apex are drawn evenly; 1 - cos by the chord keeps its digits on short arcs.
+        // Heights above the apex are sampled uniformly. 1 - cos is computed from the chord, which keeps its digits on
+        // short arcs.
         let end = 0.5 * (far - apex).length_squared();
         let x = u[1] * end;
         let across = far - apex * (1.0 - end);
@@ -113,10 +118,10 @@ mod tests {
             let outline = square(1.0, DVec3::Z * height).expect("it is near");
             assert!((outline.solid_angle / exact - 1.0).abs() < 1e-8, "{height}: {} {exact}", outline.solid_angle);
         }
-        // Seen along its plane: the difference of two rectangles that begin below the point, by corners as above.
+        // Seen along its plane: the difference of two rectangles that begin below the point, by their corners as above.
         for height in [1e-1f64, 1e-2, 1e-4, 1e-6, 1e-7] {
             let outline = square(1.0, DVec3::new(1.0, 0.0, height)).expect("it is near and wide enough");
-            // Nearly half of all directions each: their complements keep the digits.
+            // Each rectangle fills nearly half of all directions: their complements keep the digits.
             let corner = |x: f64| 2.0 * libm::atan2(x * 0.5, height * (x * x + 0.25 + height * height).sqrt());
             let flat = |x: f64| 2.0 * libm::atan2(height * (x * x + 0.25 + height * height).sqrt(), x * 0.5);
             let exact = if height > 0.05 { corner(1.5) - corner(0.5) } else { flat(0.5) - flat(1.5) };

@@ -5,7 +5,7 @@ use super::triangle::Sheared;
 use super::{Bvh, Intersection, Vectors, Vertices, Visitor, fragments};
 use crate::math::{DVec3, Ray};
 
-/// A tree over triangles, and copies of all their corners.
+/// A tree over triangles, with copies of all their corners.
 #[derive(Clone, Debug)]
 pub(super) struct Packed {
     bvh: Bvh,
@@ -19,12 +19,12 @@ enum Blocks {
     Double(Vec<Block<f64>>),
 }
 
-/// Four triangles side by side: for each corner and coordinate, four numbers. Absent triangles have NaN.
+/// Four triangles side by side: four numbers for each corner and coordinate. Absent triangles have NaN.
 #[derive(Clone, Debug)]
 struct Block<T>([[[T; GROUP]; 3]; 3]);
 
 impl Packed {
-    /// Triangles whose corners index the vertices.
+    /// Builds the tree over triangles whose corners index the vertices.
     pub fn new(vertices: &Vertices, triangles: &[[u32; 3]]) -> Self {
         let corners = |index: u32| triangles[index as usize].map(|corner| vertices.at(corner));
         Self::under(fragments::tree(triangles.len() as u32, corners), vertices, triangles)
@@ -38,11 +38,11 @@ impl Packed {
         Self { bvh, blocks }
     }
 
-    /// The nearest crossing with 0 < t <= `t_max` of a triangle that counts; of equally near ones, that of the one
-    /// listed first.
+    /// Returns the nearest crossing with 0 < t <= `t_max` of a triangle for which `counts` is true. Of equally near
+    /// crossings, it is that of the triangle listed first.
     ///
-    /// `leaves` says which triangle the ray starts on by its error bound: it lies on the side that it leaves to, so
-    /// that the sign by many digits is known.
+    /// `leaves` tells which triangle the ray leaves. The ray was offset by that triangle's error bound, so that its
+    /// origin lies on the side to which it leaves, and the outcome of an exact test is known.
     #[inline]
     pub fn nearest(
         &self,
@@ -64,7 +64,7 @@ impl Packed {
         nearest
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` that counts, by its triangle and t.
+    /// Returns whether there is a crossing with 0 < t <= `t_max` for which `counts` is true, given its triangle and t.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, leaves: impl Fn(u32) -> bool, counts: impl Fn(u32, f64) -> bool) -> bool {
         let mut is_found = false;
@@ -75,7 +75,8 @@ impl Packed {
         is_found
     }
 
-    /// Hands over crossings, nearer boxes first if `ORDERED`; `take` returns how far to search on, or none to end.
+    /// Calls `take` with crossings, in nearer boxes first if `ORDERED`. `take` returns how far to search from then on,
+    /// or `None` to end the search.
     #[inline]
     fn search<const ORDERED: bool>(
         &self,
@@ -155,7 +156,7 @@ impl<T: Number, L: Fn(u32) -> bool, F: FnMut(Intersection, f64) -> Option<f64>> 
     }
 }
 
-/// The lowest of some lanes, taken off.
+/// Removes the lowest of some lanes and returns it.
 #[inline(always)]
 fn next(lanes: &mut u32) -> Option<usize> {
     let lane = lanes.trailing_zeros() as usize;
@@ -164,7 +165,7 @@ fn next(lanes: &mut u32) -> Option<usize> {
     is_there.then_some(lane & (GROUP - 1))
 }
 
-/// The crossing with one of the triangles.
+/// Returns the crossing with one of the triangles.
 #[inline(always)]
 fn crossing_of(intersections: &Crossings, lane: usize) -> Intersection {
     let Crossings { t, v, w, determinant, .. } = intersections;
@@ -172,11 +173,11 @@ fn crossing_of(intersections: &Crossings, lane: usize) -> Intersection {
 }
 
 impl<T: Number> Block<T> {
-    /// The triangles that a ray meets with 0 < t <= `t_max`, edges and corners included.
+    /// Returns the triangles that a ray meets with 0 < t <= `t_max`, edges and corners included.
     ///
-    /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, for rounding
-    /// keeps the order of products; so what has two of opposite signs is refused there as well, and nothing else is
-    /// here. What that test asks of more digits is left to it.
+    /// The edge functions are rounded as in `Sheared::intersect`. One that is not 0 has the right sign, because
+    /// rounding keeps the order of products. So a triangle with edge functions of opposite signs is rejected there as
+    /// well, and no other is rejected here. Cases for which that test needs more digits are left to it.
     #[inline(always)]
     fn meet(&self, vectors: impl Vectors, line: &Line, sheared: &Sheared, t_max: f64) -> Option<Crossings> {
         let [x, y, z] = sheared.order;
@@ -184,7 +185,7 @@ impl<T: Number> Block<T> {
         vectors.meet(corners, line, t_max)
     }
 
-    /// The crossing of one of the triangles with 0 < t <= `t_max`.
+    /// Computes the crossing with one of the triangles with 0 < t <= `t_max`, with more digits where needed.
     #[inline(never)]
     fn exactly(&self, lane: usize, sheared: &Sheared, t_max: f64) -> Option<Intersection> {
         let corner = |corner: &[[T; GROUP]; 3]| DVec3::from(corner.map(|x| x[lane].into()));
@@ -198,7 +199,7 @@ mod tests {
     use crate::math::ball_surface;
     use crate::shape::Triangle;
 
-    /// Numbers of a multiplicative congruential generator, in [0, 1).
+    /// Returns a linear congruential generator of numbers in [0, 1).
     fn numbers() -> impl FnMut() -> f64 {
         let mut state = 1u64;
         move || {
@@ -227,10 +228,10 @@ mod tests {
                 let mut origin = DVec3::new(place(), place(), place());
                 let direction = match i % 4 {
                     0 => ball_surface([number(), number()]),
-                    // Along an axis, with a 0 of either sign in the others.
+                    // Along an axis, with a 0 of either sign in the other components.
                     1 => DVec3::from([[0.0, -0.0, 1.0], [-1.0, 0.0, -0.0], [-0.0, 1.0, 0.0]][i / 4 % 3]),
                     2 => (DVec3::new(place(), place(), place()) - origin).normalize_or(DVec3::X),
-                    // So small a component that its reciprocal does not fit into 32 bits.
+                    // A component so small that its reciprocal does not fit into 32 bits.
                     _ => DVec3::new(1e-42 * (number() - 0.5), 1.0, 1e-300),
                 };
                 if i % 3 == 0 {

@@ -13,43 +13,44 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane through a point with a normal of any length above 0.
+    /// Creates the plane through a point, with a normal of any length above 0.
     pub fn new(point: DVec3, normal: DVec3) -> Self {
         Self { point, normal: normal.normalize() }
     }
 
-    /// The unit vector on the side that is its front.
+    /// Returns the unit normal on the front side.
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
 
-    /// Whether another plane lies in the same place, to within `near` times its distance from the world's origin.
+    /// Returns whether another plane lies in the same place, to within `near` times the distance from the world's
+    /// origin.
     pub fn coincides(&self, other: &Self, near: f64) -> bool {
         let far = self.point.length().max(other.point.length());
         let is_parallel = self.normal.cross(other.normal).length() < 1e-6;
         is_parallel && (other.point - self.point).dot(self.normal).abs() <= near * far
     }
 
-    /// Whether it cuts a box, or passes it within `near` times the box's diagonal.
+    /// Returns whether the plane cuts a box, or passes it within `near` times the box's diagonal.
     pub fn meets(&self, bounds: &Bounds, near: f64) -> bool {
         let size = bounds.size();
         let half = 0.5 * size.dot(self.normal.abs());
         (bounds.center() - self.point).dot(self.normal).abs() <= half + near * size.length()
     }
 
-    /// Whether a point lies on the side from which the normal points away.
+    /// Returns whether a point lies behind the plane, on the side from which the normal points away.
     pub fn is_behind(&self, point: DVec3) -> bool {
         (point - self.point).dot(self.normal) < 0.0
     }
 
-    /// t = (q - p0).n_p / (n.n_p): the difference is formed first, so that distance from the world's origin costs
-    /// nothing.
+    /// Intersects a ray at t = (q - p0).n_p / (n.n_p). The difference is formed first, so that distance from the
+    /// world's origin costs no precision.
     pub(super) fn intersect(&self, ray: &Ray, t_max: f64) -> Option<Intersection> {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         (t > 0.0 && t <= t_max && t.is_finite()).then(|| Intersection::at(t))
     }
 
-    /// The point of the plane nearest to a computed hit.
+    /// Returns the point of the plane nearest to a computed hit.
     pub(super) fn point(&self, hit: DVec3) -> SurfacePoint {
         let away = hit - self.point;
         let position = hit - self.normal * away.dot(self.normal);

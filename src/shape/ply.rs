@@ -14,11 +14,11 @@ use super::{Attributes, Vertices};
 struct Vertex {
     place: [f64; 3],
     normal: [f32; 3],
-    /// By each pair of names.
+    /// Texture coordinates, for each pair of names.
     coordinates: [[f32; 2]; COORDINATES.len()],
 }
 
-/// Names of a vertex's texture coordinates in use.
+/// Names in use for a vertex's texture coordinates.
 const COORDINATES: [[&str; 2]; 4] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
 impl PropertyAccess for Vertex {
@@ -60,11 +60,11 @@ impl PropertyAccess for Vertex {
 #[derive(Default)]
 struct Face {
     corners: Vec<u32>,
-    /// A pair for each corner, one after the other.
+    /// A pair of texture coordinates for each corner, one after the other.
     coordinates: Vec<f32>,
 }
 
-/// The list of a face's texture coordinates.
+/// Name of the list of a face's texture coordinates.
 const OF_CORNERS: &str = "texcoord";
 
 impl PropertyAccess for Face {
@@ -95,8 +95,8 @@ impl PropertyAccess for Face {
 }
 
 impl Face {
-    /// The triangles of strips, each of which a negative index ends; two equal corners only lead on to the next
-    /// triangle.
+    /// Calls `keep` with the triangles of strips. A negative index ends a strip. A triangle with two equal corners is
+    /// skipped: it only leads on to the next one.
     fn triangles(&self, mut keep: impl FnMut([u32; 3])) {
         for strip in self.corners.split(|&corner| corner == NO_VERTEX) {
             for (number, corners) in strip.windows(3).enumerate() {
@@ -109,7 +109,7 @@ impl Face {
     }
 }
 
-/// Whether an element lists vertices; `name` is what there are several of.
+/// Checks that an element lists vertices. `name` is the plural noun for its entries.
 fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
     let list = ["vertex_indices", "vertex_index"].iter().find_map(|key| element.properties.get(*key));
     match list.map(|property| &property.data_type) {
@@ -122,14 +122,14 @@ fn has_corners(element: &ElementDef, name: &str) -> Result<(), String> {
     }
 }
 
-/// What was read of a file so far.
+/// What has been read from a file so far.
 #[derive(Default)]
 struct PlyData {
     vertices: Vertices,
     attributes: Attributes,
     faces: Faces,
-    /// Where faces have texture coordinates of their own: the different corners that faces have, each with its vertex
-    /// and the bits of its coordinates, if it has any.
+    /// The distinct corners of faces, if faces have texture coordinates of their own. Each has its vertex and the bits
+    /// of its coordinates, if it has any.
     corners: Option<Numbered<(u32, Option<[u32; 2]>)>>,
 }
 
@@ -164,10 +164,10 @@ impl PlyData {
         self.faces.push(&vertices.iter().enumerate().map(number).collect::<Vec<_>>());
     }
 
-    /// Makes a vertex of each corner that carries something else. What corners lack they have of their vertices.
+    /// Makes a vertex of each distinct corner. What corners lack is taken from their vertices.
     fn part_corners(&mut self) -> Result<(), String> {
         let Some(corners) = self.corners.take().map(Numbered::all) else { return Ok(()) };
-        // While vertices have the numbers of the file.
+        // Checked while vertices still have the numbers of the file.
         check_finite(&self.vertices, &self.attributes)?;
         let count = self.vertices.count();
         if let Some((vertex, _)) = corners.iter().find(|(vertex, _)| *vertex as usize >= count) {
@@ -198,9 +198,9 @@ impl PlyData {
     }
 }
 
-/// Reads the triangles of a file, and the normals of its vertices if they are wanted.
+/// Reads the triangles of a file, and the normals of its vertices if `smooth`.
 ///
-/// A vertex with several texture coordinates becomes several.
+/// A vertex with several texture coordinates becomes several vertices.
 pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let mut body = Body::open(path)?;
     let elements: Vec<ElementDef> = body.header.elements.values().cloned().collect();
@@ -209,7 +209,8 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     for element in &elements {
         match element.name.as_str() {
             "vertex" => lists.vertices(&mut body, element, smooth)?,
-            // Elements without properties are lines of a text, but nothing at all in bytes, however many there are.
+            // Elements without properties are lines of a text file. In a binary file they take no bytes, however many
+            // there are.
             _ if element.properties.is_empty() && !body.has_lines() => {}
             "face" => {
                 has_corners(element, "faces")?;

@@ -1,4 +1,4 @@
-//! PLY files as they stand on the disk: a header, and elements in lines or in bytes.
+//! PLY files as stored on disk: a header, and elements in lines or in bytes.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -13,20 +13,20 @@ use ply_rs_bw::ply::{
 pub(super) struct Body {
     pub(super) header: Header,
     rest: Reader<BufReader<File>>,
-    /// The last byte of each line.
+    /// The byte that ends each line.
     end: u8,
-    /// How many lines have been read.
+    /// Number of lines that have been read.
     lines: usize,
 }
 
-/// Elements that are read at once: each takes several times the memory of what is kept of it.
+/// Number of elements that are read at once. Each takes several times the memory of what is kept of it.
 const BATCH: usize = 4096;
 
 impl Body {
     /// Reads the header. Its comments may be in any encoding.
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         let mut file = BufReader::new(File::open(path).map_err(|error| error.to_string())?);
-        // Else the end of the first line would be looked for, however far away that is.
+        // Otherwise the end of the first line would be searched for, however far away it is.
         let first = file.fill_buf().map_err(|error| error.to_string())?;
         if !first.starts_with(b"ply") {
             return Err("a PLY file begins with a line `ply`, and this one does not".into());
@@ -49,7 +49,7 @@ impl Body {
         self.header.encoding == Encoding::Ascii
     }
 
-    /// Hands all elements of one kind over, one after the other.
+    /// Calls `keep` with all elements of one kind, one after the other.
     pub(super) fn elements<E: PropertyAccess>(
         &mut self,
         element: &ElementDef,
@@ -68,7 +68,7 @@ impl Body {
         Ok(())
     }
 
-    /// The parser of the crate knows neither `nan` nor numbers such as `1.` and `.5`.
+    /// Reads elements from lines. The parser of the crate accepts neither `nan` nor numbers such as `1.` and `.5`.
     fn in_lines<E: PropertyAccess>(&mut self, element: &ElementDef, mut keep: impl FnMut(E)) -> Result<(), String> {
         let ElementDef { name, count, properties } = element;
         let mut line = Vec::new();
@@ -93,7 +93,7 @@ impl Body {
     }
 }
 
-/// The byte that ends a line: of old Macintosh files a carriage return alone.
+/// Returns the byte that ends a line. In old Macintosh files it is a carriage return alone.
 fn end_of_lines(text: &[u8]) -> u8 {
     let first = text.iter().position(|byte| matches!(byte, b'\r' | b'\n')).unwrap_or(0);
     match text.get(first..) {
@@ -102,7 +102,7 @@ fn end_of_lines(text: &[u8]) -> u8 {
     }
 }
 
-/// What `$read` makes of words, as a property of each type.
+/// Reads a value with `$read` and wraps it as a property of its type.
 macro_rules! property {
     ($kind:expr, $read:expr, $($type:ident => $property:ident),*) => {
         match $kind {
@@ -111,7 +111,7 @@ macro_rules! property {
     };
 }
 
-/// What stands in a line; none if that is not what the header says.
+/// Reads the element in a line, or returns `None` if the line does not match the header.
 fn of_line<E: PropertyAccess>(line: &str, element: &ElementDef) -> Option<E> {
     let (mut words, mut read) = (line.split_ascii_whitespace(), E::new());
     for (name, property) in &element.properties {
@@ -135,7 +135,7 @@ fn no_fit(line: usize) -> String {
     format!("line {line} does not fit a PLY file with this header")
 }
 
-/// A message about the end of a file with the numbers of all elements instead of those of a batch.
+/// Returns a message about the end of a file with the numbers of all elements instead of those of a batch.
 fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
     let numbers = message.split_once(&format!("(expected {batch}, got "));
     let numbers = numbers.and_then(|(before, rest)| Some((before, rest.split_once(')')?)));
@@ -148,7 +148,7 @@ fn count_from(message: &str, batch: usize, done: usize, all: usize) -> String {
     }
 }
 
-/// What is wrong with a file, or with a part of it that has lines or none.
+/// Returns the error message for a file, or for a part of it that has lines or none.
 fn ply_error(error: ParseError, has_lines: bool) -> String {
     let text = error.to_string();
     let first = text.lines().next().unwrap_or_default().trim_end_matches('.');

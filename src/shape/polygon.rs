@@ -7,16 +7,16 @@ use crate::math::{Bounds, DVec3};
 /// A flat piece of a surface with straight edges: a shape of its own, or a part of a mesh or a cube.
 #[derive(Clone, Debug)]
 pub enum Polygon<'a> {
-    /// A triangle, where it stands in the world.
+    /// A triangle, placed in the world.
     Triangle(Triangle),
-    /// The same, kept by its mesh.
+    /// A triangle that its mesh keeps, precomputed.
     Facet(&'a Facet),
-    /// The unit square of a plane.
+    /// The parallelogram |a| <= 1, |b| <= 1 of a plane.
     Parallelogram(&'a AffinePlane),
 }
 
 impl Polygon<'_> {
-    /// The box that it fills.
+    /// Returns the box that the polygon fills.
     pub fn bounds(&self) -> Bounds {
         match self {
             Self::Triangle(triangle) | Self::Facet(Facet { triangle, .. }) => triangle.bounds(),
@@ -24,7 +24,7 @@ impl Polygon<'_> {
         }
     }
 
-    /// Unit normal of its front.
+    /// Returns the unit normal on the front.
     pub fn normal(&self) -> DVec3 {
         match self {
             Self::Triangle(triangle) => triangle.normal(),
@@ -33,7 +33,7 @@ impl Polygon<'_> {
         }
     }
 
-    /// Its area, in square scene units.
+    /// Returns the area in square scene units.
     pub fn area(&self) -> f64 {
         match self {
             Self::Triangle(triangle) => triangle.area(),
@@ -42,7 +42,8 @@ impl Polygon<'_> {
         }
     }
 
-    /// A direction from a point toward it: evenly over its solid angle nearby, through a point drawn by area far away.
+    /// Samples a direction from a point toward the polygon: uniformly in solid angle if it is near, through a point
+    /// sampled by area if it is far away.
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> Option<ShapeSample> {
         if let Some(outline) = self.outline(from) {
             return Some(ShapeSample::of_direction(outline.sample(u), 1.0 / outline.solid_angle));
@@ -54,7 +55,7 @@ impl Polygon<'_> {
         Some(ShapeSample::along(point - from)?.with_density(Density::Area(1.0 / self.area())))
     }
 
-    /// How densely `sample` draws from a point.
+    /// Returns the density with which `sample` draws from a point.
     pub(super) fn density(&self, from: DVec3) -> Density {
         match self.outline(from) {
             Some(outline) => Density::SolidAngle(1.0 / outline.solid_angle),

@@ -3,16 +3,16 @@ use super::packed::Packed;
 use super::{Intersection, Shape, Triangle, Vertices};
 use crate::math::{DVec3, Ray};
 
-/// The triangles of several small shapes in one tree, which a ray goes through once.
+/// The triangles of several small shapes in one tree, through which a ray goes only once.
 #[derive(Clone, Debug)]
 pub struct Pool {
     packed: Packed,
-    /// Number of the shape, and the triangle's in the shape.
+    /// Index of the shape, and of the triangle in the shape.
     owners: Vec<[u32; 2]>,
 }
 
 impl Pool {
-    /// Whether a shape may go into a pool: larger meshes are better left alone.
+    /// Returns whether a shape may go into a pool. Larger meshes are better left alone.
     pub fn takes(shape: &Shape) -> bool {
         match shape {
             Shape::Triangle(_) => true,
@@ -21,7 +21,8 @@ impl Pool {
         }
     }
 
-    /// The triangles of those numbered shapes that it takes, in ascending order.
+    /// Creates the pool of the triangles of those shapes that it takes. The shapes come with their numbers, in
+    /// ascending order.
     pub fn new<'a>(shapes: impl Iterator<Item = (u32, &'a Shape)>) -> Self {
         let (mut points, mut owners) = (Vec::<DVec3>::new(), Vec::new());
         for (number, shape) in shapes {
@@ -41,8 +42,9 @@ impl Pool {
         Self { packed: Packed::new(&Vertices::Double(points), &triangles), owners }
     }
 
-    /// The nearest crossing with 0 < t <= `t_max` of a shape that counts, and the shape's number. Of equally near ones,
-    /// that of the lowest number. `left` is the triangle that the ray leaves, as a shape and a part.
+    /// Returns the nearest crossing with 0 < t <= `t_max` of a shape for which `counts` is true, with the shape's
+    /// number. Of equally near crossings, it is that of the lowest number. `left` is the triangle that the ray leaves,
+    /// as a shape and a part.
     #[inline]
     pub fn nearest(
         &self,
@@ -58,7 +60,8 @@ impl Pool {
         Some((number, Intersection { part, ..intersection }))
     }
 
-    /// Whether there is a crossing with 0 < t <= `t_max` that counts, by the shape's number, the part and t.
+    /// Returns whether there is a crossing with 0 < t <= `t_max` for which `counts` is true, given the shape's number
+    /// and part, and t.
     #[inline]
     pub fn any(&self, ray: &Ray, t_max: f64, left: Option<[u32; 2]>, counts: impl Fn([u32; 2], f64) -> bool) -> bool {
         let owner = |item: u32| self.owners[item as usize];

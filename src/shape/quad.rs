@@ -9,12 +9,12 @@ use crate::math::{DVec3, Ray};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Quad {
-    /// The plane it lies in, whose unit square it is.
+    /// The plane of the parallelogram, which is the region |a| <= 1, |b| <= 1 of it.
     pub(super) plane: AffinePlane,
 }
 
 impl Quad {
-    /// The parallelogram of two independent half edges.
+    /// Creates the parallelogram with two independent half edges.
     pub fn new(center: DVec3, u: DVec3, v: DVec3) -> Self {
         Self { plane: AffinePlane::new(center, u, v, u.normalize().cross(v.normalize())) }
     }

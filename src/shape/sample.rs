@@ -5,33 +5,34 @@ use crate::math::DVec3;
 pub struct ShapeSample {
     /// Unit vector from the point to the shape.
     pub direction: DVec3,
-    /// The part that was drawn, on shapes of several: the sample counts only if the nearest crossing lies on it.
+    /// The part that was sampled, on shapes with several parts. The sample counts only if the nearest crossing lies on
+    /// this part.
     pub part: Option<u32>,
-    /// How densely it was drawn, where that is known before the crossing is.
+    /// Density of the sample, if it is known before the crossing is.
     pub density: Option<Density>,
 }
 
-/// How densely a shape is sampled from one point.
+/// The density with which a shape is sampled from one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Density {
-    /// Evenly over directions, this many per steradian.
+    /// Uniform over directions, with this density per steradian.
     SolidAngle(f64),
-    /// Evenly over the surface, this many per unit of area.
+    /// Uniform over the surface, with this density per unit area.
     Area(f64),
 }
 
 impl ShapeSample {
-    /// A direction of a known density per steradian.
+    /// Creates a sample of a direction with a known density per steradian.
     pub(super) fn of_direction(direction: DVec3, pdf: f64) -> Self {
         Self { direction, part: None, density: Some(Density::SolidAngle(pdf)) }
     }
 
-    /// The direction along a vector to the shape; none of length 0.
+    /// Creates a sample of the direction along a vector to the shape, or returns `None` for a vector of length 0.
     pub fn along(vector: DVec3) -> Option<Self> {
         Some(Self { direction: vector.try_normalize()?, part: None, density: None })
     }
 
-    /// The sample, if it lies on one of several parts.
+    /// Returns the sample, marked as lying on one of several parts.
     #[must_use]
     pub fn with_part(self, part: u32) -> Self {
         Self { part: Some(part), ..self }
@@ -41,7 +42,7 @@ impl ShapeSample {
         Self { density: Some(density), ..self }
     }
 
-    /// The sample, if its part is only one of several and is chosen with a probability.
+    /// Returns the sample with its density multiplied by the probability of choosing its part among several.
     #[must_use]
     pub fn times(self, probability: f64) -> Self {
         let scaled = |density| match density {
@@ -53,7 +54,8 @@ impl ShapeSample {
 }
 
 impl Density {
-    /// Per steradian, of a direction that meets the surface at a distance and an angle of this cosine.
+    /// Returns the density per steradian of a direction that meets the surface at a distance and an angle with this
+    /// cosine.
     pub fn toward(self, distance: f64, cos: f64) -> f64 {
         match self {
             Self::SolidAngle(density) => density,

@@ -1,4 +1,4 @@
-/// Which sides of a surface shine.
+/// The sides of a surface that emit light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sides {
     /// Front and back.
@@ -9,7 +9,7 @@ pub enum Sides {
 }
 
 impl Sides {
-    /// Whether the front (or the back) shines.
+    /// Returns whether the front emits light if `front`, otherwise whether the back does.
     pub fn shine(self, front: bool) -> bool {
         front || self == Self::Both
     }

@@ -14,27 +14,27 @@ pub struct Sphere {
     radius: f64,
 }
 
-/// How often a sphere of which a cap is seen is sampled as a whole.
+/// Probability of sampling a sphere as a whole, although mostly only a cap of it is seen.
 const ELSEWHERE: f64 = 0.05;
 
 impl Sphere {
-    /// The sphere of a radius above 0.
+    /// Creates the sphere with a radius above 0.
     pub fn new(center: DVec3, radius: f64) -> Self {
         Self { center, radius }
     }
 
-    /// Whether more than a spot of the surface may lie in another's: only where centers and radii are about the same.
-    /// Spheres that touch from within, their centers 1e-4 radii apart, lie within 1e-9 of their size of one another
-    /// over a hundredth of a radian.
+    /// Returns whether more than a spot of the surface may lie in another sphere's: only if centers and radii are about
+    /// the same. Spheres that touch from within, with centers 1e-4 radii apart, lie within 1e-9 of their size of one
+    /// another over a hundredth of a radian.
     pub fn may_coincide(&self, other: &Self) -> bool {
         let near = 1e-4 * self.radius;
         (self.center - other.center).length() < near && (self.radius - other.radius).abs() < near
     }
 
-    /// Both roots t = n.d -+ s with s^2 = R^2 - |d x n|^2, d = center - origin.
+    /// Returns both roots t = n.d -+ s with s^2 = R^2 - |d x n|^2, d = center - origin.
     ///
-    /// The cross product keeps the distance to the center out of the discriminant: the error of the hit is a few
-    /// roundings of D / R instead of (D / R)^2 (rows S1 to S4 of `tests/stability_shapes.rs`).
+    /// The cross product keeps the distance to the center out of the discriminant. The error of the hit is a few
+    /// roundings times D / R instead of (D / R)^2 (rows S1 to S4 of `tests/stability_shapes.rs`).
     fn roots(&self, ray: &Ray) -> Option<[f64; 2]> {
         let d = self.center - ray.origin;
         let s2 = self.radius * self.radius - d.cross(ray.direction).length_squared();
@@ -51,19 +51,19 @@ impl Sphere {
         (t <= t_max).then(|| Intersection::at(t))
     }
 
-    /// The point of the sphere nearest to a computed hit.
+    /// Returns the point of the sphere nearest to a computed hit.
     pub(super) fn point(&self, hit: DVec3) -> SurfacePoint {
         let normal = (hit - self.center).normalize();
         let arm = normal * self.radius;
         let position = self.center + arm;
-        // Normalizing and the arm take 5 roundings, the sum 1: Pharr et al. 2023, section 6.8.4. The roots of the ray
+        // Normalizing and scaling take 5 roundings, the sum 1: Pharr et al. 2023, section 6.8.4. The roots of a ray
         // that leaves are off by up to 13 more on terms of size R, which do not shrink where the coordinates of center
         // and arm cancel.
         let error = arm.abs() * gamma(18) + position.abs() * gamma(6);
         SurfacePoint { position, error, normal, shading: normal }
     }
 
-    /// The point of the sphere with a unit normal, rounded.
+    /// Returns the point of the sphere with a unit normal, rounded.
     pub(super) fn over(&self, normal: DVec3) -> DVec3 {
         self.center + normal * self.radius
     }
@@ -73,18 +73,18 @@ impl Sphere {
         Bounds { min: self.center - reach, max: self.center + reach }.padded(8)
     }
 
-    /// The ball that fills its box.
+    /// Returns the ball that fills the sphere's box.
     pub(super) fn ball(&self) -> Ball {
         let bounds = self.bounds();
         Ball { center: bounds.center(), radius: 0.5 * bounds.size().max_element() }
     }
 
-    /// The sphere after a map; none after an uneven one, which makes an ellipsoid of it.
+    /// Returns the sphere after a map, or `None` after a non-uniform map, which makes it an ellipsoid.
     pub(super) fn transformed(&self, map: &Transform) -> Option<Self> {
         map.uniform_scale().map(|scale| Self::new(map.point(self.center), self.radius * scale))
     }
 
-    /// The same surface as an ellipsoid.
+    /// Returns the surface as an ellipsoid.
     pub(super) fn ellipsoid(&self) -> Ellipsoid {
         Ellipsoid::new(self.center, DMat3::from_diagonal(DVec3::splat(self.radius)))
     }
@@ -93,8 +93,8 @@ impl Sphere {
         4.0 * PI * self.radius * self.radius
     }
 
-    /// A direction from a point outside, uniform in the cone that the sphere fills; from inside or on it, any
-    /// direction.
+    /// Samples a direction from a point. From outside, it is uniform in the cone that the sphere fills. From inside or
+    /// on the surface, it is uniform over all directions.
     pub(super) fn sample(&self, from: DVec3, u: [f64; 2]) -> ShapeSample {
         match self.cone_from(from) {
             Some(cone) => ShapeSample::of_direction(cone.sample_uniform(u), cone.uniform_pdf()),
@@ -102,13 +102,14 @@ impl Sphere {
         }
     }
 
-    /// Density per steradian with which `sample` draws the direction of a ray that meets the sphere.
+    /// Returns the density per steradian with which `sample` draws the direction of a ray that meets the sphere.
     pub(super) fn pdf(&self, ray: &Ray) -> f64 {
         self.cone_from(ray.origin).map_or(1.0 / (4.0 * PI), |cone| cone.uniform_pdf())
     }
 
-    /// A direction from a point to a sphere of which most often a cap alone is seen, given by its unit normals: from
-    /// outside most lead to points of the cap, uniform by area. The others keep the estimate right where more is seen.
+    /// Samples a direction from a point to a sphere of which mostly only a cap is seen, given by its unit normals. From
+    /// outside, most directions lead to points of the cap, uniformly by area. The others keep the estimate unbiased
+    /// where more is seen.
     pub fn sample_cap(&self, cap: &Cone, from: DVec3, [u, v]: [f64; 2]) -> Option<ShapeSample> {
         let outside = self.is_outside(from);
         if u < ELSEWHERE || !outside {
@@ -117,12 +118,12 @@ impl Sphere {
         }
         let normal = cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v]);
         let direction = self.over(normal) - from;
-        // A point behind the horizon is hidden by one in front, whose own density counts.
+        // A point behind the horizon is hidden by one in front, and the density of that one counts.
         if normal.dot(direction) < 0.0 { ShapeSample::along(direction) } else { None }
     }
 
-    /// Density per steradian with which `sample_cap` draws the direction of a ray that first meets the sphere at a
-    /// distance.
+    /// Returns the density per steradian with which `sample_cap` draws the direction of a ray that first meets the
+    /// sphere at a distance.
     pub fn pdf_cap(&self, cap: &Cone, ray: &Ray, t: f64) -> f64 {
         let everywhere = self.pdf(ray);
         if !self.is_outside(ray.origin) {
@@ -137,24 +138,26 @@ impl Sphere {
         ELSEWHERE * everywhere + (1.0 - ELSEWHERE) * of_cap
     }
 
-    /// A point of the cap that sees some of a ball, denser toward the cap's middle as much as it sends more there.
+    /// Samples a point of the cap that sees some of a ball. The density increases toward the middle of the cap, in the
+    /// same way as the light that the ball receives.
     pub(super) fn sample_emission(&self, toward: &Ball, u: [f64; 2]) -> SurfacePoint {
         let cap = self.ball().cap_toward(toward);
         let u = if cap.is_all() { u } else { [1.0 - u[0].sqrt(), u[1]] };
         self.point(self.over(cap.sample_uniform(u)))
     }
 
-    /// Density per unit of area with which `sample_emission` draws a point.
+    /// Returns the density per unit area with which `sample_emission` draws a point.
     pub(super) fn pdf_emission(&self, toward: &Ball, point: &SurfacePoint) -> f64 {
         let Cone { axis, one_minus_cos } = self.ball().cap_toward(toward);
-        // 1 - cos of the angle from the middle; a far ball gets light by the cosine, which is 0 at the rim.
+        // 1 - cos of the angle from the middle of the cap. A far ball receives light by the cosine, which is 0 at the
+        // rim.
         let here = 0.5 * (point.normal - axis).length_squared();
         let share = if one_minus_cos < 2.0 { 2.0 * (1.0 - here / one_minus_cos).max(0.0) } else { 1.0 };
         share * 2.0 / (one_minus_cos * self.area())
     }
 
-    /// A point from which light may reach a ball: most often of a cap, given by its unit normals and uniform by area,
-    /// else as `sample_emission` draws it.
+    /// Samples a point from which light may reach a ball. Most points lie on a cap, given by its unit normals, and are
+    /// uniform by area. The others are drawn by `sample_emission`.
     pub fn sample_cap_emission(&self, cap: &Cone, toward: &Ball, [u, v]: [f64; 2]) -> SurfacePoint {
         if u < ELSEWHERE {
             return self.sample_emission(toward, [u / ELSEWHERE, v]);
@@ -162,7 +165,7 @@ impl Sphere {
         self.point(self.over(cap.sample_uniform([(u - ELSEWHERE) / (1.0 - ELSEWHERE), v])))
     }
 
-    /// Density per unit of area with which `sample_cap_emission` draws a point for a ball.
+    /// Returns the density per unit area with which `sample_cap_emission` draws a point for a ball.
     pub fn pdf_cap_emission(&self, cap: &Cone, toward: &Ball, point: &SurfacePoint) -> f64 {
         let of_cap = if cap.contains(point.normal) { 2.0 / (cap.one_minus_cos * self.area()) } else { 0.0 };
         ELSEWHERE * self.pdf_emission(toward, point) + (1.0 - ELSEWHERE) * of_cap
@@ -172,7 +175,7 @@ impl Sphere {
         self.cone_from(point).is_some()
     }
 
-    /// The cone of directions in which the sphere is seen from outside.
+    /// Returns the cone of directions in which the sphere is seen from outside.
     fn cone_from(&self, from: DVec3) -> Option<Cone> {
         let cone = Ball { center: self.center, radius: self.radius }.cone_from(from);
         (!cone.is_all()).then_some(cone)

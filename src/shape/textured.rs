@@ -1,4 +1,4 @@
-//! The unit square on shapes with images, by which such lamps are sampled.
+//! Maps of the unit square to shapes with images, by which lamps with images are sampled.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::mem::discriminant;
@@ -7,29 +7,29 @@ use std::sync::Arc;
 use super::{Coordinates, Disc, Intersection, Quad, Shape, SurfacePoint};
 use crate::math::{DVec3, Ray, disk_in_square, square_around_disk, triangle_coordinates, triangle_square};
 
-/// A place of the unit square on a part of a shape.
+/// A point of the unit square, which is mapped to a part of a shape.
 ///
-/// On quads, spheres and the squares around discs it is where the image lies, once; faces of cubes may be turned, and
-/// triangles are folded open into squares.
+/// On quads, spheres and the squares around discs, the unit square is where the image lies, once. Faces of cubes may be
+/// rotated, and triangles are unfolded into squares.
 #[derive(Clone, Copy, Debug)]
 pub struct TexturedPoint {
-    /// In the square, 0 to 1 each way.
+    /// Position in the square, 0 to 1 each way.
     pub at: [f64; 2],
-    /// Area of the surface there for one of the square.
+    /// Area of the surface per unit area of the square at this point.
     pub area: f64,
 }
 
-/// A shape, and where its points lie in an image on it.
+/// A shape with its texture coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct TexturedShape<'a> {
     /// The shape.
     pub shape: &'a Shape,
-    /// Where its points lie.
+    /// Texture coordinates of the shape's points.
     pub coordinates: &'a Coordinates,
 }
 
 impl TexturedShape<'_> {
-    /// The point of a part for a place of the square; none beside a disc, and on a plane.
+    /// Returns the point of a part for a point of the square. Returns `None` outside a disc, and for a plane.
     pub fn point_at(&self, part: u32, place: [f64; 2]) -> Option<SurfacePoint> {
         Some(match (self.coordinates, self.shape) {
             (Coordinates::Sphere { inverse, .. }, Shape::Sphere(sphere)) => {
@@ -40,7 +40,7 @@ impl TexturedShape<'_> {
         })
     }
 
-    /// The coordinates (u, v) for a place of the square; none beside a disc, and on a plane.
+    /// Returns the coordinates (u, v) for a point of the square. Returns `None` outside a disc, and for a plane.
     pub fn coordinates_at(&self, part: u32, place: [f64; 2]) -> Option<[f64; 2]> {
         match self.coordinates {
             Coordinates::Sphere { .. } => Some(place),
@@ -52,7 +52,7 @@ impl TexturedShape<'_> {
         self.coordinates.at(self.shape, intersection, DVec3::ZERO)
     }
 
-    /// The crossing of no distance with a flat part.
+    /// Returns the crossing with a flat part, at distance 0.
     fn crossing_at(&self, part: u32, place: [f64; 2]) -> Option<Intersection> {
         let uv = match self.coordinates {
             Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => disk_in_square(place)?,
@@ -63,7 +63,8 @@ impl TexturedShape<'_> {
         Some(Intersection { t: 0.0, part, uv })
     }
 
-    /// Where the square lies at a crossing of the shape, whose point in the world is known; none on a plane.
+    /// Returns the point of the square at a crossing of the shape, or `None` for a plane. `position` is the crossing in
+    /// the world.
     pub fn place(&self, intersection: &Intersection, position: DVec3) -> Option<TexturedPoint> {
         let at = match self.coordinates {
             Coordinates::Square if matches!(self.shape, Shape::Disc(_)) => square_around_disk(intersection.uv)?,
@@ -75,7 +76,8 @@ impl TexturedShape<'_> {
         Some(TexturedPoint { at, area: self.area(intersection.part, at, position)? })
     }
 
-    /// Area of a part for one of the square at a place, which is a point of the world; none of a plane.
+    /// Returns the area of a part per unit area of the square at a point `place`, which is at `position` in the world.
+    /// Returns `None` for a plane.
     pub fn area(&self, part: u32, place: [f64; 2], position: DVec3) -> Option<f64> {
         Some(match self.shape {
             Shape::Disc(Disc { plane }) | Shape::Quad(Quad { plane }) => plane.area(),
@@ -87,13 +89,13 @@ impl TexturedShape<'_> {
         })
     }
 
-    /// How much of the area of a part an area of the square stands for at a place, on a sphere before it was stretched:
-    /// 1 on average, less near the poles.
+    /// Returns the share of a part's area per unit area of the square at a point: 1 on average, less near the poles of
+    /// a sphere. For an ellipsoid, it refers to the sphere before it was stretched.
     pub fn growth(&self, [_, v]: [f64; 2]) -> f64 {
         if matches!(self.coordinates, Coordinates::Sphere { .. }) { FRAC_PI_2 * libm::sin(PI * v) } else { 1.0 }
     }
 
-    /// How far the two edges of the square reach in the image, by u and by v each.
+    /// Returns how far the two edges of the square reach in the image, each along u and along v.
     pub fn edges(&self, part: u32) -> [[f64; 2]; 2] {
         let corner = |uv| self.at(&Intersection { t: 0.0, part, uv });
         let between = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [(c - a).abs(), (d - b).abs()];
@@ -110,7 +112,7 @@ impl TexturedShape<'_> {
         }
     }
 
-    /// Whether a point of a round shape lies behind a nearer one, seen from a point.
+    /// Returns whether a point of a round shape lies behind a nearer one, as seen from another point.
     pub fn is_behind(&self, point: &SurfacePoint, from: DVec3) -> bool {
         let outside = match self.shape {
             Shape::Sphere(sphere) => sphere.is_outside(from),
@@ -120,7 +122,7 @@ impl TexturedShape<'_> {
         outside && point.normal.dot(point.position - from) >= 0.0
     }
 
-    /// Whether an image lies on two shapes alike, however they are placed.
+    /// Returns whether an image lies on two shapes in the same way, however they are placed.
     pub fn is_like(&self, other: &TexturedShape) -> bool {
         let mesh = |shape: &Shape| shape.mesh().map(Arc::as_ptr);
         match (self.coordinates, other.coordinates) {
@@ -133,10 +135,10 @@ impl TexturedShape<'_> {
     }
 }
 
-/// Flat shapes and meshes know their points by the crossing alone.
+/// A placeholder: the points of flat shapes and meshes depend on the crossing alone.
 const NO_RAY: Ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
 
-/// The point of the unit sphere at a longitude and a latitude of an image.
+/// Returns the point of the unit sphere at a longitude and a latitude of an image.
 fn on_unit_sphere([u, v]: [f64; 2]) -> DVec3 {
     let ((sin, cos), (radius, height)) = (libm::sincos(TAU * (u - 0.5)), libm::sincos(PI * v));
     DVec3::new(radius * sin, -height, radius * cos)

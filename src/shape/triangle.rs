@@ -16,12 +16,12 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The triangle of three points that do not lie on a line.
+    /// Creates the triangle of three points that do not lie on a line.
     pub fn new(points: [DVec3; 3]) -> Self {
         Self { points }
     }
 
-    /// Whether three points span no area: they coincide or lie on a line as exactly as f64 can tell.
+    /// Returns whether three points span no area: they coincide or lie on a line as exactly as f64 can tell.
     pub fn is_degenerate(points: [DVec3; 3]) -> bool {
         scaled_normal(points).length_squared() == 0.0
     }
@@ -35,11 +35,12 @@ impl Triangle {
         SurfacePoint { position, error: self.error(), normal, shading: normal }
     }
 
-    /// Bound of the error of a point.
+    /// Returns a bound of the error of a point.
     fn error(&self) -> DVec3 {
         let [p1, p2, p3] = self.points;
         let largest = p1.abs().max(p2.abs()).max(p3.abs());
-        // The test forms differences as long as the triangle in every coordinate, also in one that is 0 at all corners.
+        // The intersection test forms differences as long as the triangle in every coordinate, even in one that is 0 at
+        // all corners.
         let extent = p1.max(p2).max(p3) - p1.min(p2).min(p3);
         (largest + DVec3::splat(extent.max_element())) * gamma(7)
     }
@@ -49,7 +50,7 @@ impl Triangle {
         p1 * (1.0 - u - v) + p2 * u + p3 * v
     }
 
-    /// Unit normal by the right-hand rule.
+    /// Returns the unit normal by the right-hand rule.
     pub fn normal(&self) -> DVec3 {
         scaled_normal(self.points).normalize()
     }
@@ -67,7 +68,7 @@ impl Triangle {
         0.5 * (p2 - p1).cross(p3 - p1).length()
     }
 
-    /// The outline seen from a point, if it is near.
+    /// Returns the outline as seen from a point, if it is near.
     pub(super) fn outline(&self, from: DVec3) -> Option<Outline> {
         self.outline_from(from, self.middle(), self.squared())
     }
@@ -85,7 +86,7 @@ impl Triangle {
         (p1 + p2 + p3) / 3.0
     }
 
-    /// The square of half the longest edge.
+    /// Returns the square of half the longest edge.
     fn squared(&self) -> f64 {
         let [p1, p2, p3] = self.points;
         let longest = (p2 - p1).length_squared().max((p3 - p1).length_squared()).max((p3 - p2).length_squared());
@@ -97,7 +98,7 @@ impl Triangle {
     }
 }
 
-/// A triangle with what all of its points share.
+/// A triangle with precomputed values that all of its points share.
 #[derive(Clone, Debug)]
 pub struct Facet {
     pub(super) triangle: Triangle,
@@ -125,7 +126,8 @@ impl Facet {
     }
 }
 
-/// The normal, scaled by the largest edge so that tiny and huge triangles neither underflow nor overflow.
+/// Returns the normal of the edges divided by their largest coordinate, so that tiny and huge triangles neither
+/// underflow nor overflow.
 fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
     let (e1, e2) = (p2 - p1, p3 - p1);
     let size = e1.abs().max(e2.abs()).max_element();
@@ -134,8 +136,8 @@ fn scaled_normal([p1, p2, p3]: [DVec3; 3]) -> DVec3 {
 
 /// A ray prepared for watertight tests: sheared so that it runs along +z.
 ///
-/// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*; here in 64 bits, with edge functions that round
-/// to zero decided by their exact sign, so that of two triangles sharing an edge at least one is hit.
+/// Woop, Benthin & Wald 2013, *Watertight Ray/Triangle Intersection*, here in 64 bits. Edge functions that round to
+/// zero are decided by their exact sign, so that of two triangles that share an edge at least one is hit.
 pub(super) struct Sheared {
     origin: DVec3,
     /// The axes that become x, y and z.
@@ -143,8 +145,9 @@ pub(super) struct Sheared {
     shear: DVec3,
 }
 
-/// The bound of 264 chained roundings, on cubes of the largest difference. Nearer to the plane, the side on which a ray
-/// starts is decided exactly, so that a ray leaving any triangle by any offset does not hit it again.
+/// Bound of 264 chained roundings, relative to the cube of the largest difference. Nearer to the plane than this, the
+/// side on which a ray starts is decided exactly, so that a ray that leaves any triangle by any offset does not hit it
+/// again.
 const NEAR: f64 = gamma(264);
 
 impl Sheared {
@@ -159,12 +162,12 @@ impl Sheared {
         Self { origin: ray.origin, order: [x, y, z], shear }
     }
 
-    /// The ray as the test of four triangles at once takes it.
+    /// Returns the ray in the form that the test of four triangles at once takes.
     pub(super) fn line(&self) -> Line {
         Line { origin: self.order.map(|axis| self.origin[axis]), shear: self.shear.to_array(), near: NEAR }
     }
 
-    /// The crossing with 0 < t <= `t_max`, edges and corners included.
+    /// Returns the crossing with 0 < t <= `t_max`, edges and corners included.
     #[inline]
     pub(super) fn intersect(&self, points: [DVec3; 3], t_max: f64) -> Option<Intersection> {
         let [x, y, z] = self.order;
@@ -197,22 +200,22 @@ impl Sheared {
     }
 }
 
-/// a b - c d with the right sign even where the rounded products are equal.
+/// Returns a b - c d, with the right sign even where the rounded products are equal.
 ///
-/// Each fused multiply-add recovers a product's rounding error exactly: Kahan's algorithm, Jeannerod et al. 2013.
+/// Each fused multiply-add gives the rounding error of a product exactly: Kahan's algorithm, Jeannerod et al. 2013.
 pub(super) fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let (ab, cd) = (a * b, c * d);
     (ab - cd) + (a.mul_add(b, -ab) - c.mul_add(d, -cd))
 }
 
-/// An unevaluated sum of two f64: twice the working precision.
+/// An unevaluated sum of two f64, with twice the working precision.
 ///
 /// Hida, Li & Bailey 2001, *Algorithms for Quad-Double Precision Floating Point Arithmetic*, section 3.
 #[derive(Clone, Copy)]
 struct Twice(f64, f64);
 
 impl Twice {
-    /// a + b without rounding (Knuth 1969, theorem B of section 4.2.2).
+    /// Returns a + b without rounding (Knuth 1969, theorem B of section 4.2.2).
     fn sum(a: f64, b: f64) -> Self {
         let sum = a + b;
         let of_b = sum - a;
@@ -235,18 +238,19 @@ impl Twice {
     }
 }
 
-/// p - q without rounding.
+/// Returns p - q without rounding.
 fn difference(p: DVec3, q: DVec3) -> [Twice; 3] {
     std::array::from_fn(|axis| Twice::sum(p[axis], -q[axis]))
 }
 
-/// a . (b x c), right to about 30 digits of the largest term.
+/// Returns a . (b x c), accurate to about 30 digits of the largest term.
 fn triple_product([a, b, c]: [[Twice; 3]; 3]) -> f64 {
     let cross = |i: usize, j: usize| b[i].times(c[j]).minus(b[j].times(c[i]));
     a[0].times(cross(1, 2)).add(a[1].times(cross(2, 0))).add(a[2].times(cross(0, 1))).0
 }
 
-/// The derivatives over a triangle by coordinates given at its corners; none if those lie on a line.
+/// Returns the derivatives over a triangle with respect to coordinates given at its corners, or `None` if those lie on
+/// a line.
 pub(super) fn tangents_over([p1, p2, p3]: [DVec3; 3], at: [[f32; 2]; 3]) -> Option<[DVec3; 2]> {
     let [a, b, c] = at.map(|uv| uv.map(f64::from));
     let [along, across] = [p2 - p1, p3 - p1];

@@ -2,15 +2,16 @@
 
 use super::Vertices;
 
-/// One side of a triangle between two vertices, the lower one first, and whether it runs that way.
+/// One side of a triangle, given by two vertices with the lower one first, and whether it runs in this order.
 struct Side {
     ends: [u32; 2],
     rises: bool,
     triangle: u32,
 }
 
-/// How many triangles are to be turned over so that all of them enclose a volume, vertices at the same place counting
-/// as one: the fewer ones of each piece. 0 if each edge is not shared by two triangles, or no turning closes them.
+/// Returns how many triangles must be flipped for all of them to enclose a volume, where vertices at the same place
+/// count as one. In each piece, the smaller of the two possible numbers is counted. Returns 0 if some edge is not
+/// shared by two triangles, or if no flipping closes the mesh.
 pub(super) fn turned(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
     let merged = vertices.merged();
     let side = |triangle: usize, [a, b]: [u32; 2]| {
@@ -35,11 +36,11 @@ pub(super) fn turned(vertices: &Vertices, triangles: &[[u32; 3]]) -> usize {
 #[derive(Clone, Copy)]
 struct Neighbor {
     triangle: u32,
-    /// Whether one of both is turned over.
+    /// Whether one of the two triangles is flipped.
     is_opposed: bool,
 }
 
-/// The triangles of each piece that are turned over; none if there is a piece with one side only.
+/// Counts the flipped triangles of all pieces. Returns `None` if a piece has only one side.
 fn of_pieces(neighbors: &[Vec<Neighbor>]) -> Option<usize> {
     let (mut is_turned, mut all) = (vec![None; neighbors.len()], 0);
     for first in 0..neighbors.len() {
@@ -88,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_strip_with_one_side_only_has_no_triangle_that_is_turned_over() {
-        // The projective plane of six vertices: each edge is shared by two triangles.
+        // The projective plane with six vertices: each edge is shared by two triangles.
         let plane = [
             [0, 1, 2],
             [0, 2, 3],

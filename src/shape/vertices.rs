@@ -1,6 +1,6 @@
 use crate::math::DVec3;
 
-/// Vertices as exactly as they were given: files hold f32, scene files and transforms f64.
+/// Vertices in the precision in which they were given: files hold f32, scene files and transforms f64.
 #[derive(Clone, Debug)]
 pub enum Vertices {
     /// As a mesh file stores them.
@@ -16,7 +16,7 @@ impl Default for Vertices {
 }
 
 impl Vertices {
-    /// Number of vertices.
+    /// Returns the number of vertices.
     pub fn count(&self) -> usize {
         match self {
             Self::Single(points) => points.len(),
@@ -24,7 +24,7 @@ impl Vertices {
         }
     }
 
-    /// Vertex `index`, widened exactly.
+    /// Returns vertex `index`, widened exactly.
     pub fn at(&self, index: u32) -> DVec3 {
         match self {
             Self::Single(points) => points[index as usize].map(f64::from).into(),
@@ -32,9 +32,9 @@ impl Vertices {
         }
     }
 
-    /// For each vertex, one vertex at the same place.
+    /// Returns, for each vertex, one vertex that stands for all at the same place.
     pub(super) fn merged(&self) -> Vec<u32> {
-        // Adding 0 makes -0 and 0 the same place.
+        // Adding 0 turns -0 into 0: they are the same place.
         let place = |index: u32| self.at(index).to_array().map(|x| (x + 0.0).to_bits());
         let mut order: Vec<u32> = (0..self.count() as u32).collect();
         order.sort_unstable_by_key(|&index| place(index));

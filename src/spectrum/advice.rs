@@ -1,12 +1,12 @@
-//! What an author should know of an index: how far its formula reaches, and which glass it imitates badly.
+//! What an author should know about an index: how far its formula reaches, and which glass it imitates badly.
 
 use super::data::{self, Glass, GlassConstants};
 use super::{Curve, CurveKind, Named};
 
-/// The visible wavelengths by which nearly all light is seen, in nm.
+/// The range of visible wavelengths by which nearly all light is seen, in nm.
 const SEEN_NM: [f64; 2] = [400.0, 700.0];
 
-/// Where a glass of the catalog is used beyond the wavelengths for which its formula holds.
+/// Returns a warning if a glass of the catalog is used beyond the wavelengths for which its formula holds.
 pub fn reach(curve: &Curve) -> Option<String> {
     let CurveKind::Glass(Named { entry: glass, .. }) = &curve.kind else { return None };
     let (from, to) = glass.range_nm;
@@ -15,7 +15,7 @@ pub fn reach(curve: &Curve) -> Option<String> {
     })
 }
 
-/// Where the absorption of a glass of the catalog is used beyond the wavelengths at which it was measured.
+/// Returns a warning if the absorption of a catalog glass is used beyond the wavelengths at which it was measured.
 pub fn reach_of_absorption(glass: &Glass) -> Option<String> {
     let (from, to) = (glass.extinction.first()?[0], glass.extinction.last()?[0]);
     (from > SEEN_NM[0] || to < SEEN_NM[1]).then(|| {
@@ -26,10 +26,11 @@ pub fn reach_of_absorption(glass: &Glass) -> Option<String> {
     })
 }
 
-/// Largest error of a prism's deviation, in degrees, that an imitated glass may have.
+/// Largest error of a prism's deviation that an imitated glass may have, in degrees.
 const TOLERATED_DEGREES: f64 = 0.1;
 
-/// Whether two terms stand where a glass of the catalog with the same n_d and V_d bends light clearly otherwise.
+/// Returns a warning if two terms stand in for a catalog glass of the same n_d and V_d that refracts clearly
+/// differently.
 pub fn imitation(curve: &Curve) -> Option<String> {
     let CurveKind::Cauchy([a, b]) = &curve.kind else { return None };
     let index = |nm: f64| curve.scale * (a + b / (nm * nm * 1e-6));
@@ -44,7 +45,7 @@ pub fn imitation(curve: &Curve) -> Option<String> {
     let apex = if nd < 1.9 { 60.0 } else { 30.0_f64 };
     let deviation = |n: f64| 2.0 * libm::asin(n * libm::sin((0.5 * apex).to_radians())).to_degrees() - apex;
     let error = |nm: f64| deviation(index(nm)) - deviation(nearest.index(nm));
-    // The lines h, g and r, beyond F and C, where two terms leave the glass.
+    // The lines h, g and r, beyond F and C, where two terms depart from the glass.
     let (nm, worst) = [404.6561, 435.8343, 706.5188]
         .map(|nm| (nm, error(nm).abs()))
         .into_iter()
@@ -57,7 +58,7 @@ pub fn imitation(curve: &Curve) -> Option<String> {
     })
 }
 
-/// How an index is known: its source and, where makers share the name, whose it is.
+/// Returns the source of an index and, if several makers share the name, whose glass it is.
 pub fn provenance(curve: &Curve) -> Option<String> {
     let Named { name, entry: glass } = match &curve.kind {
         CurveKind::Glass(glass) => glass,

@@ -4,19 +4,19 @@ use super::draw::Hero;
 use super::visible::{COUNT, START_NM};
 use super::{Draw, Lanes, WavelengthBands};
 
-/// What each lane of one light is to bands of wavelengths: radiance per nm, on the scale on which an even spectrum of 1
-/// is 1 in every band.
+/// The contribution of each lane of one light to bands of wavelengths: radiance per nm, on the scale on which a flat
+/// spectrum of 1 is 1 in every band.
 ///
-/// It is to a spectral image what [`Response`](super::Response) is to red, green and blue: light times the functions of
-/// the lanes, integrated exactly, so that narrow lines of a light stay as narrow as the bands.
+/// It does for spectral images what [`Response`](super::Response) does for red, green and blue: it integrates the light
+/// times the functions of the lanes exactly, so that narrow lines of a light stay as narrow as the bands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandResponse {
     bands: WavelengthBands,
-    /// Lane by lane, the mean over each band of a lane of 1.
+    /// Lane by lane, the mean over each band for a lane value of 1.
     columns: Arc<[f64]>,
-    /// The same light per nm at each entry of the fine grid; of ideal lines, all of it.
+    /// Light per nm at each entry of the fine grid. For ideal lines, all of their light.
     fine: Arc<[f64]>,
-    /// Where those lines are, in nm.
+    /// Wavelengths of the ideal lines, in nm.
     lines_nm: Arc<[f64]>,
 }
 
@@ -26,7 +26,7 @@ impl BandResponse {
         Self { bands, columns: columns.into(), fine: fine.into(), lines_nm: lines_nm.into() }
     }
 
-    /// Adds sums of fixed lanes, while lanes were together, to the bands.
+    /// Adds sums of fixed lanes that never parted to the bands.
     pub fn add_fixed(&self, lanes: &[f64], bands: &mut [f64]) {
         for (lane, column) in lanes.iter().zip(self.columns.chunks_exact(self.bands.count())) {
             if *lane != 0.0 {
@@ -35,7 +35,8 @@ impl BandResponse {
         }
     }
 
-    /// Whether heroes carry light that arrives in lanes; `found` gets the band and the light of each.
+    /// Returns whether heroes carry the light that arrives in `lanes`. If so, `found` gets the band and the light of
+    /// each.
     pub fn heroes<const N: usize>(
         &self,
         draw: &Draw<N>,
@@ -52,7 +53,7 @@ impl BandResponse {
         true
     }
 
-    /// The band of a hero of some weight, and the light it brings there.
+    /// Returns the band of a hero of this weight, and the light that it contributes there.
     pub(super) fn hero(&self, hero: &Hero, weight: f64) -> Option<(usize, f64)> {
         let nm = match hero.below.checked_sub(COUNT) {
             Some(line) => self.lines_nm[line],

@@ -1,4 +1,4 @@
-//! Three bands that hold measured spectra as they look under one light.
+//! Three bands that represent measured spectra as they look under one light.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use super::color::{ColorSpace, apply, weighted_sum};
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Emission, Quantity};
 
-/// The color that a light gives to each wavelength in some primaries; each channel sums to 1.
+/// The color that a light gives to each wavelength, in some primaries. Each channel sums to 1.
 ///
 /// Ward & Eydelberg-Vileshin 2002, *Picture Perfect RGB Rendering Using Spectral Prefiltering and Sharp Color
 /// Primaries*.
@@ -27,7 +27,7 @@ impl Bands {
             .collect();
         let total = |channel: usize, parts: &[(f64, [f64; 3])]| parts.iter().map(|part| part.1[channel]).sum::<f64>();
         let totals = [0, 1, 2].map(|channel| total(channel, &parts));
-        // A channel that the light hardly has would be divided by nearly 0: it follows the strongest one.
+        // A channel that the light hardly contains would be divided by nearly 0: it follows the strongest one instead.
         let strongest = (0..3).fold(0, |most, c| if totals[c] > totals[most] { c } else { most });
         if totals[strongest] <= 0.0 {
             return Self { parts: vec![(visible::FIRST_NM, [1.0; 3])] };
@@ -41,13 +41,13 @@ impl Bands {
         Self { parts }
     }
 
-    /// The mean over each band.
+    /// Returns the mean over each band.
     fn mean(&self, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
         weighted_sum(self.parts.iter().map(|&(nm, share)| (value(nm), share)))
     }
 
-    /// The numbers of a curve: colors as they look under the light; a metal of the catalog so that its reflectance at
-    /// normal incidence does.
+    /// Returns the three numbers of a curve: colors as they look under the light, and the extinction of a catalog metal
+    /// such that its reflectance at normal incidence does.
     pub(super) fn filter(&self, quantity: Quantity, curve: &Curve, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
         match quantity {
             Quantity::Reflectance | Quantity::Transmittance | Quantity::Share => {
@@ -64,8 +64,8 @@ impl Bands {
         }
     }
 
-    /// The index of each band that reflects at normal incidence as the light shows it: ((n - 1) / (n + 1))^2 is the
-    /// mean over the band.
+    /// Returns the index of each band that gives the reflectance at normal incidence that the light shows: the mean of
+    /// ((n - 1) / (n + 1))^2 over the band.
     pub(super) fn index(&self, value: &dyn Fn(f64) -> f64) -> [f64; 3] {
         self.mean(&|nm| normal_reflectance(value(nm), 0.0)).map(|reflectance| {
             let amplitude = reflectance.clamp(0.0, 0.9999).sqrt();
@@ -74,12 +74,12 @@ impl Bands {
     }
 }
 
-/// Reflectance of a metal n - ik at normal incidence (Born & Wolf 1999, section 14.2).
+/// Returns the reflectance of a metal n - ik at normal incidence (Born & Wolf 1999, section 14.2).
 pub fn normal_reflectance(n: f64, k: f64) -> f64 {
     ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k)
 }
 
-/// The extinction with which a metal of index n has a reflectance at normal incidence; 0 if it needs none.
+/// Returns the extinction that gives a metal of index n this reflectance at normal incidence; 0 if it needs none.
 fn extinction(n: f64, reflectance: f64) -> f64 {
     let squared = (reflectance * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - reflectance);
     squared.max(0.0).sqrt()

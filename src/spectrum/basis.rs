@@ -1,4 +1,4 @@
-//! What the lanes of one render stand for, and how spectra are read onto them.
+//! What the lanes of one render stand for, and how spectra are tabulated on them.
 
 use std::sync::Arc;
 
@@ -19,19 +19,19 @@ use super::{
     Curve, CurveKind, Draw, Dye, Emission, Excitable, Quantity, Response, Table, Upsampler, WavelengthBands, Waves,
 };
 
-/// What the lanes of one render stand for: the bins on which all its spectra are tabulated.
+/// What the lanes of one render stand for: the bins in which all its spectra are tabulated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Basis {
     space: ColorSpace,
     upsampler: Arc<Upsampler>,
     pub(super) lanes: LaneKind,
-    /// Where the fixed lanes read an index, in nm, one per bin.
+    /// Wavelengths at which the fixed lanes read an index, in nm, one per bin.
     pub(super) wavelengths_nm: Vec<f64>,
     pub(super) heroes: Option<Heroes>,
     keeps_together: bool,
-    /// How interpolated lanes read reflectances, if lights are known under which they shall look right.
+    /// How interpolated lanes read reflectances, if the lights under which these must look right are known.
     pub(super) projection: Option<Arc<Projection>>,
-    /// Whether lights are as bright as their whole power makes them, which excites dyes.
+    /// Whether the level of a light accounts for its whole power, which excites dyes.
     excites: bool,
 }
 
@@ -40,53 +40,53 @@ pub struct Basis {
 pub(super) struct Heroes {
     pub(super) count: usize,
     pub(super) mixture: Arc<Mixture>,
-    /// Whether they carry all light, drawn independently from sample to sample, and one of them goes on where lanes
-    /// part.
+    /// Whether they carry all light and are drawn independently for each sample, and only one of them continues where
+    /// lanes part.
     pub(super) collapse: bool,
 }
 
-/// What the fixed lanes are.
+/// The kinds of fixed lanes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum LaneKind {
-    /// Linear Rec.709, and what the film's white shows in it.
+    /// Linear Rec.709. The bands are those under the film's white.
     Rgb(Arc<Bands>),
-    /// Linear Rec.2020 under one light.
+    /// Linear Rec.2020. The bands are those under one light.
     Prefiltered(Arc<Bands>),
-    /// Wavelengths: interpolated between the first ones, each with its function; ideal lines by the others.
+    /// Wavelengths. The first ones are interpolated, each with its function; the others are ideal lines.
     Wavelengths(Arc<Vec<Vec<f64>>>),
 }
 
-/// The wavelength by whose index lanes are refracted that stay together, in nm: the helium d line.
+/// The wavelength whose index refracts lanes that stay together, in nm: the helium d line.
 const DIRECTION_NM: f64 = 587.5618;
 
 impl Basis {
-    /// Three bands: red, green and blue, linear Rec.709.
+    /// Creates three bands: red, green and blue of linear Rec.709.
     pub fn rgb(space: ColorSpace) -> Self {
         let white: Curve = CurveKind::Illuminant(Arc::new(space.white_light())).into();
         let bands = Bands::new(ColorSpace::Rec709, &Emission::new(&white, space));
         Self::new(space, LaneKind::Rgb(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
 
-    /// Three bands: red, green and blue of Rec.2020, in which every measured spectrum has the color it has under one
-    /// light.
+    /// Creates three bands: red, green and blue of Rec.2020, in which every measured spectrum has the color that it has
+    /// under one light.
     pub fn prefiltered(space: ColorSpace, light: &Emission) -> Self {
         let bands = Bands::new(ColorSpace::Rec2020, light);
         Self::new(space, LaneKind::Prefiltered(Arc::new(bands)), BAND_WAVELENGTHS_NM.into())
     }
 
-    /// As many wavelengths in equal steps over the part of the spectrum that measured best for their number, and a lane
-    /// of its own for every ideal line.
+    /// Creates `bands` wavelengths in equal steps over the part of the spectrum that measured best for this number, and
+    /// a lane for every ideal line.
     ///
     /// # Panics
-    /// If lanes and lines are none or more than [`MAX_LANES`].
+    /// If there are no lanes and lines, or more than [`MAX_LANES`].
     pub fn bands(space: ColorSpace, bands: usize, lines_nm: &[f64]) -> Self {
         Self::bands_over(space, bands, Self::best_range_nm(bands), lines_nm)
     }
 
-    /// The range in nm of wavelengths for dyes that ultraviolet light excites.
+    /// The range of wavelengths in nm for dyes that are excited by ultraviolet light.
     pub const FROM_ULTRAVIOLET_NM: [f64; 2] = [visible::START_NM, 730.0];
 
-    /// The range in nm over which that many wavelengths show colors best.
+    /// Returns the range in nm over which this number of wavelengths reproduces colors best.
     pub(crate) fn best_range_nm(bands: usize) -> [f64; 2] {
         match bands {
             ..=8 => [410.0, 710.0],
@@ -96,21 +96,21 @@ impl Basis {
         }
     }
 
-    /// As many wavelengths in equal steps from one to another in nm, each in the middle of its step, and a lane of its
-    /// own for every ideal line.
+    /// Creates `bands` wavelengths in equal steps over a range in nm, each in the middle of its step, and a lane for
+    /// every ideal line.
     ///
     /// # Panics
-    /// If lanes and lines are none or more than [`MAX_LANES`].
+    /// If there are no lanes and lines, or more than [`MAX_LANES`].
     pub fn bands_over(space: ColorSpace, bands: usize, [from, to]: [f64; 2], lines_nm: &[f64]) -> Self {
         let step = (to - from) / bands as f64;
         let nodes: Vec<f64> = (0..bands).map(|i| from + (i as f64 + 0.5) * step).collect();
         Self::wavelengths(space, nodes, lines_nm)
     }
 
-    /// Lanes of chosen wavelengths in nm, ascending, between which spectra are interpolated, and lines.
+    /// Creates lanes of chosen wavelengths in nm, ascending, between which spectra are interpolated, and of lines.
     ///
     /// # Panics
-    /// If lanes and lines are none or more than [`MAX_LANES`].
+    /// If there are no lanes and lines, or more than [`MAX_LANES`].
     pub fn wavelengths(space: ColorSpace, nodes_nm: Vec<f64>, lines_nm: &[f64]) -> Self {
         let functions = cardinals(&nodes_nm);
         let mut wavelengths = nodes_nm;
@@ -119,11 +119,11 @@ impl Basis {
         Self::new(space, LaneKind::Wavelengths(Arc::new(functions)), wavelengths)
     }
 
-    /// Reads reflectances and transmittances onto the lanes so that they have their colors under some lights, and let
-    /// as much light excite dyes as they do. Without this, a lane reads them at its own wavelength. Three bands stay as
-    /// they are.
+    /// Makes lanes read reflectances and transmittances so that these have their true colors under the given lights,
+    /// and let the right amount of light excite dyes. Otherwise, a lane reads them at its own wavelength. Three bands
+    /// are not changed.
     ///
-    /// Of an image whose spectra are wanted too, `shown` are the bands: all of their wavelengths count alike there.
+    /// If a spectral image is wanted too, `shown` are its bands: all wavelengths in them count equally.
     pub fn seen_under(self, lights: &[Emission], dyes: &[Dye], shown: Option<&WavelengthBands>) -> Self {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self };
         let mut lines: Vec<[f64; 2]> = self.wavelengths_nm[functions.len()..].iter().map(|&nm| [nm, 0.0]).collect();
@@ -158,7 +158,7 @@ impl Basis {
         Self { projection: Some(Arc::new(projection)), ..self }
     }
 
-    /// The same lanes, and heroes: wavelengths drawn where the lights shine, which go on where lanes part.
+    /// Adds heroes: wavelengths drawn where the lights shine, which continue where lanes part.
     ///
     /// # Panics
     /// If they do not fit.
@@ -168,21 +168,21 @@ impl Basis {
         Self { heroes: Some(heroes), ..self }
     }
 
-    /// For an image whose spectra are wanted too, of which these are the bands: a third of the heroes is drawn evenly
-    /// over them, where the lights shine. Fixed lanes stay as they are.
+    /// Draws a third of the heroes evenly over the bands of a spectral image, where the lights shine. Fixed lanes are
+    /// not changed.
     pub fn showing(self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
         let shown = |heroes: Heroes| Heroes { mixture: Arc::new(heroes.mixture.showing(bands, lights)), ..heroes };
         Self { heroes: self.heroes.map(shown), ..self }
     }
 
-    /// The same lanes, refracted by every index as by that of the d line, but for those that are written as `rgb`. What
-    /// is reflected and let through is each lane's own; of three bands, as the mean over the band is at normal
-    /// incidence.
+    /// Refracts all lanes by the index at the d line, except where an index is given as `rgb`. Reflection and
+    /// transmission still use each lane's own index. For three bands, this is the index whose reflectance at normal
+    /// incidence is the mean over the band.
     pub fn kept_together(self) -> Self {
         Self { keeps_together: true, ..self }
     }
 
-    /// The same lanes, for a scene in which lights excite dyes: heroes are also drawn where they do.
+    /// Prepares the basis for lights that excite dyes: heroes are also drawn where they do.
     pub fn exciting(self, dyes: &[Dye], lights: &[&Curve]) -> Self {
         if self.excites || !self.can_excite() {
             return self;
@@ -198,7 +198,7 @@ impl Basis {
         Self { heroes, excites: true, ..self }
     }
 
-    /// Whether lanes are wavelengths, of which alone it can be said what dyes absorb.
+    /// Returns whether lanes are wavelengths. Only for these is it known what dyes absorb.
     pub fn can_excite(&self) -> bool {
         matches!(self.lanes, LaneKind::Wavelengths(_))
     }
@@ -217,7 +217,7 @@ impl Basis {
         }
     }
 
-    /// The model's name, as it is recorded in a file.
+    /// Returns the model's name as it is recorded in a file.
     pub fn name(&self) -> String {
         let lanes = self.wavelengths_nm.len();
         match (&self.lanes, &self.heroes) {
@@ -228,42 +228,42 @@ impl Basis {
         }
     }
 
-    /// Number of lanes that a camera sample carries.
+    /// Returns the number of lanes that a camera sample carries.
     pub fn lanes(&self) -> usize {
         self.wavelengths_nm.len() + self.heroes.as_ref().map_or(0, |heroes| heroes.count)
     }
 
-    /// Number of lanes that stand for the same light in every sample.
+    /// Returns the number of lanes that stand for the same light in every sample.
     pub fn fixed_lanes(&self) -> usize {
         self.wavelengths_nm.len()
     }
 
-    /// Where the fixed lanes read an index, an absorption or a metal, in nm.
+    /// Returns the wavelengths at which the fixed lanes read an index, an absorption or a metal, in nm.
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }
 
-    /// What makes spectra of `rgb` for this film.
+    /// Returns the upsampler that makes spectra of `rgb` for this film.
     pub fn upsampler(&self) -> &Upsampler {
         &self.upsampler
     }
 
-    /// The film's color space.
+    /// Returns the film's color space.
     pub fn color_space(&self) -> ColorSpace {
         self.space
     }
 
-    /// Whether samples differ in what their lanes stand for.
+    /// Returns whether samples differ in what their lanes stand for.
     pub fn draws_wavelengths(&self) -> bool {
         self.heroes.is_some()
     }
 
-    /// The lanes of a camera sample, for a random number in 0..1.
+    /// Returns the lanes of a camera sample, for a random number in 0..1.
     pub fn draw<const N: usize>(&self, u: f64) -> Draw<N> {
         let Some(Heroes { count, mixture, collapse }) = &self.heroes else { return Draw::fixed(self.fixed_lanes()) };
-        // The last digits of a well spread number are not spread at all.
+        // Independent draws: the last digits of a well-distributed number are not well distributed at all.
         let u = if *collapse { (u * 4096.0).fract() } else { u };
-        // Rotated by equal steps (Wilkie et al. 2014, *Hero Wavelength Spectral Sampling*, equation 13).
+        // Rotated in equal steps (Wilkie et al. 2014, *Hero Wavelength Spectral Sampling*, equation 13).
         let mut heroes = [Default::default(); MAX_HEROES];
         for (i, hero) in heroes[..*count].iter_mut().enumerate() {
             let rotated = u + i as f64 / *count as f64;
@@ -273,7 +273,7 @@ impl Basis {
         if *collapse { draw.collapsing() } else { draw }
     }
 
-    /// A curve, read onto the bins. An emission of wavelengths is an even table: its colors are in its response.
+    /// Tabulates a curve. In a basis of wavelengths, an emission is a flat table: its colors are in its response.
     pub fn tabulate(&self, quantity: Quantity, curve: &Curve) -> Table {
         if let Some(table) = self.patterned(quantity, curve) {
             return table;
@@ -303,12 +303,12 @@ impl Basis {
         }
     }
 
-    /// Where the lanes lie in the spectrum.
+    /// Returns where the lanes lie in the spectrum.
     pub fn waves(&self) -> Waves {
         Waves::new(self.table(self.wavelengths_nm.clone(), &|nm| nm), self.band_widths())
     }
 
-    /// A curve that varies over a surface, read onto the bins; none if it is the same all over.
+    /// Tabulates a curve that varies over a surface; `None` if it does not vary.
     fn patterned(&self, quantity: Quantity, curve: &Curve) -> Option<Table> {
         let part = if quantity == Quantity::Thickness { quantity } else { Quantity::Transmittance };
         let of_filter = |curve: &Curve| self.tabulate(part, curve);
@@ -331,12 +331,12 @@ impl Basis {
         Some(level.varied(Pattern { kind, most, mean: curve.kind.mean() }))
     }
 
-    /// The same number everywhere.
+    /// Returns a table of the same number everywhere.
     fn even(&self, value: f64) -> Table {
         self.table(vec![value; self.fixed_lanes()], &|_| value)
     }
 
-    /// The width of each fixed lane's band over its wavelength; 0 of what reads a single wavelength.
+    /// Returns the width of each fixed lane's band over its wavelength; 0 for a lane that reads a single wavelength.
     fn band_widths(&self) -> Table {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return self.even(0.0) };
         let nodes = &self.wavelengths_nm[..functions.len()];
@@ -348,17 +348,17 @@ impl Basis {
         Table::with_fine(&(0..nodes.len()).map(width).chain(lines).collect::<Vec<_>>(), self.fine(|_| 0.0, |_| 0.0))
     }
 
-    /// The bins, and the fine grid if wavelengths are drawn.
+    /// Creates a table of the bins, and of the fine grid if wavelengths are drawn.
     fn table(&self, bins: Vec<f64>, value: &dyn Fn(f64) -> f64) -> Table {
         Table::with_fine(&bins, self.fine(value, value))
     }
 
-    /// The visible grid and the lines behind it; empty if no wavelengths are drawn.
+    /// Evaluates the visible grid, followed by the lines; empty if no wavelengths are drawn.
     pub(super) fn fine<T: Clone>(&self, smooth: impl Fn(f64) -> T, line: impl Fn(f64) -> T) -> Vec<T> {
         let Some(Heroes { mixture, .. }) = &self.heroes else { return Vec::new() };
         let mut fine: Vec<T> = visible::wavelengths().map(smooth).collect();
         fine.extend(mixture.lines.iter().map(|&nm| line(nm)));
-        // Reading between two entries never runs off the end.
+        // One more entry, so that interpolation never runs off the end.
         fine.push(fine[fine.len() - 1].clone());
         fine
     }
@@ -373,13 +373,13 @@ impl Basis {
         }
     }
 
-    /// The number that stands for a light's brightness in every lane.
+    /// Returns the number that stands for a light's brightness in every lane.
     fn level(&self, emission: &Emission) -> f64 {
         let color = emission.level();
         if self.excites { color.max(f64::from(emission.power() as f32)) } else { color }
     }
 
-    /// What the lanes are worth to the sensor when a path ends in a light of this emission.
+    /// Returns what the lanes are worth to the sensor when a path ends in a light of this emission.
     pub fn response(&self, curve: &Curve) -> Response {
         let curve = &*curve.level();
         let of_matrix = |matrix: &Matrix| Response::new(&[0, 1, 2].map(|lane| matrix.map(|row| row[lane])), Vec::new());
@@ -398,8 +398,8 @@ impl Basis {
         }
     }
 
-    /// What the lanes are worth to a dye when a path ends in a light of this emission: in all three channels, what the
-    /// dye shines, as the number that stands for its brightness. Nothing where lanes are no wavelengths.
+    /// Returns what the lanes are worth to a dye when a path ends in a light of this emission: in all three channels,
+    /// the number that stands for the brightness of what the dye emits. It is 0 if lanes are not wavelengths.
     pub fn excitation(&self, dye: &Excitable, light: &Emission) -> Response {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return Response::new(&[], Vec::new()) };
         let level = self.level(&dye.dye().shines(self.space));
@@ -407,8 +407,8 @@ impl Basis {
         self.response_to(light, functions, excited)
     }
 
-    /// What the lanes bring to bands of wavelengths when a path ends in a light of this emission; none of three bands,
-    /// which are no wavelengths.
+    /// Returns what the lanes contribute to bands of wavelengths when a path ends in a light of this emission; `None`
+    /// for three bands, which are not wavelengths.
     pub fn band_response(&self, curve: &Curve, bands: WavelengthBands) -> Option<BandResponse> {
         let LaneKind::Wavelengths(functions) = &self.lanes else { return None };
         let emission = Emission::new(&curve.level(), self.space);
@@ -435,8 +435,8 @@ impl Basis {
         Some(BandResponse::new(bands, columns, self.fine(at, line), lines_nm))
     }
 
-    /// How each part of a light is spread over the lanes: `carries` gets the number of the part, first those of the
-    /// visible grid, then the lines; a lane; and the share that it carries.
+    /// Distributes each part of a light over the lanes. Calls `carries` with the number of the part (those of the
+    /// visible grid, then the lines), a lane, and the share that the lane carries.
     fn spread(&self, functions: &[Vec<f64>], lines: &[[f64; 2]], mut carries: impl FnMut(usize, usize, f64)) {
         for part in 0..COUNT {
             functions.iter().enumerate().for_each(|(lane, function)| carries(part, lane, function[part]));
@@ -453,8 +453,8 @@ impl Basis {
         }
     }
 
-    /// What each part of a light is worth, over the light's level, integrated with the function of each lane: at the
-    /// wavelengths of the visible grid, per nm, and of the lines.
+    /// Integrates what each part of a light is worth, over the light's level, with the function of each lane. `light`
+    /// holds the worth per nm at the wavelengths of the visible grid, then that of the lines.
     fn response_to(&self, emission: &Emission, functions: &[Vec<f64>], light: Vec<[f64; 3]>) -> Response {
         let level = self.level(emission);
         let per_level = |color: [f64; 3]| if level == 0.0 { [0.0; 3] } else { color.map(|x| x / level) };
@@ -473,7 +473,7 @@ impl Basis {
     }
 }
 
-/// Adds what each part of the light is worth to some measures, as a share of the sum. Light worth nothing adds none.
+/// Adds what each part of the light is worth to some measures, as a share of the sum. Adds nothing if the sum is 0.
 fn measure<const M: usize>(parts: &mut [Part], worth: Vec<[f64; M]>) {
     let sum = worth.iter().flatten().map(|x| x.abs()).sum::<f64>();
     if sum > 0.0 {

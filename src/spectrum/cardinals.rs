@@ -2,8 +2,9 @@
 
 use super::visible;
 
-/// For each node, in nm ascending, the function on the visible grid that is 1 there, 0 at all others and a cubic spline
-/// between: level at the first and last node (clamped) and constant beyond them. At every wavelength they sum to 1.
+/// Returns the cardinal function of each node (in nm, ascending) on the visible grid: 1 at its node, 0 at all others
+/// and a cubic spline in between. It is level at the first and last node (clamped) and constant beyond them. At every
+/// wavelength, the functions sum to 1.
 ///
 /// de Boor 1978, *A Practical Guide to Splines*, chapter IV, equation 4.
 pub(super) fn cardinals(nodes: &[f64]) -> Vec<Vec<f64>> {
@@ -16,7 +17,7 @@ pub(super) fn cardinals(nodes: &[f64]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The slopes at the nodes that make the second derivative continuous; 0 at both ends.
+/// Returns the slopes at the nodes that make the second derivative continuous, and 0 at both ends.
 fn slopes(nodes: &[f64], values: &[f64]) -> Vec<f64> {
     let n = nodes.len();
     // Forward elimination of the tridiagonal system, then back substitution.
@@ -35,7 +36,7 @@ fn slopes(nodes: &[f64], values: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// The cubic with the given values and slopes at both ends of the interval around x.
+/// Evaluates at x the cubic with the given values and slopes at both ends of the interval around x.
 fn evaluate(nodes: &[f64], values: &[f64], slopes: &[f64], x: f64) -> f64 {
     let after = nodes.partition_point(|&node| node < x);
     if after == 0 {

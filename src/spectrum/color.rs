@@ -1,11 +1,11 @@
-//! Film color spaces, their matrices, and the one transfer curve a picture for looking needs.
+//! Film color spaces, their matrices, and the one transfer curve that an image for display needs.
 
 use palette::{LinSrgb, Srgb};
 use serde::{Deserialize, Serialize};
 
 use super::data::{self, Grid};
 
-/// A 3 x 3 matrix, rows first.
+/// A 3 x 3 matrix, row by row.
 pub type Matrix = [[f64; 3]; 3];
 
 /// A linear, scene-referred color space, by its Color Interop Forum identifier.
@@ -26,7 +26,7 @@ pub enum ColorSpace {
     Rec2020,
     /// The primaries of DCI-P3, white D65.
     P3D65,
-    /// CIE 1931 XYZ. White, a bare number as an emission, is D65; the color (1, 1, 1) is the equal-energy spectrum's.
+    /// CIE 1931 XYZ. A bare number as an emission is white, D65; the color (1, 1, 1) is the equal-energy spectrum's.
     Xyz,
 }
 
@@ -44,14 +44,14 @@ pub struct Primaries {
 }
 
 impl Primaries {
-    /// Color to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
+    /// Returns the matrix to CIE XYZ. SMPTE RP 177-1993, *Derivation of Basic Television Color Equations*.
     fn to_xyz(self) -> Matrix {
         let columns = transpose([self.red, self.green, self.blue].map(from_chromaticity_or_dark));
         let strengths = apply(&inverse(&columns), from_chromaticity(self.white));
         columns.map(|row| std::array::from_fn(|i| row[i] * strengths[i]))
     }
 
-    /// The space whose primaries they are, to the four digits with which most are published.
+    /// Returns the space that has these primaries, to the four digits with which most are published.
     pub fn space(self) -> Option<ColorSpace> {
         let list = |it: Self| [it.red, it.green, it.blue, it.white];
         let near = |space: &ColorSpace| {
@@ -61,11 +61,12 @@ impl Primaries {
         ColorSpace::ALL.into_iter().find(near)
     }
 
-    /// Color to linear Rec.709, adapted to its white; none of primaries that lie on one line, or a white without light.
+    /// Returns the matrix to linear Rec.709, adapted to its white; `None` if the primaries lie on a line or white is
+    /// dark.
     pub fn to_rec709(self) -> Option<Matrix> {
         let from_red = |[x, y]: [f64; 2]| [x - self.red[0], y - self.red[1]];
         let [green, blue] = [self.green, self.blue].map(from_red);
-        // Twice the area of the triangle; that of Rec.709 is 0.2. Rounding makes up to 1e-7 of a line in a file.
+        // Twice the area of the triangle, which is 0.2 for Rec.709. Rounding in a file turns a line into up to 1e-7.
         if (green[0] * blue[1] - green[1] * blue[0]).abs() < 1e-6 {
             return None;
         }
@@ -75,11 +76,11 @@ impl Primaries {
     }
 }
 
-/// The matrix from the colors of a file to linear Rec.709, adapted to its white, by what the file says of them: the
-/// `colorInteropID` of their space, or else its primaries and white. Without a word they are Rec.709 itself.
+/// Returns the matrix from the colors of a file to linear Rec.709, adapted to its white. The file describes its colors
+/// by the `colorInteropID` of their space, or else by primaries and white. Without either, they are Rec.709.
 ///
 /// # Errors
-/// Why their meaning is not known.
+/// If the meaning of the colors is not known; the message says why.
 pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> Result<Matrix, String> {
     if let Some(space) = interop_id.and_then(ColorSpace::of_interop_id).or_else(|| primaries?.space()) {
         return Ok(space.to_rec709());
@@ -92,7 +93,7 @@ pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) ->
     }
 }
 
-/// What messages call the colors of a file: the space that it names or that has its primaries, or the primaries.
+/// Returns what messages call a file's colors: the space that it names or whose primaries it has, or the primaries.
 pub fn space_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) -> String {
     let point = |[x, y]: [f64; 2]| format!("({}, {})", x as f32, y as f32);
     match (interop_id, primaries.and_then(Primaries::space), primaries) {
@@ -114,7 +115,7 @@ impl ColorSpace {
     /// Every space.
     pub const ALL: [Self; 6] = [Self::Rec709, Self::AcesCg, Self::Aces2065, Self::Rec2020, Self::P3D65, Self::Xyz];
 
-    /// The `colorInteropID` of the space.
+    /// Returns the `colorInteropID` of the space.
     pub fn interop_id(self) -> &'static str {
         match self {
             Self::Rec709 => "lin_rec709_scene",
@@ -126,12 +127,12 @@ impl ColorSpace {
         }
     }
 
-    /// The space that a `colorInteropID` names.
+    /// Returns the space that a `colorInteropID` names.
     fn of_interop_id(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|space| space.interop_id() == id)
     }
 
-    /// The space that people call by a name such as "sRGB", "ACEScg" or "Rec.2020".
+    /// Returns the space that people call by a name such as "sRGB", "ACEScg" or "Rec.2020".
     pub fn called(name: &str) -> Option<Self> {
         const NAMES: [(&str, ColorSpace); 9] = [
             ("acescg", ColorSpace::AcesCg),
@@ -148,7 +149,7 @@ impl ColorSpace {
         NAMES.iter().find(|(part, _)| name.contains(part)).map(|(_, space)| *space)
     }
 
-    /// Primaries and white: ITU-R BT.709-6 table 1, ITU-R BT.2020-2 table 3, SMPTE RP 431-2 with the white of
+    /// Returns primaries and white: ITU-R BT.709-6 table 1, ITU-R BT.2020-2 table 3, SMPTE RP 431-2 with the white of
     /// BT.709, AMPAS S-2014-004 (AP1) and SMPTE ST 2065-1 (AP0).
     pub fn primaries(self) -> Primaries {
         let of = |red, green, blue, white| Primaries { red, green, blue, white };
@@ -162,12 +163,12 @@ impl ColorSpace {
         }
     }
 
-    /// XYZ of the space's white, Y = 1.
+    /// Returns the XYZ of the space's white, with Y = 1.
     pub fn white(self) -> [f64; 3] {
         from_chromaticity(if self == Self::Xyz { D65 } else { self.primaries().white })
     }
 
-    /// The CIE illuminant that stands for the space's white where a spectrum is needed.
+    /// Returns the CIE illuminant that stands for the space's white where a spectrum is needed.
     pub fn white_light(self) -> Grid {
         let name = match self {
             Self::AcesCg | Self::Aces2065 => "D60",
@@ -176,7 +177,7 @@ impl ColorSpace {
         data::illuminant(name).expect("both whites are in the catalog")
     }
 
-    /// Film color to CIE XYZ.
+    /// Returns the matrix from film color to CIE XYZ.
     pub fn to_xyz(self) -> Matrix {
         if self == Self::Xyz {
             return IDENTITY;
@@ -184,17 +185,17 @@ impl ColorSpace {
         self.primaries().to_xyz()
     }
 
-    /// CIE XYZ to film color.
+    /// Returns the matrix from CIE XYZ to film color.
     pub fn of_xyz(self) -> Matrix {
         inverse(&self.to_xyz())
     }
 
-    /// Film color to linear Rec.709, adapted to its white.
+    /// Returns the matrix from film color to linear Rec.709, adapted to its white.
     pub fn to_rec709(self) -> Matrix {
         if self == Self::Rec709 { IDENTITY } else { inverse(&self.of_rec709()) }
     }
 
-    /// Linear Rec.709 to film color, adapted to the film's white.
+    /// Returns the matrix from linear Rec.709 to film color, adapted to the film's white.
     pub(super) fn of_rec709(self) -> Matrix {
         if self == Self::Rec709 {
             return IDENTITY;
@@ -204,20 +205,20 @@ impl ColorSpace {
     }
 }
 
-/// The matrix that changes nothing.
+/// The identity matrix.
 pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// XYZ of a chromaticity, Y = 1.
+/// Returns the XYZ of a chromaticity, with Y = 1.
 fn from_chromaticity([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// XYZ of a chromaticity that may have y = 0, X + Y + Z = 1.
+/// Returns the XYZ of a chromaticity that may have y = 0, with X + Y + Z = 1.
 fn from_chromaticity_or_dark([x, y]: [f64; 2]) -> [f64; 3] {
     [x, y, 1.0 - x - y]
 }
 
-/// XYZ under one white to the corresponding XYZ under another, the linear Bradford transform (Lam 1985).
+/// Returns the matrix from XYZ under one white to the corresponding XYZ under another: linear Bradford (Lam 1985).
 pub fn adaptation(from: [f64; 3], to: [f64; 3]) -> Matrix {
     const CONES: Matrix = [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
     let (from, to) = (apply(&CONES, from), apply(&CONES, to));
@@ -225,17 +226,17 @@ pub fn adaptation(from: [f64; 3], to: [f64; 3]) -> Matrix {
     product(&inverse(&CONES), &scaled)
 }
 
-/// Matrix times column.
+/// Multiplies a matrix by a column.
 pub fn apply(matrix: &Matrix, [x, y, z]: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * x + row[1] * y + row[2] * z)
 }
 
-/// The sum of colors times their weights.
+/// Returns the sum of colors times their weights.
 pub(super) fn weighted_sum(colors: impl Iterator<Item = (f64, [f64; 3])>) -> [f64; 3] {
     colors.fold([0.0; 3], |sum, (weight, color)| std::array::from_fn(|i| sum[i] + weight * color[i]))
 }
 
-/// The matrix that applies `b`, then `a`.
+/// Returns the matrix that applies `b`, then `a`.
 pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
     transpose(transpose(*b).map(|column| apply(a, column)))
 }
@@ -244,7 +245,7 @@ fn transpose(m: Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
 }
 
-/// The inverse, by cofactors.
+/// Returns the inverse, by cofactors.
 pub fn inverse(m: &Matrix) -> Matrix {
     let cofactor = |i: usize, j: usize| {
         let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
@@ -254,13 +255,13 @@ pub fn inverse(m: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| cofactor(j, i) / determinant))
 }
 
-/// Eight-bit sRGB of a linear Rec.709 color: clipped to 0..1, then encoded (IEC 61966-2-1).
+/// Encodes a linear Rec.709 color as eight-bit sRGB: clips it to 0..1, then encodes it (IEC 61966-2-1).
 pub fn encode_srgb(linear: [f32; 3]) -> [u8; 3] {
     let [red, green, blue] = linear.map(|x| x.clamp(0.0, 1.0));
     Srgb::<u8>::from_linear(LinSrgb::new(red, green, blue)).into()
 }
 
-/// The linear value of an sRGB value, both 0 to 1: IEC 61966-2-1, equations 5 and 6.
+/// Decodes an sRGB value to a linear one, both 0 to 1: IEC 61966-2-1, equations 5 and 6.
 pub fn decode_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
@@ -284,7 +285,7 @@ mod tests {
         assert_near(apply(&ColorSpace::Xyz.of_rec709(), [1.0; 3]), ColorSpace::Xyz.white(), 1e-12);
     }
 
-    /// IEC 61966-2-1, equation 7 prints the Rec.709 matrix to four decimals.
+    /// IEC 61966-2-1, equation 7, prints the Rec.709 matrix to four decimals.
     #[test]
     fn the_rec709_matrix_is_the_published_one() {
         let m = ColorSpace::Rec709.to_xyz();

@@ -1,4 +1,4 @@
-//! Spectra of which every value is known.
+//! Spectra whose value is known at every wavelength.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -10,8 +10,8 @@ use super::{Quantity, Texture, Upsampler};
 /// Where the bands of the `rgb` basis read an index, in nm: the hydrogen C, mercury e and hydrogen F lines.
 pub(super) const BAND_WAVELENGTHS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 
-/// A spectrum: what a scene file says of one, with names looked up and files read. In a scene it is a number, a name of
-/// the catalog, or a table with one kind and maybe a `scale`.
+/// A spectrum as a scene file gives it, with names looked up and files read. In a scene it is a number, a name of the
+/// catalog, or a table with one kind and an optional `scale`.
 ///
 /// ```toml
 /// reflectance = 0.5
@@ -38,19 +38,19 @@ pub struct Curve {
     pub kind: CurveKind,
     /// A factor on every value.
     pub scale: f64,
-    /// CIE Y of an emission, in place of a factor.
+    /// CIE Y of an emission, instead of a factor.
     pub luminance: Option<f64>,
 }
 
 /// The kinds of spectra.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveKind {
-    /// The same at every wavelength; as an emission, that many times the film's white.
+    /// The same value at every wavelength; as an emission, that multiple of the film's white.
     Number(f64),
     /// Linear Rec.709; as an index, its values at 656.27, 546.07 and 486.13 nm.
     Rgb([f64; 3]),
-    /// (wavelength in nm, value), ascending, at least one; linear between, flat beyond the ends, as an emission 0
-    /// there.
+    /// (wavelength in nm, value), ascending, at least one. Linear in between and constant beyond the ends, where an
+    /// emission is 0.
     Samples(Vec<[f64; 2]>),
     /// n = A + B / wavelength^2, wavelength in um (Cauchy 1836).
     Cauchy([f64; 2]),
@@ -61,13 +61,13 @@ pub enum CurveKind {
         /// The squared resonance wavelengths C, in um^2.
         c: Vec<f64>,
     },
-    /// The index of a glass of the catalog.
+    /// The index of a catalog glass.
     Glass(Named<Glass>),
-    /// n or k of a metal of the catalog.
+    /// The index n or the extinction k of a catalog metal.
     Metal(Named<Metal>),
-    /// A measured reflectance of the catalog.
+    /// A measured reflectance from the catalog.
     Reflectance(Named<Grid>),
-    /// A standard light of the catalog, Y = 1.
+    /// A standard light from the catalog, Y = 1.
     Illuminant(Arc<Grid>),
     /// A blackbody's light at a temperature in kelvin, Y = 1.
     Blackbody(f64),
@@ -77,9 +77,9 @@ pub enum CurveKind {
     Texture(Texture),
     /// A checkerboard of two spectra.
     Checker {
-        /// What is on its squares, first on the one that begins at (0, 0).
+        /// The spectra of its squares. The first one is on the square that begins at (0, 0).
         cells: Box<[Curve; 2]>,
-        /// Squares in a unit of u and of v.
+        /// Number of squares per unit of u and of v.
         repeat: [f64; 2],
     },
 }
@@ -87,14 +87,14 @@ pub enum CurveKind {
 /// An entry of the catalog.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named<T> {
-    /// The name by which it was asked for: several entries may share it.
+    /// The name by which it was looked up. Several entries may share it.
     pub name: String,
     /// The entry.
     pub entry: Arc<T>,
 }
 
 impl<T> Named<T> {
-    /// An entry that a name stands for.
+    /// Creates the entry that a name stands for.
     pub fn new(name: &str, entry: T) -> Self {
         Self { name: name.to_owned(), entry: Arc::new(entry) }
     }
@@ -113,29 +113,29 @@ impl From<CurveKind> for Curve {
 }
 
 impl CurveKind {
-    /// The index of a glass of the catalog, if there is one of that name.
+    /// Returns the index of the catalog glass of that name, if there is one.
     pub fn glass(name: &str) -> Option<Self> {
         data::glass(name).map(|glass| Self::Glass(Named::new(name, glass)))
     }
 
-    /// n and k of a metal of the catalog, if there is one of that name.
+    /// Returns n and k of the catalog metal of that name, if there is one.
     pub fn metal(name: &str) -> Option<Self> {
         data::metal(name).map(|metal| Self::Metal(Named::new(name, metal)))
     }
 
-    /// A measured reflectance of the catalog, if there is one of that name.
+    /// Returns the measured reflectance of that name from the catalog, if there is one.
     pub fn reflectance(name: &str) -> Option<Self> {
         data::reflectance(name).map(|reflectance| Self::Reflectance(Named::new(name, reflectance)))
     }
 
-    /// A standard light of the catalog, if there is one of that name.
+    /// Returns the standard light of that name from the catalog, if there is one.
     pub fn illuminant(name: &str) -> Option<Self> {
         data::illuminant(name).map(|light| Self::Illuminant(Arc::new(light)))
     }
 
-    /// The value at any wavelength in nm before scaling, without a spectrum being made of `rgb`. Of a light it is the
-    /// power, of which ideal lines have none between them; of what varies over a surface it is what its image or
-    /// pattern is a factor on.
+    /// Returns the value at any wavelength in nm before scaling, without upsampling `rgb` to a spectrum. For a light
+    /// this is the power, and ideal lines have none between them. For a curve that varies over a surface, it is the
+    /// value that its image or pattern multiplies.
     pub fn values(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
         match self {
             Self::Number(value) => Box::new(move |_| *value),
@@ -160,7 +160,7 @@ impl CurveKind {
         }
     }
 
-    /// The three numbers of a color that is no measured spectrum.
+    /// Returns the three numbers of a color, if it is not a measured spectrum.
     pub fn rgb(&self) -> Option<[f64; 3]> {
         match self {
             Self::Number(value) => Some([*value; 3]),
@@ -169,7 +169,7 @@ impl CurveKind {
         }
     }
 
-    /// Of what varies over a surface, the mean of red, green and blue at a place of it; else of all of it.
+    /// Returns the mean of red, green and blue at a place of the surface or, if the curve does not vary, everywhere.
     pub fn brightness_at(&self, uv: [f64; 2]) -> f64 {
         match self {
             Self::Texture(texture) => texture.color(uv).iter().map(|&x| f64::from(x)).sum::<f64>() / 3.0,
@@ -181,7 +181,7 @@ impl CurveKind {
         }
     }
 
-    /// Texels or squares in a unit of u and of v; none of what does not vary over a surface.
+    /// Returns the number of texels or squares per unit of u and of v; `None` if it does not vary over a surface.
     pub fn resolution(&self) -> Option<[f64; 2]> {
         match self {
             Self::Texture(Texture { image, placement }) => {
@@ -193,7 +193,7 @@ impl CurveKind {
         }
     }
 
-    /// The mean of its red, green and blue over the surface.
+    /// Returns the mean of red, green and blue over the surface.
     pub(super) fn mean(&self) -> f64 {
         match self {
             Self::Texture(texture) => texture.image.mean().iter().sum::<f64>() / 3.0,
@@ -204,10 +204,10 @@ impl CurveKind {
 }
 
 impl Curve {
-    /// The value at any wavelength in nm.
+    /// Returns the value at any wavelength in nm.
     ///
-    /// An `rgb` reflectance or transmittance becomes the smooth spectrum that `upsampler` finds, an absorption a
-    /// multiple of one, an index is read linearly between 486.13, 546.07 and 656.27 nm.
+    /// An `rgb` reflectance or transmittance becomes the smooth spectrum that `upsampler` finds, and an absorption
+    /// becomes a multiple of one. An index is interpolated linearly between 486.13, 546.07 and 656.27 nm.
     pub fn reader(&self, quantity: Quantity, upsampler: &Upsampler) -> Box<dyn Fn(f64) -> f64 + '_> {
         let scale = self.scale;
         match (&self.kind, quantity) {
@@ -224,13 +224,13 @@ impl Curve {
         }
     }
 
-    /// The value at any wavelength in nm, without a spectrum being made of `rgb`.
+    /// Returns the value at any wavelength in nm, without upsampling `rgb` to a spectrum.
     pub fn values(&self, quantity: Quantity) -> Box<dyn Fn(f64) -> f64 + '_> {
         let (scale, values) = (self.scale, self.kind.values(quantity));
         Box::new(move |nm| scale * values(nm))
     }
 
-    /// Whether the curve is made of wavelengths, so that three numbers cannot hold it.
+    /// Returns whether the curve is defined by wavelength, so that three numbers cannot hold it.
     pub fn is_measured(&self) -> bool {
         match &self.kind {
             CurveKind::Texture(_) => false,
@@ -239,12 +239,12 @@ impl Curve {
         }
     }
 
-    /// Whether it is different at different places of a surface.
+    /// Returns whether it varies over a surface.
     pub fn varies(&self) -> bool {
         matches!(self.kind, CurveKind::Texture(_) | CurveKind::Checker { .. })
     }
 
-    /// Whether it is 0 everywhere, as an emission.
+    /// Returns whether it is 0 everywhere, as an emission.
     pub fn is_dark(&self) -> bool {
         let dark = match &self.kind {
             CurveKind::Number(value) => *value == 0.0,
@@ -255,7 +255,7 @@ impl Curve {
         dark || self.scale == 0.0 || self.luminance == Some(0.0)
     }
 
-    /// What an image or a checkerboard filters, as an emission: white; any other curve is itself.
+    /// Returns the emission that an image or a checkerboard filters: white. Any other curve is returned as it is.
     pub fn level(&self) -> Cow<'_, Self> {
         match self.varies() {
             true => Cow::Owned(Self { scale: self.scale, ..1.0.into() }),
@@ -263,8 +263,8 @@ impl Curve {
         }
     }
 
-    /// Spectra that stand for all that are on the surface: the curve itself if it is the same everywhere, the curves of
-    /// a checkerboard, the mean and the most colorful texel of an image.
+    /// Returns spectra that represent all those on the surface: the curve itself if it does not vary, the curves of a
+    /// checkerboard, or the mean and the most colorful texel of an image.
     pub fn shades(&self) -> Vec<Cow<'_, Self>> {
         match &self.kind {
             CurveKind::Texture(Texture { image, .. }) => {
@@ -276,7 +276,7 @@ impl Curve {
         }
     }
 
-    /// The lightest texel of each image on the surface, as a curve.
+    /// Returns the lightest texel of each image on the surface, as a curve.
     pub fn lightest(&self) -> Vec<Cow<'_, Self>> {
         match &self.kind {
             CurveKind::Texture(Texture { image, .. }) => {
@@ -288,26 +288,26 @@ impl Curve {
     }
 }
 
-/// Linear between samples, flat beyond the ends.
+/// Interpolates linearly between samples; constant beyond the ends.
 pub(super) fn interpolate(samples: &[[f64; 2]], x: f64) -> f64 {
     crate::math::interpolate(samples, x)[1]
 }
 
-/// The squared index of a Sellmeier curve at a wavelength in um.
+/// Returns the squared index of a Sellmeier curve at a wavelength in um.
 pub fn sellmeier_squared(b: &[f64], c: &[f64], um: f64) -> f64 {
     let w2 = um * um;
     1.0 + b.iter().zip(c).map(|(b, c)| b * w2 / (w2 - c)).sum::<f64>()
 }
 
-/// Cauchy's A and B (um^2) from n_d and V_d, with the lines C 656.27, d 587.56 and F 486.13 nm.
+/// Returns Cauchy's A and B (um^2) for n_d and V_d, with the lines C 656.27, d 587.56 and F 486.13 nm.
 pub fn cauchy_through(nd: f64, vd: f64) -> [f64; 2] {
     let inverse_square = |nm: f64| 1.0 / (nm * 1e-3 * nm * 1e-3);
     let b = (nd - 1.0) / (vd * (inverse_square(486.13) - inverse_square(656.27)));
     [nd - b * inverse_square(587.56), b]
 }
 
-/// Radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901), with c2 = 1.438776877e-2 m K
-/// (CODATA 2018).
+/// Returns the radiance of a blackbody per wavelength, relative to that at 560 nm (Planck 1901). The constant c2 is
+/// 1.438776877e-2 m K (CODATA 2018).
 fn planck(kelvin: f64, wavelength_nm: f64) -> f64 {
     const SECOND_RADIATION_CONSTANT: f64 = 1.438_776_877e7; // nm K
     const REFERENCE_NM: f64 = 560.0;

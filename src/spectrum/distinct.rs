@@ -3,7 +3,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::{Curve, CurveKind};
 
-/// What is made of curves, made once for all that are alike: thousands of lamps often are.
+/// Values made from curves, each made once for all equal curves: thousands of lamps are often alike.
 #[derive(Debug)]
 pub struct Distinct<T> {
     known: HashMap<u64, Vec<(Curve, T)>>,
@@ -16,7 +16,7 @@ impl<T> Default for Distinct<T> {
 }
 
 impl<T: Clone> Distinct<T> {
-    /// What was made of a curve like this one, or is made now.
+    /// Returns the value that was made from an equal curve, or makes it now.
     pub fn of(&mut self, curve: &Curve, make: impl FnOnce(&Curve) -> T) -> T {
         let alike = self.known.entry(hash(curve)).or_default();
         if let Some((_, known)) = alike.iter().find(|(other, _)| other == curve) {
@@ -28,10 +28,10 @@ impl<T: Clone> Distinct<T> {
     }
 }
 
-/// A number for a curve, equal for curves that are alike.
+/// Returns a hash that is the same for equal curves.
 fn hash(curve: &Curve) -> u64 {
     let mut hasher = DefaultHasher::new();
-    // 0 and -0 are alike.
+    // 0 and -0 are equal.
     let mut add = |x: f64| (x + 0.0).to_bits().hash(&mut hasher);
     add(curve.scale);
     add(curve.luminance.unwrap_or(-1.0));

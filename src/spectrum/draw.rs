@@ -3,41 +3,41 @@ use super::table::{Pattern, PatternKind};
 use super::texture::square;
 use super::{Lanes, Table};
 
-/// What each lane of a camera sample stands for: the fixed lanes read the bins of every table, heroes a wavelength that
-/// was drawn for this sample.
+/// What each lane of a camera sample stands for. Fixed lanes read the bins of every table. Heroes read a wavelength
+/// that was drawn for this sample.
 ///
-/// Heroes ride along until lanes part for the first time. From there on they alone count, and the fixed lanes count on
-/// all paths on which lanes never part: the two sets of paths share no path. The tracer passes the draw on and never
-/// looks inside.
+/// Heroes ride along until lanes part for the first time. From there on only they count, and the fixed lanes count on
+/// all paths on which lanes never part: the two sets of paths have no path in common. The tracer passes the draw on and
+/// never looks inside.
 #[derive(Clone, Debug)]
 pub struct Draw<const N: usize> {
     fixed: usize,
     heroes: [Hero; MAX_HEROES],
     count: usize,
-    /// The factor on what a hero is worth while lanes are together, and after they parted; none where the fixed lanes
+    /// Factor on what a hero is worth, while lanes are together and after they parted; `None` where the fixed lanes
     /// carry the light.
     hero_factors: [Option<f64>; 2],
-    /// What each lane counts while the lanes are together, and after they parted.
+    /// Weight of each lane, while lanes are together and after they parted.
     shares: [Lanes<N>; 2],
 }
 
-/// Most heroes of one camera sample.
+/// Maximum number of heroes of one camera sample.
 pub const MAX_HEROES: usize = 8;
 
-/// A wavelength drawn at random, as a place on the fine grid of every table.
+/// A wavelength drawn at random, as a position on the fine grid of every table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hero {
     /// Entry of the fine grid at or below the wavelength.
     pub(super) below: usize,
-    /// The part of the step to the next entry.
+    /// Fraction of the step to the next entry.
     pub(super) fraction: f64,
-    /// One over the number of heroes times the density with which the wavelength was drawn, in nm; for an ideal line
-    /// times its probability.
+    /// One over the product of the number of heroes and the pdf of the wavelength, per nm. For an ideal line, its
+    /// probability takes the place of the pdf.
     pub(super) factor: f64,
 }
 
 impl<const N: usize> Draw<N> {
-    /// The draw in which lane i reads bin i; lanes beyond the last bin stay empty.
+    /// Creates the draw in which lane i reads bin i; lanes beyond the last bin stay empty.
     ///
     /// # Panics
     /// If there are more bins than lanes.
@@ -45,7 +45,7 @@ impl<const N: usize> Draw<N> {
         Self::with_heroes(bins, &[])
     }
 
-    /// Fixed lanes, and after them heroes.
+    /// Creates a draw of fixed lanes, followed by heroes.
     pub(super) fn with_heroes(fixed: usize, heroes: &[Hero]) -> Self {
         let count = heroes.len();
         assert!(fixed + count <= N, "{fixed} bins and {count} heroes do not fit into {N} lanes");
@@ -56,7 +56,7 @@ impl<const N: usize> Draw<N> {
         Self { fixed, heroes, count, hero_factors: [None, (count > 0).then_some(1.0)], shares }
     }
 
-    /// The same heroes, which carry all light until lanes part; there all but the first end.
+    /// Makes the heroes carry all light until lanes part, where all but the first end.
     pub(super) fn collapsing(self) -> Self {
         let heroes = self.count as f64;
         let together = self.shares[1] * (1.0 / heroes as f32);
@@ -69,7 +69,7 @@ impl<const N: usize> Draw<N> {
         self.hero_factors[usize::from(parted)]
     }
 
-    /// A weight: one number per lane.
+    /// Reads a weight: one number per lane.
     pub fn read(&self, table: &Table) -> Lanes<N> {
         let mut lanes = Lanes(*table.weights());
         for (lane, hero) in self.heroes() {
@@ -78,7 +78,7 @@ impl<const N: usize> Draw<N> {
         lanes
     }
 
-    /// A weight at a place of a surface; the place counts only where the table varies.
+    /// Reads a weight at a place of a surface; the place matters only if the table varies.
     #[inline]
     pub fn read_at(&self, table: &Table, uv: [f64; 2]) -> Lanes<N> {
         match table.pattern() {
@@ -87,8 +87,8 @@ impl<const N: usize> Draw<N> {
         }
     }
 
-    /// A color, of numbers as large as they may be, as a factor on white light; the table is that of an image. What has
-    /// no colors tints nothing.
+    /// Reads a color as a factor on white light, from the table of an image. The color's numbers have no upper limit. A
+    /// table without colors does not tint.
     pub fn tint(&self, table: &Table, color: [f32; 3]) -> Lanes<N> {
         match table.pattern().map(|pattern| &pattern.kind) {
             Some(PatternKind::Image(_, palette)) => self.tint_by(palette.as_ref(), color, false),
@@ -116,7 +116,7 @@ impl<const N: usize> Draw<N> {
         Lanes::from_fn(|i| product[i].min(pattern.most))
     }
 
-    /// A refractive index: one number per lane with all its digits.
+    /// Reads a refractive index: one number per lane, in full precision.
     pub fn read_exact(&self, table: &Table) -> [f64; N] {
         let mut lanes = *table.fixed();
         for (lane, hero) in self.heroes() {
@@ -125,7 +125,7 @@ impl<const N: usize> Draw<N> {
         lanes
     }
 
-    /// One of these numbers.
+    /// Reads the number of a single lane, in full precision.
     pub fn read_lane(&self, table: &Table, lane: usize) -> f64 {
         match self.heroes[..self.count].get(lane.wrapping_sub(self.fixed)) {
             Some(hero) => table.between(hero.below, hero.fraction),
@@ -133,7 +133,7 @@ impl<const N: usize> Draw<N> {
         }
     }
 
-    /// The smallest and the largest number that a lane reads in a table.
+    /// Returns the smallest and the largest number that a lane reads in a table.
     #[inline]
     pub fn range(&self, table: &Table) -> [f64; 2] {
         self.heroes().fold(table.fixed_range, |[least, most], (_, hero)| {
@@ -142,41 +142,41 @@ impl<const N: usize> Draw<N> {
         })
     }
 
-    /// Whether a lane stands for the same light in every sample.
+    /// Returns whether a lane stands for the same light in every sample.
     pub fn is_fixed(&self, lane: usize) -> bool {
         lane < self.fixed
     }
 
-    /// How much each lane counts when a single number must stand for a throughput: while lanes are together their
-    /// shares sum to 1. A hero that has parted counts in full, for it goes on alone in place of all: so its way is
-    /// followed as far as if no lanes had parted, which on glass measured half the noise for a third more time than
-    /// counting it by its part.
+    /// Returns the weight of each lane where a single number must stand for a throughput. While lanes are together, the
+    /// weights sum to 1. A hero that has parted counts in full, because it continues alone in place of all lanes. Its
+    /// path is then followed as far as if no lanes had parted, which on glass measured half the noise for a third more
+    /// time than counting it by its share.
     pub fn shares(&self, parted: bool) -> &Lanes<N> {
         &self.shares[usize::from(parted)]
     }
 
-    /// How many rays together stand for one path.
+    /// Returns the number of rays that together stand for one path.
     pub fn siblings(&self, parted: bool) -> f64 {
         f64::from(self.shares(parted).sum())
     }
 
-    /// The lanes that cross a surface at which lanes part: the heroes, or all where there are none.
+    /// Returns 1 for the lanes that cross a surface where lanes part: the heroes, or all lanes if there are no heroes.
     pub fn parting(&self) -> Lanes<N> {
         Lanes::from_fn(|i| if self.shares[1][i] == 0.0 { 0.0 } else { 1.0 })
     }
 
-    /// The lanes a camera ray starts with: 1 where a lane stands for something.
+    /// Returns the lanes with which a camera ray starts: 1 for each lane that stands for something.
     pub fn start(&self) -> Lanes<N> {
         Lanes::from_fn(|i| if i < self.fixed + self.count { 1.0 } else { 0.0 })
     }
 
-    /// The lane of each hero, and the hero.
+    /// Returns the lane of each hero, and the hero.
     pub(super) fn heroes(&self) -> impl Iterator<Item = (usize, &Hero)> {
         (self.fixed..).zip(&self.heroes[..self.count])
     }
 
-    /// The lane of each hero, the hero, and the weight of the light that arrives in that lane; none where the fixed
-    /// lanes carry the light.
+    /// Returns the lane of each hero, the hero, and the weight of the light that arrives in that lane; `None` if the
+    /// fixed lanes carry the light.
     pub(super) fn carrying(&self, lanes: &Lanes<N>, parted: bool) -> Option<impl Iterator<Item = (usize, &Hero, f64)>> {
         let factor = self.hero_factor(parted)?;
         Some(self.heroes().map(move |(lane, hero)| (lane, hero, factor * hero.factor * f64::from(lanes[lane]))))

@@ -1,55 +1,55 @@
 use super::visible;
 use super::{ColorSpace, Curve, Emission, Quantity, Upsampler};
 
-/// What a surface absorbs and shines again at other wavelengths: fluorescence.
+/// A dye, which absorbs light and emits it again at other wavelengths: fluorescence.
 ///
-/// Of a photon absorbed at the wavelength i, a photon leaves at the wavelength o by a chance of Q e(o) per nm, with Q
-/// the quantum yield and e the dye's emission in photons, of integral 1. Of power it is Q a(i) e(o) i / o, with a the
-/// share that is absorbed: a matrix of rank 1 (Donaldson 1954, *Spectrophotometry of Fluorescent Pigments*).
+/// A photon absorbed at the wavelength i leaves at the wavelength o with the probability Q e(o) per nm. Q is the
+/// quantum yield, and e is the dye's emission in photons, with integral 1. In terms of power this is Q a(i) e(o) i / o,
+/// where a is the absorbed share: a matrix of rank 1 (Donaldson 1954, *Spectrophotometry of Fluorescent Pigments*).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dye {
-    /// The share of the light that it absorbs, 0 to 1.
+    /// Share of the light that it absorbs, 0 to 1.
     pub absorption: Curve,
-    /// What it shines, in power per nm on any scale.
+    /// Its emission, in power per nm on any scale.
     pub emission: Curve,
-    /// How many photons leave of one that is absorbed, 0 to 1.
+    /// Number of photons emitted for each that is absorbed, 0 to 1.
     pub quantum_yield: f64,
 }
 
 /// How brightly a dye shines under a light, as a factor on its emission.
 #[derive(Clone, Debug)]
 pub struct Excited {
-    /// What each wavelength of the grid adds, per nm.
+    /// Contribution of each wavelength of the grid, per nm.
     pub smooth: Vec<f64>,
-    /// What each ideal line adds: its wavelength in nm, and the factor.
+    /// Contribution of each ideal line: its wavelength in nm, and the factor.
     pub lines: Vec<[f64; 2]>,
 }
 
 impl Excited {
-    /// What the ideal lines at exactly a wavelength in nm add.
+    /// Returns the contribution of the ideal lines at exactly a wavelength in nm.
     pub(super) fn by_line(&self, wavelength_nm: f64) -> f64 {
         self.lines.iter().filter(|line| line[0] == wavelength_nm).map(|line| line[1]).sum()
     }
 
-    /// What all parts of the light add: first those of the grid, then the lines.
+    /// Returns the contributions of all parts of the light: first those of the grid, then the lines.
     pub fn parts(&self) -> impl Iterator<Item = f64> {
         self.smooth.iter().copied().chain(self.lines.iter().map(|line| line[1]))
     }
 }
 
-/// A dye with all that is the same under every light.
+/// A dye with all values that are the same under every light.
 #[derive(Clone, Debug)]
 pub struct Excitable<'a> {
     dye: &'a Dye,
-    /// The share of light that it absorbs, on the visible grid.
+    /// Share of light that it absorbs, on the visible grid.
     absorbed: Vec<f64>,
     power_per_nm: f64,
-    /// All that it shines, as power on the scale of even spectra.
+    /// Total power that it emits, on the scale of flat spectra.
     shines: f64,
 }
 
 impl Excitable<'_> {
-    /// The dye.
+    /// Returns the dye.
     pub fn dye(&self) -> &Dye {
         self.dye
     }
@@ -66,27 +66,27 @@ impl Excitable<'_> {
     }
 }
 
-/// Where a surface would give back more light than it gets.
+/// A wavelength at which a surface would return more light than it receives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyExcess {
     /// The wavelength of the light, in nm.
     pub nm: f64,
-    /// The share of it that is reflected or absorbed by the dye.
+    /// Share of the light that is reflected, or absorbed by the dye.
     pub taken: f64,
-    /// The share of its power that is reflected or shines again.
+    /// Share of the light's power that is reflected or emitted again.
     pub given: f64,
 }
 
-/// What the digits of curves may add up to.
+/// Tolerance for the rounded digits of curves.
 const ROUNDED: f64 = 1e-9;
 
 impl Dye {
-    /// The share of light that it absorbs at a wavelength in nm, 0 to 1.
+    /// Returns the share of light that it absorbs at a wavelength in nm, 0 to 1.
     pub fn absorbed(&self) -> Box<dyn Fn(f64) -> f64 + '_> {
         self.absorption.values(Quantity::Excitation)
     }
 
-    /// Power that it shines, over that which it absorbs times the wavelength in nm at which it does: 1 / nm.
+    /// Returns the emitted power over the product of the absorbed power and its wavelength in nm: 1 / nm.
     pub fn power_per_nm(&self) -> f64 {
         self.power_of(&self.shines(ColorSpace::default()))
     }
@@ -96,7 +96,7 @@ impl Dye {
         if photons > 0.0 { self.quantum_yield * shines.spectrum().iter().sum::<f64>() / photons } else { 0.0 }
     }
 
-    /// The first wavelength at which a surface of a reflectance would give back more light than it gets.
+    /// Returns the first wavelength at which a surface with this reflectance would return more light than it receives.
     pub fn excess(&self, reflectance: &Curve) -> Option<EnergyExcess> {
         let (upsampler, absorbed, power) =
             (Upsampler::new(ColorSpace::default()), self.absorbed(), self.power_per_nm());
@@ -109,12 +109,12 @@ impl Dye {
         visible::wavelengths().map(at).find(|found| found.taken.max(found.given) > 1.0 + ROUNDED)
     }
 
-    /// The light that it shines, for a film.
+    /// Returns the light that it emits, for a film.
     pub fn shines(&self, space: ColorSpace) -> Emission {
         Emission::new(&self.emission, space)
     }
 
-    /// It as lights excite it.
+    /// Prepares the dye for lights: computes what is the same under all of them.
     pub fn excitable(&self) -> Excitable<'_> {
         let (shines, absorbed) = (self.shines(ColorSpace::default()), self.absorbed());
         let total = shines.spectrum().iter().sum::<f64>();

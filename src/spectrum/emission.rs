@@ -1,18 +1,18 @@
-//! What a light shines, with its true colors: a spectrum on the visible grid and ideal lines.
+//! The emission of a light with its true colors: a spectrum on the visible grid, and ideal lines.
 
 use super::color::{ColorSpace, Matrix, apply, weighted_sum};
 use super::curve::interpolate;
 use super::visible::{self, color_matching};
 use super::{Curve, CurveKind, Quantity, Upsampler};
 
-/// The light of one curve, scaled so that sums with the color matching functions give film values.
+/// The emission of one curve, scaled so that sums with the color matching functions give film values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Emission {
-    /// Per nm, on the visible grid.
+    /// Power per nm, on the visible grid.
     spectrum: Vec<f64>,
     /// (wavelength in nm, power).
     lines: Vec<[f64; 2]>,
-    /// Factors on XYZ, which make the white of numbers and `rgb` exactly the film's.
+    /// Factors on XYZ that make the white of numbers and `rgb` exactly the film's.
     correction: [f64; 3],
     film_of_xyz: Matrix,
 }
@@ -20,23 +20,23 @@ pub struct Emission {
 /// The film colors of a light, wavelength by wavelength.
 #[derive(Clone, Debug)]
 pub struct FilmColors {
-    /// The wavelengths in nm.
+    /// Wavelengths in nm.
     pub wavelengths_nm: Vec<f64>,
     columns: Vec<[f64; 3]>,
 }
 
 impl FilmColors {
-    /// The film color of what is left of the light at each wavelength.
+    /// Returns the film color of the light, of which `left` remains at each wavelength.
     pub fn color(&self, left: &[f64]) -> [f64; 3] {
         weighted_sum(left.iter().copied().zip(self.columns.iter().copied()))
     }
 }
 
 impl Emission {
-    /// The emission of a curve on a film.
+    /// Creates the emission of a curve on a film.
     ///
-    /// A flat spectrum of 1, and an illuminant or a blackbody alone, have Y = 1; numbers and `rgb` are multiples of the
-    /// film's white.
+    /// A flat spectrum of 1 has Y = 1, as have an illuminant and a blackbody by themselves. Numbers and `rgb` are
+    /// multiples of the film's white.
     pub fn new(curve: &Curve, space: ColorSpace) -> Self {
         let curve = &*curve.level();
         let (mut lines, unit) = (Vec::new(), 1.0 / visible::luminous());
@@ -66,23 +66,24 @@ impl Emission {
         emission
     }
 
-    /// The spectrum, per nm on the visible grid, without the lines.
+    /// Returns the spectrum, per nm on the visible grid, without the lines.
     pub fn spectrum(&self) -> &[f64] {
         &self.spectrum
     }
 
-    /// Ideal lines: (wavelength in nm, power).
+    /// Returns the ideal lines: (wavelength in nm, power).
     pub fn lines(&self) -> &[[f64; 2]] {
         &self.lines
     }
 
-    /// Radiance per nm and of lines for a number of the spectrum, on the scale on which an even spectrum of 1 is 1 and
-    /// has Y = 1.
+    /// Returns the factor from numbers of the spectrum to radiance, per nm and of lines, on the scale on which a flat
+    /// spectrum of 1 is 1 and has Y = 1.
     pub(super) fn unit(&self) -> f64 {
         visible::luminous() * self.correction[1]
     }
 
-    /// All of its power over the width of the visible range, on the scale on which an even spectrum of 1 is 1 per nm.
+    /// Returns all of its power over the width of the visible range, on the scale on which a flat spectrum of 1 is 1
+    /// per nm.
     pub(super) fn power(&self) -> f64 {
         self.total() * self.unit() / (visible::LAST_NM - visible::FIRST_NM)
     }
@@ -91,23 +92,23 @@ impl Emission {
         self.spectrum.iter().sum::<f64>() + self.lines.iter().map(|line| line[1]).sum::<f64>()
     }
 
-    /// The power of the ideal lines at exactly a wavelength.
+    /// Returns the power of the ideal lines at exactly a wavelength.
     pub(super) fn power_of_line(&self, wavelength_nm: f64) -> f64 {
         self.lines.iter().filter(|line| line[0] == wavelength_nm).map(|line| line[1]).sum()
     }
 
-    /// CIE XYZ.
+    /// Returns its CIE XYZ.
     pub fn xyz(&self) -> [f64; 3] {
         let sum = self.uncorrected();
         std::array::from_fn(|i| sum[i] * self.correction[i])
     }
 
-    /// The number that stands for its brightness in every lane: its strongest film channel.
+    /// Returns the number that stands for its brightness in every lane: its strongest film channel.
     pub(super) fn level(&self) -> f64 {
         f64::from(self.color().iter().fold(0.0, |most: f64, x| most.max(x.abs())) as f32)
     }
 
-    /// Film color.
+    /// Returns its film color.
     pub fn color(&self) -> [f64; 3] {
         apply(&self.film_of_xyz, self.uncorrected())
     }
@@ -117,12 +118,12 @@ impl Emission {
         weighted_sum(self.spectrum.iter().copied().zip(visible::observer()).chain(lines))
     }
 
-    /// Film color of a power of 1 at a wavelength.
+    /// Returns the film color of a power of 1 at a wavelength.
     pub fn film(&self, wavelength_nm: f64) -> [f64; 3] {
         apply(&self.film_of_xyz, color_matching(wavelength_nm))
     }
 
-    /// Film color per nm at each wavelength of the visible grid, without the lines.
+    /// Returns the film color per nm at each wavelength of the visible grid, without the lines.
     pub fn columns(&self) -> impl Iterator<Item = [f64; 3]> {
         self.spectrum
             .iter()
@@ -130,7 +131,7 @@ impl Emission {
             .map(|(power, cmf)| apply(&self.film_of_xyz, cmf.map(|x| power * x)))
     }
 
-    /// Its film colors: at the wavelengths of the visible grid, per nm, and at its lines.
+    /// Returns its film colors: per nm at the wavelengths of the visible grid, and at its lines.
     pub fn film_colors(&self) -> FilmColors {
         let of_line = |&[nm, power]: &[f64; 2]| self.film(nm).map(|x| x * power);
         FilmColors {
@@ -139,12 +140,12 @@ impl Emission {
         }
     }
 
-    /// Whether two lights differ by a factor at most, to a part in a million.
+    /// Returns whether two lights look alike apart from a factor, to a part in a million.
     pub fn looks_like(&self, other: &Self) -> bool {
         self.film_of_xyz == other.film_of_xyz && self.has_shape_of(other)
     }
 
-    /// Whether two spectra differ by a factor at most, whatever is made of them.
+    /// Returns whether two spectra are alike apart from a factor, whatever colors are made of them.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let (a, b) = (self.total(), other.total());
         let same = |x: f64, y: f64| (x / a - y / b).abs() <= 1e-6;
@@ -154,7 +155,7 @@ impl Emission {
     }
 }
 
-/// A multiple of the film's white on the grid, and the factors on XYZ that make the white exactly the film's.
+/// Returns the spectrum of a color on the grid, and the factors on XYZ that make white exactly the film's.
 fn colored(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
     let (mut spectrum, correction) = visible::white(space);
     let [r, g, b] = rgb;
@@ -168,13 +169,13 @@ fn colored(rgb: [f64; 3], space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
     (spectrum, correction)
 }
 
-/// A sampled emission on the grid: 0 beyond its ends. Where samples lie beside the grid, or where light ends at once,
-/// each step gets the light around it, weighed by the hat function of its step: narrow lines keep their power wherever
-/// they peak, and no table is wider than it is.
+/// Reads a sampled emission on the grid, 0 beyond its ends. If samples lie between the steps of the grid, or if light
+/// ends abruptly, each step gets the light around it, weighted by a hat function. Narrow lines then keep their power
+/// wherever they peak, and no table gets wider than it is.
 fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     let (Some(first), Some(last)) = (samples.first(), samples.last()) else { return 0.0 };
     let at = |nm: f64| if (first[0]..=last[0]).contains(&nm) { interpolate(samples, nm) } else { 0.0 };
-    // What is even over the visible range has its light in every step of it.
+    // A table that is flat over the visible range has its full value in every step of it.
     let is_whole = |nm: f64| [visible::START_NM, visible::FIRST_NM, visible::LAST_NM].contains(&nm);
     let ends_at_once = |end: &[f64; 2]| end[1] != 0.0 && !is_whole(end[0]) && (end[0] - wavelength_nm).abs() < 1.0;
     let is_end = |end: &[f64; 2]| end[0] == wavelength_nm && is_whole(end[0]);
@@ -188,10 +189,10 @@ fn on_grid(samples: &[[f64; 2]], wavelength_nm: f64) -> f64 {
     ends.extend(samples[begin..].iter().map(|sample| sample[0]).take_while(|&nm| nm < to));
     ends.sort_by(f64::total_cmp);
     let weighed = |nm: f64| at(nm) * (1.0 - (nm - wavelength_nm).abs());
-    // Simpson's rule is exact: between two ends the light is linear and so is the hat.
+    // Simpson's rule is exact: between two ends, both the light and the hat are linear.
     let part = |a: f64, b: f64| {
         let inside = |t: f64| weighed(a + t * (b - a));
-        // Just inside the ends, where an emission may begin or stop at once.
+        // Evaluated just inside the ends, where an emission may begin or stop abruptly.
         (b - a) / 6.0 * (inside(1e-9) + 4.0 * inside(0.5) + inside(1.0 - 1e-9))
     };
     ends.windows(2).map(|pair| part(pair[0], pair[1])).sum()
@@ -210,7 +211,7 @@ mod tests {
             let sum: f64 = visible::wavelengths().map(|nm| on_grid(&samples, nm)).sum();
             assert!((sum - 2.0 * (to - from)).abs() < 1e-6, "{from} to {to} nm: {sum}");
         }
-        // So has a narrow line between the steps.
+        // A narrow line between the steps keeps its light, too.
         for [peak, width] in [[450.0, 1.0], [450.5, 1.0], [459.66, 1.3], [546.1, 1.7], [402.5, 2.5], [611.3, 4.2]] {
             let line = [[peak - width, 0.0], [peak, 3.0], [peak + width, 0.0]];
             let sum: f64 = visible::wavelengths().map(|nm| on_grid(&line, nm)).sum();
@@ -218,7 +219,7 @@ mod tests {
         }
         let even = [[300.0, 2.0], [500.5, 2.0], [830.0, 2.0]];
         assert!(visible::wavelengths().all(|nm| (on_grid(&even, nm) - 2.0).abs() < 1e-12));
-        // A table of whole wavelengths that ends dark has no jump: each step has the light at its wavelength.
+        // A table of whole wavelengths that ends at 0 has no jump: each step has the light at its wavelength.
         let peak = [[540.0, 0.0], [550.0, 1.0], [560.0, 0.0]];
         for nm in visible::wavelengths() {
             let expected = (1.0 - 0.1 * (nm - 550.0).abs()).max(0.0);

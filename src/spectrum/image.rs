@@ -5,7 +5,7 @@ use super::color::decode_srgb;
 pub struct Image {
     width: usize,
     height: usize,
-    /// 3, or 1 where all three are the same.
+    /// 3, or 1 if all three are the same.
     channels: usize,
     texels: Texels,
     mean: [f64; 3],
@@ -13,10 +13,10 @@ pub struct Image {
     most_colorful: [f32; 3],
 }
 
-/// Rows from the top, the numbers of a texel side by side.
+/// The numbers of a texel side by side, in rows from the top.
 #[derive(Clone, Debug)]
 enum Texels {
-    /// Of 8 bits, and what each of the 256 stands for.
+    /// Numbers of 8 bits, and the value of each of the 256.
     Bytes(Vec<u8>, Box<[f32; 256]>),
     Floats(Vec<f32>),
 }
@@ -24,20 +24,20 @@ enum Texels {
 /// What lies beyond the edges of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// The image again.
+    /// The image repeats.
     #[default]
     Repeat,
-    /// Its edge, on and on.
+    /// The texels of its edge continue.
     Clamp,
-    /// The image again, every other time as in a mirror.
+    /// The image repeats, mirrored every other time.
     Mirror,
 }
 
 impl Image {
-    /// An image of 8 bits a number, which stand for sRGB or for 256 even steps from 0 to 1.
+    /// Creates an image with 8 bits per number, which stand for sRGB or for 256 even steps from 0 to 1.
     ///
     /// # Panics
-    /// If it has no texels, a row that is not full, or neither 1 nor 3 channels.
+    /// If it has no texels, an incomplete row, or neither 1 nor 3 channels.
     pub fn of_bytes(width: usize, channels: usize, bytes: Vec<u8>, srgb: bool) -> Self {
         let value = |byte: usize| {
             let even = byte as f64 / 255.0;
@@ -46,20 +46,20 @@ impl Image {
         Self::new(width, channels, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
     }
 
-    /// An image of 8 bits a number, which stand for -128/127 to 1 so that 128 is exactly 0: the directions of a normal
-    /// map.
+    /// Creates an image with 8 bits per number, which stand for -128/127 to 1 so that 128 is exactly 0: the directions
+    /// of a normal map.
     ///
     /// # Panics
-    /// As [`Image::of_bytes`].
+    /// In the same cases as [`Image::of_bytes`].
     pub fn of_signed_bytes(width: usize, channels: usize, bytes: Vec<u8>) -> Self {
         let value = |byte: usize| ((byte as f64 - 128.0) / 127.0) as f32;
         Self::new(width, channels, Texels::Bytes(bytes, Box::new(std::array::from_fn(value))))
     }
 
-    /// An image of linear numbers: finite, and not negative where they are light.
+    /// Creates an image of linear numbers, which are finite, and not negative if they are light.
     ///
     /// # Panics
-    /// As [`Image::of_bytes`].
+    /// In the same cases as [`Image::of_bytes`].
     pub fn of_floats(width: usize, channels: usize, floats: Vec<f32>) -> Self {
         Self::new(width, channels, Texels::Floats(floats))
     }
@@ -93,17 +93,17 @@ impl Image {
         image
     }
 
-    /// Texels of a row.
+    /// Returns the number of texels in a row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// A texel, counted from the upper left corner.
+    /// Returns a texel, counted from the upper left corner.
     pub fn texel(&self, column: usize, row: usize) -> [f32; 3] {
         self.at(row * self.width + column)
     }
@@ -121,7 +121,7 @@ impl Image {
         }
     }
 
-    /// What lies at a place, in texels from the upper left corner: a smooth passage between their middles.
+    /// Interpolates linearly between the centers of texels, at a place in texels from the upper left corner.
     pub fn linear(&self, place: [f64; 2], [across, down]: [Wrap; 2]) -> [f32; 3] {
         let [x, y] = place.map(|x| x - 0.5);
         let (left, above) = (x.floor(), y.floor());
@@ -136,32 +136,32 @@ impl Image {
         })
     }
 
-    /// The mean of all texels.
+    /// Returns the mean of all texels.
     pub fn mean(&self) -> [f64; 3] {
         self.mean
     }
 
-    /// The largest number, with the column and row of the first texel that has it.
+    /// Returns the largest number, with the column and row of the first texel that has it.
     pub fn brightest(&self) -> ([usize; 2], f32) {
         let (at, value) = self.brightest;
         ([at % self.width, at / self.width], value)
     }
 
-    /// The texel whose numbers have the largest sum.
+    /// Returns the texel whose numbers have the largest sum.
     pub fn lightest(&self) -> [f32; 3] {
         let sum = |texel: &[f32; 3]| texel.iter().sum::<f32>();
         let texels = (0..self.width * self.height).map(|at| self.at(at));
         texels.max_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or_default()
     }
 
-    /// The first of the texels that are farthest from gray, in proportion to their brightness.
+    /// Returns the first of the texels that are farthest from gray, relative to their brightness.
     pub fn most_colorful(&self) -> [f32; 3] {
         self.most_colorful
     }
 }
 
 impl Wrap {
-    /// Where in the image a place lies, 0 to 1.
+    /// Returns where a place lies in the image, 0 to 1.
     pub(super) fn place(self, x: f64) -> f64 {
         match self {
             Self::Repeat => x - x.floor(),
@@ -173,7 +173,7 @@ impl Wrap {
         }
     }
 
-    /// The column or row at a position, which may lie one beyond either end.
+    /// Returns the column or row at a position, which may lie one beyond either end.
     pub fn entry(self, at: isize, count: usize) -> usize {
         match self {
             Self::Repeat => at.rem_euclid(count as isize) as usize,

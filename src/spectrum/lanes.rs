@@ -1,16 +1,16 @@
 use std::ops::{Add, AddAssign, Index, Mul};
 
-/// N numbers that travel together; arithmetic is lane by lane, and no lane has a meaning here.
+/// N numbers that travel together. Arithmetic is lane by lane, and lanes have no meaning here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(16))]
 pub struct Lanes<const N: usize>(pub [f32; N]);
 
-/// Some of up to 32 lanes.
+/// A subset of up to 32 lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LaneSet(u32);
 
 impl LaneSet {
-    /// The lanes in their order.
+    /// Returns the lanes in their order.
     #[inline(always)]
     pub fn iter(self) -> impl Iterator<Item = usize> {
         let mut left = self.0;
@@ -21,7 +21,7 @@ impl LaneSet {
         })
     }
 
-    /// The only lane; none if there are more or none.
+    /// Returns the only lane; `None` if there are several or none.
     #[inline(always)]
     pub fn only(self) -> Option<usize> {
         self.0.is_power_of_two().then(|| self.0.trailing_zeros() as usize)
@@ -34,7 +34,7 @@ impl<const N: usize> Lanes<N> {
     /// All lanes 1.
     pub const ONE: Self = Self([1.0; N]);
 
-    /// Lane `i` holds `value(i)`.
+    /// Creates lanes in which lane `i` holds `value(i)`.
     #[inline]
     pub fn from_fn(mut value: impl FnMut(usize) -> f32) -> Self {
         let mut lanes = Self::ZERO;
@@ -44,24 +44,24 @@ impl<const N: usize> Lanes<N> {
         lanes
     }
 
-    /// The sum over the lanes, in a fixed order.
+    /// Returns the sum over the lanes, in a fixed order.
     pub fn sum(&self) -> f32 {
         self.0.iter().sum()
     }
 
-    /// The lanes that are not 0.
+    /// Returns the lanes that are not 0.
     #[inline(always)]
     pub fn not_zero(&self) -> LaneSet {
         const { assert!(N <= 32) };
         LaneSet((0..N).rev().fold(0, |bits, i| bits << 1 | u32::from(self.0[i] != 0.0)))
     }
 
-    /// 1 in some lanes, 0 in the others.
+    /// Returns 1 in the given lanes, and 0 in the others.
     pub fn one_in(lanes: LaneSet) -> Self {
         Self::from_fn(|i| (lanes.0 >> i & 1) as f32)
     }
 
-    /// Whether every lane is 0.
+    /// Returns whether every lane is 0.
     pub fn is_zero(&self) -> bool {
         self.0.iter().all(|&x| x == 0.0)
     }

@@ -1,41 +1,41 @@
-//! How the lanes of two paths are brought together that meet, one from the camera and one from a light, each with
-//! wavelengths drawn of its own.
+//! How the lanes of two paths that meet are combined. One path comes from the camera and one from a light, and each has
+//! drawn its own wavelengths.
 //!
-//! The fixed lanes of both are the same. Where only one path has parted, what the other carries is smooth and is read
-//! at the parted one's wavelengths between its fixed lanes, by the functions with which responses are integrated. Where
-//! both have parted, two wavelengths count as one that fall into the same bin: like the disc in which photons are
-//! gathered, bins blur where light goes, and keep its color.
+//! Both paths have the same fixed lanes. If only one path has parted, the light of the other is smooth. It is
+//! interpolated between its fixed lanes at the wavelengths of the parted path, by the functions with which responses
+//! are integrated. If both have parted, two wavelengths match if they fall into the same bin. Like the disc in which
+//! photons are gathered, bins blur where light goes, but keep its color.
 
 use super::basis::{Heroes, LaneKind};
 use super::draw::Hero;
 use super::visible::{self, COUNT};
 use super::{BandResponse, Basis, Draw, Lanes, Response};
 
-/// What connects the lanes of one basis.
+/// What connects the lanes of two paths of one basis.
 #[derive(Clone, Debug, Default)]
 pub struct Matching<const N: usize> {
-    /// How much each fixed lane counts at each entry of the fine grid; empty if no wavelengths are drawn.
+    /// Weight of each fixed lane at each entry of the fine grid; empty if no wavelengths are drawn.
     weights: Vec<Lanes<N>>,
-    /// The bin of each entry.
+    /// The bin of each entry of the fine grid.
     bins: Vec<u32>,
-    /// How likely a wavelength is drawn from each bin.
+    /// Probability of drawing a wavelength from each bin.
     chances: Vec<f64>,
 }
 
-/// A wavelength that has gone its own way.
+/// The wavelength of a lane that has parted.
 #[derive(Clone, Copy, Debug)]
 pub struct Wavelength {
     hero: Hero,
 }
 
 impl Wavelength {
-    /// What a light at this wavelength is worth.
+    /// Returns what light at this wavelength is worth.
     pub fn worth(&self, response: &Response) -> [f64; 3] {
         response.hero(&self.hero)
     }
 
-    /// The band into which light of this wavelength falls, and how much it is there: light of a film color that was
-    /// found by a response, and is looked at by the same light's response to bands.
+    /// Returns the band of this wavelength and how much light falls into it. The light is given as a film color that
+    /// was found by `response`; `bands` is the response of the same light to bands.
     pub fn band(&self, color: [f64; 3], response: &Response, bands: &BandResponse) -> Option<(usize, f64)> {
         let one = response.hero(&self.hero);
         let strongest = (0..3).fold(0, |most, c| if one[c].abs() > one[most].abs() { c } else { most });
@@ -43,14 +43,14 @@ impl Wavelength {
     }
 }
 
-/// The bin of each entry of the fine grid, and how likely each is, for the probabilities of steps and lines.
+/// Returns the bin of each entry of the fine grid and the probability of each bin, from those of steps and lines.
 fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<f64>) {
     let steps = COUNT - 1;
     let widest = ((visible::LAST_NM - visible::FIRST_NM) / parts).max(1.0);
     let (mut bins, mut chances, mut width) = (Vec::new(), vec![0.0], 0.0);
     for (entry, probability) in probabilities.enumerate() {
         if entry == steps {
-            // Nothing is drawn beyond the last wavelength of the grid; lines follow.
+            // No wavelength is drawn beyond the last one of the grid; the lines follow.
             bins.push(chances.len() as u32 - 1);
         }
         let last = chances.len() - 1;
@@ -59,7 +59,7 @@ fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<
             width = 0.0;
         }
         let last = chances.len() - 1;
-        // Steps below the visible range, of which none is drawn, make no bin wider.
+        // No wavelength is drawn from steps below the visible range: they do not make a bin wider.
         width = if chances[last] == 0.0 { 1.0 } else { width + 1.0 };
         chances[last] += probability;
         bins.push(last as u32);
@@ -68,8 +68,8 @@ fn bins(probabilities: impl Iterator<Item = f64>, parts: f64) -> (Vec<u32>, Vec<
 }
 
 impl<const N: usize> Matching<N> {
-    /// What connects the lanes of a basis; a bin holds one part in `parts` of the draws and of the visible range at
-    /// most, or a single nm or line.
+    /// Creates what connects the lanes of a basis. A bin holds at most one part in `parts` of the draws and of the
+    /// visible range, or else a single nm or line.
     pub fn new(basis: &Basis, parts: f64) -> Self {
         let (LaneKind::Wavelengths(functions), Some(Heroes { mixture, .. })) = (&basis.lanes, &basis.heroes) else {
             return Self::default();
@@ -86,8 +86,8 @@ impl<const N: usize> Matching<N> {
         Self { weights: basis.fine(between, line), bins, chances }
     }
 
-    /// Whether heroes carry light that arrives in lanes; `found` gets the lane, the wavelength
-    /// and the weight of each.
+    /// Returns whether heroes carry the light that arrives in `lanes`. If so, calls `found` with the lane, the
+    /// wavelength and the weight of each.
     pub fn alone(draw: &Draw<N>, lanes: Lanes<N>, parted: bool, mut found: impl FnMut(usize, Wavelength, f64)) -> bool {
         let Some(heroes) = draw.carrying(&lanes, parted) else { return false };
         for (lane, hero, weight) in heroes.filter(|(.., weight)| *weight != 0.0) {
@@ -96,12 +96,12 @@ impl<const N: usize> Matching<N> {
         true
     }
 
-    /// What fixed lanes hold, read at a wavelength.
+    /// Interpolates fixed lanes at a wavelength.
     pub fn read(&self, wavelength: &Wavelength, lanes: Lanes<N>) -> f64 {
         f64::from(self.between(&wavelength.hero, lanes))
     }
 
-    /// What fixed lanes hold, read at the wavelengths of heroes.
+    /// Interpolates fixed lanes at the wavelengths of heroes.
     pub fn onto_heroes(&self, draw: &Draw<N>, lanes: Lanes<N>) -> Lanes<N> {
         let mut read = Lanes::ZERO;
         for (lane, hero) in draw.heroes() {
@@ -110,7 +110,7 @@ impl<const N: usize> Matching<N> {
         read
     }
 
-    /// What heroes hold that count as one with a wavelength.
+    /// Returns the light of the heroes that match a wavelength.
     pub fn shared(&self, draw: &Draw<N>, wavelength: &Wavelength, lanes: Lanes<N>, parted: bool) -> f64 {
         let bin = self.bins[wavelength.hero.below];
         let same = |hero: &Hero| self.bins[hero.below] == bin;

@@ -1,4 +1,4 @@
-//! The wavelengths that matter: from where heroes are drawn.
+//! The wavelengths that matter, from which heroes are drawn.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,21 +7,21 @@ use super::visible::{self, COUNT, ULTRAVIOLET};
 use super::{Emission, Excited, WavelengthBands};
 use crate::math::Distribution;
 
-/// A distribution of wavelengths: a density, constant over each nm, and ideal lines, which are drawn as they are.
+/// A distribution of wavelengths: a density that is constant over each nm, and ideal lines with a probability each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Mixture {
     /// Each step of the visible grid, then each line.
     entries: Distribution,
-    /// The ideal lines, in nm, as they follow the visible grid on the fine grid of every table.
+    /// The ideal lines in nm, as they follow the visible grid on the fine grid of every table.
     pub(super) lines: Vec<f64>,
 }
 
-/// Share of the wavelengths drawn by what lights send; the others are drawn by what the eye sees of an even spectrum.
+/// Share of wavelengths drawn by what lights emit. The others are drawn by what the eye sees of a flat spectrum.
 const BY_LIGHT: f64 = 0.9;
 
 impl Mixture {
-    /// Nine tenths light times color matching functions, an equal share for every different light, one tenth color
-    /// matching functions alone. Where all light is in ideal lines, only they are drawn.
+    /// Mixes nine tenths of light times color matching functions, with an equal share for each different light, and one
+    /// tenth of color matching functions alone. If all light is in ideal lines, only these are drawn.
     pub(super) fn new(lights: &[Emission]) -> Self {
         let mut lines: Vec<f64> = lights.iter().flat_map(|light| light.lines()).map(|line| line[0]).collect();
         lines.sort_by(f64::total_cmp);
@@ -51,8 +51,9 @@ impl Mixture {
         Self { entries: Distribution::new(probabilities), lines }
     }
 
-    /// A third of the wavelengths drawn evenly where lights shine within the bands of a spectral image, the others as
-    /// before: the eye sees hardly anything at both ends. Where all light is in ideal lines, only they are drawn.
+    /// Draws a third of the wavelengths evenly where lights shine within the bands of a spectral image, because the eye
+    /// sees hardly anything at both ends, and the others as before. If all light is in ideal lines, only these are
+    /// drawn.
     pub(super) fn showing(&self, bands: &WavelengthBands, lights: &[Emission]) -> Self {
         let is_lit = |step: usize| lights.iter().any(|light| light.spectrum()[step..step + 2].iter().any(|&x| x > 0.0));
         let is_shown = |step: usize| bands.of(visible::START_NM + step as f64 + 0.5).is_some();
@@ -62,8 +63,8 @@ impl Mixture {
         Self { entries: Distribution::new(weights), lines: self.lines.clone() }
     }
 
-    /// Two fifths of the wavelengths drawn as before, as many by what excites dyes, and the others by what the eye sees
-    /// of what dyes send: under lines alone, nothing else would be drawn where they shine.
+    /// Draws two fifths of the wavelengths as before, two fifths by what excites dyes, and the others by what the eye
+    /// sees of the dyes' emission. Under lines alone, nothing else would be drawn where dyes emit.
     pub(super) fn exciting(&self, excitations: &[Excited], shining: &[Emission]) -> Self {
         let mut weights: Vec<f64> = self.probabilities().collect();
         let mut add = |part: Vec<f64>, share: f64, of: usize| {
@@ -81,8 +82,8 @@ impl Mixture {
         Self { entries: Distribution::new(weights), lines: self.lines.clone() }
     }
 
-    /// The density of pbrt-v4, sech^2(0.0072 (w - 538)) (Radziszewski, Boryczko & Alda 2009, *An Improved Technique for
-    /// Full Spectral Rendering*).
+    /// Returns the density of pbrt-v4, sech^2(0.0072 (w - 538)) (Radziszewski, Boryczko & Alda 2009, *An Improved
+    /// Technique for Full Spectral Rendering*).
     pub(super) fn visible() -> Self {
         let density = |nm: f64| match nm {
             nm if nm < visible::FIRST_NM => 0.0,
@@ -92,12 +93,12 @@ impl Mixture {
         Self { entries, lines: Vec::new() }
     }
 
-    /// Probability of each step of the visible grid, then of each line.
+    /// Returns the probability of each step of the visible grid, then of each line.
     pub(super) fn probabilities(&self) -> impl Iterator<Item = f64> {
         (0..self.entries.count()).map(|entry| self.entries.probability(entry))
     }
 
-    /// The wavelength for a random number, as one of `heroes`.
+    /// Returns the wavelength for a random number, as one of `heroes`.
     pub(super) fn draw(&self, u: f64, heroes: usize) -> Hero {
         let drawn = self.entries.sample(u);
         let factor = 1.0 / (heroes as f64 * drawn.probability);
@@ -110,22 +111,22 @@ impl Mixture {
     }
 }
 
-/// What the eye sees of an even spectrum at each wavelength of the grid.
+/// Returns what the eye sees of a flat spectrum at each wavelength of the grid.
 fn eye() -> impl Iterator<Item = f64> {
     visible::observer().map(|cmf| cmf.iter().sum())
 }
 
-/// What the eye sees of a light at each wavelength of the grid.
+/// Returns what the eye sees of a light at each wavelength of the grid.
 fn seen(light: &Emission) -> Vec<f64> {
     light.spectrum().iter().zip(eye()).map(|(power, eye)| power * eye).collect()
 }
 
-/// The means of a density over the steps between its wavelengths.
+/// Returns the means of a density over the steps between its wavelengths.
 fn steps(density: &[f64]) -> Vec<f64> {
     density.windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect()
 }
 
-/// The means over those steps that the eye sees, and 0 over the others: it begins at once.
+/// Returns the means of a density over the steps that the eye sees, which begin abruptly, and 0 over the others.
 fn visible_steps(density: &[f64]) -> Vec<f64> {
     let mut steps = steps(density);
     steps[..ULTRAVIOLET].fill(0.0);

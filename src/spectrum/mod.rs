@@ -1,4 +1,4 @@
-//! Floor 1: what light is made of. A lane is a number that travels; only this folder knows what it stands for.
+//! Floor 1: what light is made of. A lane is a number that travels on a ray; only this folder defines its meaning.
 
 mod advice;
 mod band_response;

@@ -2,23 +2,23 @@
 
 use super::{Curve, CurveKind, Lanes, Table};
 
-/// The brightest numbers of the lattice's colors.
+/// The largest numbers of the lattice's colors.
 const LEVELS: [f32; 3] = [0.5, 0.8, 1.0];
-/// The least number of a color divided by its largest; beyond the last one is gray.
+/// The smallest number of a color divided by its largest. Beyond the last ratio, there is only gray.
 const DISTANCES: [f32; 2] = [0.0, 0.2];
 
-/// Spectra of a lattice of colors, from which that of any color is interpolated: no texel of an image needs a fit of
-/// its own.
+/// Returns spectra of a lattice of colors, from which the spectrum of any color is interpolated: no texel of an image
+/// needs a fit of its own.
 ///
-/// The lattice has the six hues (1, s, s) and (1, 1, s) at a few distances s from gray and a few levels of brightness,
-/// where a smooth reflectance with exactly this color is fitted. A color is a sum of those around it, with weights that
-/// are linear in the color: so it has exactly its color, stays within 0..1 and is even where the color is gray. With
-/// one distance and one level this is Smits 1999, *An RGB-to-Spectrum Conversion for Reflectances*; but fully saturated
-/// colors as bright as white have steep edges, which 16 lanes miss by 3 %, where the sums of more moderate ones are as
-/// smooth as a fit.
+/// The lattice has the six hues (1, s, s) and (1, 1, s), at a few distances s from gray and a few levels of brightness.
+/// For each, a smooth reflectance with exactly this color is fitted. Any other color is a sum of those around it, with
+/// weights that are linear in the color. Its spectrum therefore has exactly its color, stays within 0..1, and is flat
+/// if the color is gray. With one distance and one level, this is Smits 1999, *An RGB-to-Spectrum Conversion for
+/// Reflectances*. But fully saturated colors as bright as white have steep edges, which 16 lanes miss by 3 %, while
+/// sums of more moderate colors are as smooth as a fit.
 ///
-/// By level, distance from gray and hue: red, green, blue, and what lacks red, green, blue. `tabulate` reads a
-/// transmittance.
+/// The order is by level, distance from gray and hue: red, green, blue, then what lacks red, green, blue. `tabulate`
+/// reads a transmittance.
 pub(super) fn palette(tabulate: impl Fn(&Curve) -> Table) -> Vec<Table> {
     let mut tints = Vec::new();
     for level in LEVELS {
@@ -34,7 +34,7 @@ pub(super) fn palette(tabulate: impl Fn(&Curve) -> Table) -> Vec<Table> {
     tints
 }
 
-/// The factor on white that has a color. `bounded`: none of its numbers exceeds 1, where none of the color's does.
+/// Returns the factor on white that has a color. If `bounded`, no lane exceeds 1 where no number of the color does.
 #[inline]
 pub(super) fn filter<const N: usize>(
     palette: &[Table],
@@ -52,7 +52,7 @@ pub(super) fn filter<const N: usize>(
         return Lanes::ONE * most;
     }
     let middle = color[3 - strongest - weakest];
-    // How far the hue is from the strongest color alone to that which lacks the weakest.
+    // How far the hue lies from the strongest color alone toward the one that lacks the weakest.
     let hue = (middle - least) / (most - least);
     let ratio = least / most;
     let shape = |level: usize, distance: usize, amount: f32| {

@@ -1,56 +1,57 @@
-//! How interpolated lanes read a reflectance: so that it has the colors that it has under the lights of a scene.
+//! How interpolated lanes read a reflectance so that it has its true colors under the lights of a scene.
 
 use serde::{Deserialize, Serialize};
 
 use super::visible::{self, COUNT};
 
-/// Reads the spectrum of a reflectance or a transmittance onto lanes by least squares.
+/// The projection of the spectrum of a reflectance or a transmittance onto lanes, by least squares.
 ///
-/// Lanes that are read at their own wavelengths miss what lies between them. These are the numbers whose interpolation
-/// is closest to the spectrum, weighted by what light of each wavelength is worth to the eye and to dyes, and among
-/// those the ones that have the spectrum's very color under each light, where there are lanes enough for that. Where
-/// light meets several surfaces it shows products of such spectra, which gain by being closest.
+/// Lanes that read a spectrum at their own wavelengths miss what lies in between. The projection finds the numbers
+/// whose interpolation is closest to the spectrum, weighted by what light of each wavelength is worth to the eye and to
+/// dyes. Among these, it takes those that have exactly the spectrum's color under each light, if there are enough lanes
+/// for that. Light that meets several surfaces shows products of such spectra, which gain by being closest.
 ///
-/// A spectrum within 0..1 is read as numbers within 0..1; an even one as its number.
+/// A spectrum within 0..1 is read as numbers within 0..1, and a flat one as its value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Projection {
-    /// Wavelengths in nm at which a spectrum is read, behind those of the visible grid: ideal lines.
+    /// Wavelengths in nm at which a spectrum is read in addition to those of the visible grid: ideal lines.
     lines_nm: Vec<f64>,
-    /// How much each lane takes of each wavelength, by lane and wavelength.
+    /// Weight of each wavelength for each lane, by lane and wavelength.
     taken: Vec<Vec<f64>>,
-    /// What each lane takes of each lane's function.
+    /// Weight of each lane's function for each lane: the matrix of the normal equations.
     gram: Vec<Vec<f64>>,
 }
 
-/// How the functions of all lanes share a wavelength, and what light of it is worth.
+/// How the functions of all lanes share a wavelength, and what light there is worth.
 pub(super) struct Part {
     /// The wavelength, in nm.
     pub(super) at_nm: f64,
     /// The share of each lane.
     pub(super) shares: Vec<f64>,
-    /// To each measure, which is CIE X, Y or Z under one light, or a dye that it excites: over all that the light is
-    /// worth to it.
+    /// Its worth to each measure, relative to all that the light is worth to it. A measure is CIE X, Y or Z under one
+    /// light, or a dye that it excites.
     pub(super) worth: Vec<f64>,
 }
 
-/// The weight of what no measure tells beside all that they tell, spread evenly over the lanes' wavelengths.
+/// Weight of what no measure sees, relative to all that they see, spread evenly over the lanes' wavelengths.
 const UNSEEN: f64 = 1e-3;
-/// Where spectra are shown, the weight of all wavelengths of their bands, spread evenly over them: with more, edges in
+/// Weight of all wavelengths of the bands, spread evenly over them, if a spectral image is wanted. With more, edges in
 /// spectra hardly come closer; with 1e-3 to 1, predicted colors of five gallery scenes are equally close.
 const SHOWN: f64 = 1.0;
-/// The weight of a measure beside that of all wavelengths, where it shall be the spectrum's own.
+/// Weight of a measure relative to that of all wavelengths, if it must be matched exactly.
 const EXACT: f64 = 1e5;
-/// The weight of a measure where there are too many to be exact in all: of weights from 0 to 1e5, close to the best for
-/// one, two and four reflections by 123 measured colors under four lights in 8 to 32 lanes.
+/// Weight of a measure if there are too many to match all exactly. Of weights from 0 to 1e5, it is close to the best
+/// for one, two and four reflections by 123 measured colors under four lights in 8 to 32 lanes.
 const BALANCED: f64 = 10.0;
 
 impl Projection {
-    /// `parts`: the wavelengths of the visible grid, then ideal lines. `smooth`: how many lanes are interpolated, and
-    /// the first and last wavelength of those in nm. `shown`: the first and last of bands that are shown too.
+    /// Creates the projection. `parts` holds the wavelengths of the visible grid, then ideal lines; `smooth` is the
+    /// number of interpolated lanes, and `ends` are the first and last of their wavelengths in nm; `shown` are the
+    /// limits of the bands that are wanted too.
     pub(super) fn new(parts: &[Part], smooth: usize, ends: [f64; 2], shown: Option<[f64; 2]>) -> Self {
         let (lanes, measures) = (parts[0].shares.len(), parts[0].worth.len());
         let each = 1.0 / measures as f64;
-        // Every measure takes one of the lanes' numbers; half of them are left to come close.
+        // Every exact measure uses up one of the lanes' numbers. Half of the numbers are left to come close.
         let kept = each * if 2 * measures <= smooth { EXACT } else { BALANCED };
         let even = |weight: f64, [first, last]: [f64; 2]| {
             move |at_nm: f64| if (first..=last).contains(&at_nm) { weight / (last - first + 1.0) } else { 0.0 }
@@ -77,7 +78,7 @@ impl Projection {
         Self { lines_nm: parts[COUNT..].iter().map(|part| part.at_nm).collect(), taken, gram }
     }
 
-    /// The number of each lane, of a spectrum that is read at any wavelength in nm.
+    /// Returns the number of each lane, for a spectrum that can be read at any wavelength in nm.
     pub(super) fn read(&self, spectrum: &dyn Fn(f64) -> f64) -> Vec<f64> {
         let values: Vec<f64> = visible::wavelengths().chain(self.lines_nm.iter().copied()).map(spectrum).collect();
         if values.iter().all(|&x| x == values[0]) {
@@ -88,7 +89,7 @@ impl Projection {
         self.within(range, taken.collect())
     }
 
-    /// The closest numbers within a range: those that would be beyond it are held at its end, and the others take up
+    /// Returns the closest numbers within a range. Numbers beyond it are held at its end, and the others make up for
     /// what that misses.
     fn within(&self, [low, high]: [f64; 2], taken: Vec<f64>) -> Vec<f64> {
         let mut held: Vec<Option<f64>> = vec![None; taken.len()];
@@ -107,7 +108,7 @@ impl Projection {
         }
     }
 
-    /// The numbers whose interpolation is closest, some of them held, by Cholesky's factors of the normal equations.
+    /// Solves for the closest numbers, of which some are held, by Cholesky factorization of the normal equations.
     fn solve(&self, taken: &[f64], held: &[Option<f64>]) -> Vec<f64> {
         let free: Vec<usize> = (0..taken.len()).filter(|&lane| held[lane].is_none()).collect();
         let of_held = |lane: usize| held.iter().zip(&self.gram[lane]).map(|(x, g)| x.unwrap_or(0.0) * g).sum::<f64>();

@@ -1,13 +1,13 @@
-/// What a curve describes, which decides how it is read onto the lanes.
+/// What a curve describes. This decides how it is read onto the lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Share of light that leaves a surface again, 0 to 1.
+    /// Share of light that a surface reflects, 0 to 1.
     Reflectance,
-    /// Share of light that crosses a surface, 0 to 1.
+    /// Share of light that a surface transmits, 0 to 1.
     Transmittance,
-    /// How much of a whole is one of its parts, 0 to 1: an opacity, an amount in a mix.
+    /// Share of one part in a whole, 0 to 1: an opacity, or an amount in a mix.
     Share,
-    /// Radiance, or for a point light intensity; not negative.
+    /// Radiance, or intensity of a point light; not negative.
     Emission,
     /// Real refractive index of a dielectric; above 1.
     Index,
@@ -19,8 +19,8 @@ pub enum Quantity {
     MetalExtinction,
     /// Thickness of a layer in which light interferes, in nm.
     Thickness,
-    /// Share of light that a dye absorbs and may shine again, 0 to 1.
+    /// Share of light that a dye absorbs and may emit again, 0 to 1.
     Excitation,
-    /// Power per nm that a dye shines, on any scale; not negative.
+    /// Power per nm that a dye emits, on any scale; not negative.
     Fluorescence,
 }

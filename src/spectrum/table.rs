@@ -2,22 +2,22 @@ use std::sync::Arc;
 
 use super::Texture;
 
-/// Most lanes that travel together.
+/// Maximum number of lanes that travel together.
 pub const MAX_LANES: usize = 32;
 
-/// A spectrum on the bins of one render's basis, in the unit of its quantity: one number per fixed lane and, where a
+/// A spectrum in the bins of one render's basis, in the unit of its quantity: one number per fixed lane and, if the
 /// basis has heroes, a fine grid for wavelengths that are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     bins: usize,
-    /// The fixed lanes' numbers; beyond the last bin its number again, so that empty lanes divide by no 0.
+    /// The numbers of the fixed lanes. The last bin's number is repeated, so that no empty lane divides by 0.
     fixed: Arc<[f64; MAX_LANES]>,
     weights: Arc<[f32; MAX_LANES]>,
     fine: Arc<[f64]>,
     flat: bool,
     /// The smallest and the largest number of the fixed lanes.
     pub(super) fixed_range: [f64; 2],
-    /// Of an index: the one by which all lanes are refracted.
+    /// For an index, the one that refracts all lanes.
     direction: Option<f64>,
     /// A factor that varies over the surface.
     pattern: Option<Box<Pattern>>,
@@ -27,15 +27,15 @@ pub struct Table {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pattern {
     pub(super) kind: PatternKind,
-    /// What rounding keeps the product below: 1 of a reflectance or a transmittance.
+    /// Upper limit of the product, against rounding: 1 for a reflectance or a transmittance.
     pub(super) most: f32,
-    /// The mean brightness of the factor over the image, a third of red, green and blue.
+    /// Mean brightness of the factor over the image, where brightness is the mean of red, green and blue.
     pub(super) mean: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum PatternKind {
-    /// With the palette of its colors, unless red, green and blue are the lanes.
+    /// An image with the palette of its colors, unless red, green and blue are the lanes.
     Image(Texture, Option<Vec<Table>>),
     Checker {
         cells: [Table; 2],
@@ -44,15 +44,15 @@ pub(super) enum PatternKind {
 }
 
 impl Table {
-    /// A table of the given bins, one for each fixed lane.
+    /// Creates a table of the given bins, one for each fixed lane.
     ///
     /// # Panics
-    /// If there are none, or more than [`MAX_LANES`].
+    /// If there are no bins, or more than [`MAX_LANES`].
     pub fn new(bins: impl AsRef<[f64]>) -> Self {
         Self::with_fine(bins.as_ref(), Vec::new())
     }
 
-    /// A table with a fine grid for drawn wavelengths.
+    /// Creates a table with a fine grid for drawn wavelengths.
     pub(super) fn with_fine(bins: &[f64], fine: Vec<f64>) -> Self {
         assert!((1..=MAX_LANES).contains(&bins.len()), "{} bins do not fit", bins.len());
         let fixed: [f64; MAX_LANES] = std::array::from_fn(|i| bins[i.min(bins.len() - 1)]);
@@ -70,17 +70,17 @@ impl Table {
         }
     }
 
-    /// The same table, varied over the surface.
+    /// Returns the table with a pattern that varies over the surface.
     pub(super) fn varied(self, pattern: Pattern) -> Self {
         Self { pattern: Some(Box::new(pattern)), ..self }
     }
 
-    /// The same index, where all lanes are refracted as by one.
+    /// Returns the table of an index in which all lanes are refracted by one.
     pub(super) fn refracting_as(self, direction: f64) -> Self {
         Self { direction: Some(direction), ..self }
     }
 
-    /// The index by which all lanes are refracted, where their own differ and they go one way.
+    /// Returns the index that refracts all lanes, if their own indices differ but they stay together.
     pub fn direction(&self) -> Option<f64> {
         self.direction
     }
@@ -89,49 +89,49 @@ impl Table {
         self.pattern.as_deref()
     }
 
-    /// Whether it is different at different places of a surface, so that `Draw::read_at` needs the place.
+    /// Returns whether it varies over a surface, so that `Draw::read_at` needs the place.
     pub fn varies(&self) -> bool {
         self.pattern.is_some()
     }
 
-    /// The number in each bin of the fixed lanes.
+    /// Returns the number in each bin of the fixed lanes.
     pub fn bins(&self) -> &[f64] {
         &self.fixed[..self.bins]
     }
 
-    /// Smallest and largest number.
+    /// Returns the smallest and the largest number.
     pub fn range(&self) -> (f64, f64) {
         let all = self.bins().iter().chain(&*self.fine);
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
     }
 
-    /// The brightest number; of a table that varies the mean of what it is brought to.
+    /// Returns the largest number, times the mean of its pattern if the table varies.
     pub fn brightness(&self) -> f64 {
         let brightest = self.range().1.max(0.0);
         self.pattern().map_or(brightest, |pattern| brightest * pattern.mean)
     }
 
-    /// Whether all bins hold the same number.
+    /// Returns whether all bins hold the same number.
     pub fn is_flat(&self) -> bool {
         self.flat
     }
 
-    /// Whether it is 1 in every bin and everywhere.
+    /// Returns whether it is 1 in every bin and everywhere.
     pub fn is_one(&self) -> bool {
         self.flat && self.pattern.is_none() && self.fixed[0] == 1.0
     }
 
-    /// The numbers of the first N fixed lanes.
+    /// Returns the numbers of the first N fixed lanes.
     pub(super) fn fixed<const N: usize>(&self) -> &[f64; N] {
         self.fixed.first_chunk().expect("no more lanes are compiled than fit")
     }
 
-    /// The numbers of the first N fixed lanes, as weights.
+    /// Returns the numbers of the first N fixed lanes, as weights.
     pub(super) fn weights<const N: usize>(&self) -> &[f32; N] {
         self.weights.first_chunk().expect("no more lanes are compiled than fit")
     }
 
-    /// The number between two entries of the fine grid.
+    /// Interpolates between two entries of the fine grid.
     pub(super) fn between(&self, below: usize, fraction: f64) -> f64 {
         let (a, b) = (self.fine[below], self.fine[below + 1]);
         a + fraction * (b - a)

@@ -7,11 +7,11 @@ use super::{Image, Wrap};
 /// How an image lies in the coordinates (u, v) of a surface: its bottom left corner at (0, 0), u to the right, v up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// How often it fits into one unit of u and of v, above 0.
+    /// Number of repetitions per unit of u and of v, above 0.
     pub repeat: [f64; 2],
-    /// What there is beyond it.
+    /// What lies beyond the image.
     pub wrap: Wrap,
-    /// What there is between the middles of its texels.
+    /// What lies between the centers of its texels.
     pub filter: TexelFilter,
 }
 
@@ -21,26 +21,26 @@ impl Default for Placement {
     }
 }
 
-/// What lies between the middles of texels.
+/// What lies between the centers of texels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TexelFilter {
-    /// A smooth passage, linear in light.
+    /// Interpolation that is linear in light.
     #[default]
     Linear,
-    /// The nearest texel, so that each is an even square.
+    /// The nearest texel, so that each is a uniform square.
     Nearest,
 }
 
 /// What the numbers of an image file stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Encoding {
-    /// Colors as screens show them (IEC 61966-2-1): the default of PNG and JPEG.
+    /// Colors encoded for screens (IEC 61966-2-1): the default of PNG and JPEG.
     Srgb,
-    /// Light itself: the default of OpenEXR and Radiance.
+    /// Linear light: the default of OpenEXR and Radiance.
     Linear,
 }
 
-/// One number of a texel.
+/// One channel of a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)]
 pub enum Channel {
@@ -53,18 +53,18 @@ pub enum Channel {
 
 /// An image on a surface.
 ///
-/// There are no smaller copies for surfaces far away: the samples of a pixel see different texels, and their mean
-/// converges to the mean of all that the pixel covers, which a copy would only estimate, and wrongly where the surface
-/// is seen in a curved mirror or lies in part in shadow.
+/// There are no mipmaps for distant surfaces. The samples of a pixel see different texels, and their mean converges to
+/// the mean of all that the pixel covers. A mipmap would only estimate that, and wrongly where the surface is seen in a
+/// curved mirror or lies partly in shadow.
 #[derive(Clone, Debug)]
 pub struct Texture {
     /// The image.
     pub image: Arc<Image>,
-    /// Where it lies.
+    /// Its placement.
     pub placement: Placement,
 }
 
-/// The very same image in the same place.
+/// Equality means the very same image in the same place.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.image, &other.image) && self.placement == other.placement
@@ -72,7 +72,7 @@ impl PartialEq for Texture {
 }
 
 impl Texture {
-    /// What is seen at a place of the surface, linear Rec.709.
+    /// Returns the color at a place of the surface, in linear Rec.709.
     pub fn color(&self, [u, v]: [f64; 2]) -> [f32; 3] {
         let Placement { repeat, wrap, filter } = self.placement;
         let (width, height) = (self.image.width(), self.image.height());
@@ -84,19 +84,18 @@ impl Texture {
         self.image.linear([across, down], [wrap; 2])
     }
 
-    /// The derivatives by u and v of the image as heights, those of colors being their means.
+    /// Returns the derivatives of the image's heights by u and v. The height of a color is the mean of its numbers.
     ///
-    /// Between texels the heights are a quadratic B-spline (de Boor 1978, *A Practical Guide to Splines*): a mean over
-    /// the three by three texels around, whose slope passes evenly from one to the next where that of linear
-    /// interpolation would show each texel as a facet. An even slope stays what it is. The filter of the placement is
-    /// not asked.
+    /// Between texels, heights are a quadratic B-spline (de Boor 1978, *A Practical Guide to Splines*): a mean over the
+    /// three by three texels around. Its slope changes continuously, where that of linear interpolation would show each
+    /// texel as a facet. An even slope is preserved. The filter of the placement is ignored.
     pub fn slope(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         let (repeat, wrap) = (self.placement.repeat, self.placement.wrap);
         let (width, height) = (self.image.width(), self.image.height());
         let across = Stencil::new(wrap, u * repeat[0], width, false);
         let down = Stencil::new(wrap, v * repeat[1], height, true);
         let level = |column, row| self.image.texel(column, row).into_iter().map(f64::from).sum::<f64>() / 3.0;
-        // Heights count from the middle one, so that the slope of an even image is exactly 0.
+        // Heights are relative to the middle texel, so that the slope of an even image is exactly 0.
         let middle = level(across.entries[1], down.entries[1]);
         let mut slope = [0.0; 2];
         for (j, row) in down.entries.into_iter().enumerate() {
@@ -110,23 +109,24 @@ impl Texture {
     }
 }
 
-/// Which of two squares of a checkerboard lies at a place; `repeat` squares fill a unit, the first begins at (0, 0).
+/// Returns which of two squares of a checkerboard lies at a place. `repeat` is the number of squares per unit, of which
+/// the first begins at (0, 0).
 pub(super) fn square(repeat: [f64; 2], uv: [f64; 2]) -> usize {
     let [x, y] = [0, 1].map(|i| (uv[i] * repeat[i]).floor().rem_euclid(2.0));
     usize::from(x != y)
 }
 
-/// The three texels along one axis that a place sees.
+/// The three texels along one axis that a place depends on.
 struct Stencil {
     entries: [usize; 3],
-    /// What each adds to the height.
+    /// Weight of each texel in the height.
     shares: [f64; 3],
-    /// What each adds to the derivative by the coordinate.
+    /// Weight of each texel in the derivative by the coordinate.
     slopes: [f64; 3],
 }
 
 impl Stencil {
-    /// At a place in units of the image; `from_top`: entries count against the coordinate.
+    /// Creates the stencil of a place, in units of the image. With `from_top`, entries count against the coordinate.
     fn new(wrap: Wrap, place: f64, count: usize, from_top: bool) -> Self {
         let inside = wrap.place(place);
         let backward = wrap == Wrap::Mirror && (place - 2.0 * (0.5 * place).floor()) > 1.0;
@@ -147,7 +147,7 @@ impl Stencil {
 mod tests {
     use super::*;
 
-    /// Two rows of three texels, each its own number.
+    /// Two rows of three texels, each with its own number.
     fn texture(wrap: Wrap, filter: TexelFilter, repeat: f64) -> Texture {
         let image = Arc::new(Image::of_floats(3, 1, vec![0.0, 1.0, 2.0, 10.0, 11.0, 12.0]));
         Texture { image, placement: Placement { repeat: [repeat; 2], wrap, filter } }
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn an_even_slope_is_found_as_it_is_u_to_the_right_and_v_up() {
-        // 8 x 4 texels rise by 1 a texel to the right and by 0.25 a row upward.
+        // 8 x 4 texels rise by 1 per texel to the right and by 0.25 per row upward.
         let heights: Vec<f32> = (0..32_u8).map(|i| f32::from(i % 8) - 0.25 * f32::from(i / 8)).collect();
         for (wrap, uv, sign) in [
             (Wrap::Clamp, [0.4, 0.52], 1.0),
@@ -255,7 +255,7 @@ mod tests {
                 let ([a, b], [c, d]) = (place(i), place(i + 1));
                 let [du, dv] = texture.slope([0.5 * (a + c), 0.5 * (b + d)]);
                 around += du * (c - a) + dv * (d - b);
-                // A slope changes by at most 4 texel steps squared of heights up to 1 a unit.
+                // Per unit, the slope of heights up to 1 changes by at most 4 times the squared number of texels.
                 let most = 4.0 * 10.5 * 10.5 * 3e-4;
                 assert!(i == 0 || ((du - last[0]).abs() < most && (dv - last[1]).abs() < most), "{wrap:?} at {i}");
                 last = [du, dv];

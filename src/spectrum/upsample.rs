@@ -16,12 +16,12 @@ use super::visible::{self, ULTRAVIOLET};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sigmoid {
     coefficients: [f64; 3],
-    /// How much of the color's distance from gray was kept: 1 unless no smooth reflectance has the color.
+    /// Share of the color's distance from gray that was kept: 1 unless no smooth reflectance has the color.
     pub saturation: f64,
 }
 
 impl Sigmoid {
-    /// The value at a wavelength, within 0..1.
+    /// Returns the value at a wavelength, within 0..1.
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         let [a, b, c] = self.coefficients;
         let t = (wavelength_nm - visible::FIRST_NM) / (visible::LAST_NM - visible::FIRST_NM);
@@ -33,17 +33,17 @@ fn sigmoid(x: f64) -> f64 {
     if x.is_infinite() { 0.5 + 0.5 * x.signum() } else { 0.5 + 0.5 * x / (1.0 + x * x).sqrt() }
 }
 
-/// Finds the sigmoid spectra that look like linear Rec.709 colors under a film's white.
+/// A solver for the sigmoid spectra that look like linear Rec.709 colors under a film's white.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Upsampler {
-    /// Rec.709 red, green and blue of a reflectance of 1 within one step of the visible range; each sums to 1.
+    /// Rec.709 red, green and blue of a reflectance of 1 within one step of the visible range. Each channel sums to 1.
     steps: Vec<[f64; 3]>,
-    /// What was found, by the bits of the colors: a plan asks for each a dozen times, and to find it takes 0.1 ms.
+    /// A cache by the bits of the colors: a plan needs each color a dozen times, and a search takes 0.1 ms.
     #[serde(skip)]
     found: Arc<Mutex<HashMap<[u64; 3], Sigmoid>>>,
 }
 
-// What was found is no part of what it is: plans are told apart by this.
+// The cache is not part of an upsampler's value, by which plans are told apart.
 impl fmt::Debug for Upsampler {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.debug_struct("Upsampler").field("steps", &self.steps).finish_non_exhaustive()
@@ -56,15 +56,15 @@ impl PartialEq for Upsampler {
     }
 }
 
-/// Most colors that are kept, which take 8 MB.
+/// Maximum number of colors in the cache. They take 8 MB.
 const MOST_FOUND: usize = 1 << 16;
 
-/// Largest residual of a fit, in linear Rec.709.
+/// Largest residual of a fit that is accepted, in linear Rec.709.
 const CLOSE: f64 = 1e-4;
 
 impl Upsampler {
-    /// For a film: a reflectance of 1 has the color (1, 1, 1) under its white. All of one space know what any has
-    /// found.
+    /// Returns the upsampler of a film: a reflectance of 1 has the color (1, 1, 1) under its white. All upsamplers of
+    /// one space share a cache.
     pub fn new(space: ColorSpace) -> Self {
         static MADE: [OnceLock<Upsampler>; ColorSpace::ALL.len()] = [const { OnceLock::new() }; ColorSpace::ALL.len()];
         MADE[space as usize].get_or_init(|| Self::made(space)).clone()
@@ -83,8 +83,8 @@ impl Upsampler {
         self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The spectrum of a reflectance, each number within 0..1. A color that no sigmoid has is moved toward gray until
-    /// one has it.
+    /// Returns the spectrum of a reflectance, for numbers within 0..1. A color that no sigmoid has is moved toward gray
+    /// until one has it.
     pub fn fit(&self, rgb: [f64; 3]) -> Sigmoid {
         let gray = (rgb.iter().sum::<f64>() / 3.0).clamp(0.0, 1.0);
         if rgb.iter().all(|&x| x == gray) {
@@ -94,7 +94,7 @@ impl Upsampler {
         if let Some(&known) = self.found().get(&bits) {
             return known;
         }
-        // Meanwhile others may look for theirs, or for the same one.
+        // The cache is not locked here: others may search meanwhile, even for the same color.
         let sigmoid = self.search(rgb, gray);
         let mut found = self.found();
         if found.len() >= MOST_FOUND {
@@ -104,7 +104,7 @@ impl Upsampler {
         sigmoid
     }
 
-    /// The spectrum of a color that is no gray, of which this is the mean.
+    /// Searches for the spectrum of a color that is not gray. `gray` is its mean.
     fn search(&self, rgb: [f64; 3], gray: f64) -> Sigmoid {
         let toward = |saturation: f64| rgb.map(|x| gray + saturation * (x - gray));
         let solved = |saturation: f64| {
@@ -126,7 +126,7 @@ impl Upsampler {
         best
     }
 
-    /// Damped Gauss-Newton (Levenberg 1944) from gray outward, so that saturated colors start near their solution.
+    /// Solves by damped Gauss-Newton (Levenberg 1944), from gray outward: saturated colors start near their solution.
     fn solve(&self, target: [f64; 3], gray: f64) -> ([f64; 3], f64) {
         let mut k = [0.0, 0.0, inverse_sigmoid(gray.clamp(0.002, 0.998))];
         let mut worst = f64::INFINITY;
@@ -155,7 +155,7 @@ impl Upsampler {
         (k, worst)
     }
 
-    /// Color minus goal, and its derivatives by the coefficients.
+    /// Returns the color minus the goal, and its derivatives by the coefficients.
     fn evaluate(&self, [a, b, c]: [f64; 3], goal: [f64; 3]) -> ([f64; 3], Matrix) {
         let (mut residual, mut slopes) = (goal.map(|x| -x), [[0.0; 3]; 3]);
         for (i, step) in self.steps.iter().enumerate() {
@@ -177,7 +177,7 @@ fn squared(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum()
 }
 
-/// The step (J^T J + damping) s = J^T r.
+/// Solves (J^T J + damping) s = J^T r for the step s.
 fn gauss_newton_step(slopes: &Matrix, residual: [f64; 3], damping: f64) -> [f64; 3] {
     let mut normal: Matrix =
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|c| slopes[c][i] * slopes[c][j]).sum()));
@@ -187,7 +187,7 @@ fn gauss_newton_step(slopes: &Matrix, residual: [f64; 3], damping: f64) -> [f64;
     apply(&inverse(&normal), right)
 }
 
-/// The x at which the sigmoid has a value; infinite at 0 and 1.
+/// Returns the x at which the sigmoid has a value; infinite at 0 and 1.
 fn inverse_sigmoid(value: f64) -> f64 {
     let y = 2.0 * value - 1.0;
     y / (1.0 - y * y).sqrt()
@@ -201,7 +201,7 @@ mod tests {
     fn a_color_is_looked_for_once_whoever_asks() {
         let (space, rgb) = (ColorSpace::Aces2065, [0.9, 0.1, 0.02]);
         let found = Upsampler::new(space).fit(rgb);
-        // What would not be found, if it were looked for again.
+        // A new search would not find this value.
         let planted = Sigmoid { saturation: 0.5 * found.saturation, ..found };
         Upsampler::new(space).found().insert(rgb.map(f64::to_bits), planted);
         assert_eq!(Upsampler::new(space).fit(rgb), planted);

@@ -10,34 +10,34 @@ pub const START_NM: f64 = 300.0;
 pub const FIRST_NM: f64 = 360.0;
 /// The last wavelength, in nm.
 pub const LAST_NM: f64 = 830.0;
-/// Wavelengths on the grid.
+/// Number of wavelengths on the grid.
 pub const COUNT: usize = 531;
-/// Those of them below the visible range.
+/// Number of wavelengths on the grid below the visible range.
 pub const ULTRAVIOLET: usize = 60;
 
-/// Luminous efficacy of radiation at the peak of the photopic eye, in lm/W: K_m of CIE 018:2019, *The Basis of Physical
+/// Luminous efficacy of radiation at the peak of photopic vision, in lm/W: K_m of CIE 018:2019, *The Basis of Physical
 /// Photometry*.
 pub const EFFICACY: f64 = 683.002;
 
-/// The wavelengths of the grid, in nm.
+/// Returns the wavelengths of the grid, in nm.
 pub fn wavelengths() -> impl Iterator<Item = f64> {
     (0..COUNT).map(|i| START_NM + i as f64)
 }
 
-/// Where a wavelength lies on the grid: the entry at or below it, and the fraction of the step to the next one.
+/// Returns where a wavelength lies on the grid: the entry at or below it, and the fraction of the step to the next one.
 pub fn place(wavelength_nm: f64) -> (usize, f64) {
     let at = (wavelength_nm - START_NM).clamp(0.0, (COUNT - 1) as f64);
     let below = (at as usize).min(COUNT - 2);
     (below, at - below as f64)
 }
 
-/// A function of which the grid has the values, at a wavelength: linear within a step.
+/// Interpolates a function that is known on the grid, linearly within a step.
 pub(super) fn read(function: &[f64], wavelength_nm: f64) -> f64 {
     let (below, fraction) = place(wavelength_nm);
     function[below] + fraction * (function[below + 1] - function[below])
 }
 
-/// The CIE 1931 2 degree color matching functions at a wavelength, linear within a step; 0 outside the visible range.
+/// Returns the CIE 1931 2 degree color matching functions, linear within a step; 0 outside the visible range.
 pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
     if !(FIRST_NM..=LAST_NM).contains(&wavelength_nm) {
         return [0.0; 3];
@@ -47,17 +47,17 @@ pub fn color_matching(wavelength_nm: f64) -> [f64; 3] {
     std::array::from_fn(|i| a[i] + fraction * (b[i] - a[i]))
 }
 
-/// The color matching functions at each wavelength of the grid.
+/// Returns the color matching functions at each wavelength of the grid.
 pub fn observer() -> impl Iterator<Item = [f64; 3]> {
     std::iter::repeat_n([0.0; 3], ULTRAVIOLET).chain(data::color_matching().iter().copied())
 }
 
-/// CIE XYZ of a spectrum on the grid: the sum over 1 nm steps (CIE 15:2018, equation 7.1) with k = 1.
+/// Returns CIE XYZ of a spectrum on the grid: the sum over 1 nm steps (CIE 15:2018, equation 7.1) with k = 1.
 pub fn xyz(spectrum: &[f64]) -> [f64; 3] {
     weighted_sum(spectrum.iter().copied().zip(observer()))
 }
 
-/// The spectrum of a film's white on the grid, and the factors on its XYZ that make it exactly that white.
+/// Returns the spectrum of a film's white on the grid, and the factors on its XYZ that make it exactly that white.
 pub(super) fn white(space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
     let light = space.white_light();
     let spectrum: Vec<f64> = wavelengths().map(|nm| light.at(nm)).collect();
@@ -65,7 +65,7 @@ pub(super) fn white(space: ColorSpace) -> (Vec<f64>, [f64; 3]) {
     (spectrum, std::array::from_fn(|i| white[i] / found[i]))
 }
 
-/// The integral of y-bar over the visible range: Y of a flat spectrum of 1 before it is scaled.
+/// Returns the integral of y-bar over the visible range: Y of a flat spectrum of 1 before it is scaled.
 pub fn luminous() -> f64 {
     data::color_matching().iter().map(|cmf| cmf[1]).sum()
 }

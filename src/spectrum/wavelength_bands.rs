@@ -1,4 +1,4 @@
-//! Bands of equal width, one beside the other: what a spectral image tells apart.
+//! Adjacent bands of equal width, which a spectral image tells apart.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,43 +13,43 @@ pub struct WavelengthBands {
 }
 
 impl Default for WavelengthBands {
-    /// 81 bands of 5 nm, centered on 380 to 780 nm.
+    /// Returns 81 bands of 5 nm, centered on 380 to 780 nm.
     fn default() -> Self {
         Self { first_nm: 380.0, step_nm: 5.0, count: 81 }
     }
 }
 
 impl WavelengthBands {
-    /// Most bands of an image.
+    /// Maximum number of bands of an image.
     pub const MOST: usize = 1000;
 
-    /// Bands whose centers lie `step_nm` apart, from the first to the last that is not beyond `to_nm`; none unless the
-    /// step is positive, and they are 1 to [`MOST`](Self::MOST).
+    /// Creates bands whose centers lie `step_nm` apart, from `from_nm` to the last that is not beyond `to_nm`; `None`
+    /// unless the step is positive and the number of bands is 1 to [`MOST`](Self::MOST).
     pub fn new(from_nm: f64, to_nm: f64, step_nm: f64) -> Option<Self> {
-        // A last band that only rounding of the ends puts beyond the last one is one of them.
+        // The last band still counts if only rounding of the ends puts it beyond `to_nm`.
         let rounding = 4.0 * f64::EPSILON * (from_nm.abs() + to_nm.abs());
         let steps = ((to_nm - from_nm + rounding) / step_nm).floor();
         let fits = step_nm > 0.0 && (0.0..Self::MOST as f64).contains(&steps);
         fits.then(|| Self { first_nm: from_nm, step_nm, count: steps as usize + 1 })
     }
 
-    /// Number of bands.
+    /// Returns the number of bands.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Distance from center to center, which is also the width of each band, in nm.
+    /// Returns the distance from center to center in nm, which is also the width of each band.
     pub fn step_nm(&self) -> f64 {
         self.step_nm
     }
 
-    /// The range of all bands, in nm, cut to the grid on which light is known.
+    /// Returns the range of all bands in nm, cut to the grid on which light is known.
     pub fn range_nm(&self) -> [f64; 2] {
         let start = self.first_nm - 0.5 * self.step_nm;
         [start.max(START_NM), (start + self.count as f64 * self.step_nm).min(LAST_NM)]
     }
 
-    /// How much of a band, in nm, lies where light is known, on the [grid](super::visible).
+    /// Returns how much of a band, in nm, lies where light is known, on the [grid](super::visible).
     pub(super) fn known_nm(&self, band: usize) -> f64 {
         let middle = self.first_nm + band as f64 * self.step_nm;
         let [below, above] = [-0.5, 0.5].map(|half| middle + half * self.step_nm);
@@ -57,19 +57,20 @@ impl WavelengthBands {
         if [from, to] == [below, above] { self.step_nm } else { to - from }
     }
 
-    /// The centers, in nm, ascending.
+    /// Returns the centers in nm, ascending.
     pub fn centers_nm(&self) -> impl ExactSizeIterator<Item = f64> + use<> {
         let Self { first_nm, step_nm, count } = *self;
         (0..count).map(move |band| first_nm + band as f64 * step_nm)
     }
 
-    /// The band of a wavelength; between two bands the upper one.
+    /// Returns the band of a wavelength; between two bands, the upper one.
     pub(super) fn of(&self, wavelength_nm: f64) -> Option<usize> {
         let band = ((wavelength_nm - self.first_nm) / self.step_nm + 0.5).floor();
         (0.0..self.count as f64).contains(&band).then_some(band as usize)
     }
 
-    /// Each band that the nm around a wavelength reaches into, and how much of it lies there and where light is known.
+    /// Returns each band that overlaps the nm around a wavelength, and how much of the overlap lies where light is
+    /// known.
     pub(super) fn around(&self, wavelength_nm: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
         let Self { first_nm, step_nm, count } = *self;
         let start = first_nm - 0.5 * step_nm;

@@ -1,11 +1,11 @@
 use super::{Draw, Table};
 
-/// Where each lane lies in the spectrum, for light that interferes.
+/// The position of each lane in the spectrum, for light that interferes.
 #[derive(Clone, Debug)]
 pub struct Waves {
-    /// Wavelengths in nm in vacuum.
+    /// Wavelengths in nm, in vacuum.
     wavelengths: Table,
-    /// The widths of the bands of wavelengths that lanes stand for, over their wavelengths; 0 of lines and heroes.
+    /// Widths of the bands that lanes stand for, over their wavelengths; 0 for lines and heroes.
     widths: Table,
 }
 
@@ -14,12 +14,12 @@ impl Waves {
         Self { wavelengths, widths }
     }
 
-    /// The wavelength of a lane in nm in vacuum, and the width of its band over that: 0 of lines and heroes.
+    /// Returns the wavelength of a lane in vacuum, in nm, and its band's width over that: 0 for lines and heroes.
     pub fn of_lane<const N: usize>(&self, draw: &Draw<N>, lane: usize) -> [f64; 2] {
         [&self.wavelengths, &self.widths].map(|table| draw.read_lane(table, lane))
     }
 
-    /// The wavelength in nm and the relative bandwidth of every fixed lane.
+    /// Returns the wavelength in nm and the relative bandwidth of every fixed lane.
     pub fn of_fixed_lanes(&self) -> impl Iterator<Item = [f64; 2]> {
         self.wavelengths.bins().iter().zip(self.widths.bins()).map(|(&nm, &width)| [nm, width])
     }

@@ -1,10 +1,11 @@
-//! Bounces inside rooms aim at what lights them: sunlit patches, and openings through which the sky is seen.
+//! Guides bounces inside rooms toward what lights them: sunlit patches, and openings through which the sky is seen.
 //!
-//! A direction is drawn by the material or, as often as bright places are expected to bring light, evenly from the
-//! solid angle of one of them. Its density is that of both ways together, a one-sample balance heuristic (Veach &
-//! Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*): what the places miss, and where
-//! they are in vain, changes the noise alone. Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*,
-//! guides bounces so by histograms of directions; places in space also hold where the path goes next.
+//! The direction of a bounce is sampled by the material or, with a probability that follows the light that bright
+//! places are expected to contribute, uniformly from the solid angle of one of them. Its density is that of both
+//! techniques together, a one-sample balance heuristic (Veach & Guibas 1995, *Optimally Combining Sampling Techniques
+//! for Monte Carlo Rendering*). Light that the places miss, and places that turn out to contribute nothing, therefore
+//! change only the noise. Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*, guides bounces with
+//! histograms of directions; places in space stay valid wherever the path goes next.
 
 use std::f64::consts::PI;
 
@@ -15,16 +16,17 @@ use crate::light::Opening;
 use crate::math::{Bounds, DVec3, Ray};
 use crate::shape::{Density, Quad, Shape};
 
-/// Places at most: each takes its time at every bounce.
+/// Maximum number of places: each costs time at every bounce.
 pub(super) const MOST: usize = 6;
-/// The largest share of the directions that is aimed: the noise of all other light is at most doubled.
+/// Largest probability that a bounce is aimed. The noise of all other light at most doubles.
 const LARGEST: f64 = 0.5;
-/// Of a surface that sends on the share a of the light, at most 1 - a^2 of the bounces are aimed, or the second moment
-/// a^2 / (1 - share) of a path that is not aimed would grow at every bounce, without end in a room of one color. Where
-/// no light comes but what is aimed at, 1 - a: the paths of such a room all weigh the same then.
+/// Exponents of the albedo in the largest aimed share of the bounces. At a surface of albedo a, at most 1 - a^2 of the
+/// bounces are aimed. With more, the second moment a^2 / (1 - share) of a path that is not aimed would grow at every
+/// bounce, without bound in a room of one color. Where all light comes from what is aimed at, the limit is 1 - a: all
+/// paths in such a room then have the same weight.
 const FINITE: i32 = 2;
 const EQUAL: i32 = 1;
-/// How much more light from elsewhere counts than that of the places, which others may see too: 2 to 6 do alike.
+/// Weight of light from elsewhere relative to that of the places, which others may see too: 2 to 6 work equally well.
 const ELSEWHERE: f64 = 3.0;
 /// Distance from a place's plane, in its half diagonals, below which it is not aimed at: its outline is uncertain.
 const FLAT: f64 = 1e-3;
@@ -32,31 +34,31 @@ const FLAT: f64 = 1e-3;
 /// A rectangle from which or through which much light comes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrightPlace {
-    /// Its middle.
+    /// Its center.
     pub center: DVec3,
-    /// Half edges at right angles.
+    /// Half edges, perpendicular to each other.
     pub half: [DVec3; 2],
-    /// Root of the mean square of the radiance that bounces found there.
+    /// Root mean square of the radiance that bounces found there.
     pub radiance: f64,
 }
 
-/// What lights a room, as bounces found it.
+/// The bright places that light a room, as found by bounces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrightPlaces {
-    /// Where they are aimed at from.
+    /// The region from which they are aimed at.
     pub within: Bounds,
     /// The places, at most six.
     pub places: Vec<BrightPlace>,
-    /// Root of the mean square of the radiance from elsewhere.
+    /// Root mean square of the radiance from elsewhere, plus the mean radiance of all bounces.
     pub elsewhere: f64,
     /// The share of the sky's light that bounces found elsewhere.
     pub missed: f64,
-    /// Whether they are openings to the sky.
+    /// Whether the places are openings to the sky.
     pub are_openings: bool,
 }
 
 impl BrightPlaces {
-    /// Those that are openings.
+    /// Returns the places that are openings, oriented toward the room, and the share of the sky's light that they miss.
     pub fn openings(&self) -> SkyOpenings {
         let into = self.within.center();
         let opening = |&BrightPlace { center, half: [u, v], .. }: &BrightPlace| {
@@ -68,7 +70,7 @@ impl BrightPlaces {
     }
 }
 
-/// A place, ready to be aimed at.
+/// A bright place, prepared for sampling.
 #[derive(Clone, Debug)]
 struct BrightTarget {
     shape: Shape,
@@ -80,24 +82,24 @@ struct BrightTarget {
     radiance: f64,
 }
 
-/// Bright places as the tracer reads them.
+/// Bright places, prepared for the tracer.
 #[derive(Clone, Debug)]
 pub(super) struct Bright {
     within: Bounds,
     targets: Vec<BrightTarget>,
     elsewhere: f64,
-    /// What power of a surface's albedo is left to bounces that are not aimed, at least.
+    /// Exponent of a surface's albedo in the smallest share of bounces that are not aimed.
     left: i32,
 }
 
-/// How bounces are drawn at one point.
+/// The distribution of aimed bounces at one point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aiming<'a> {
     bright: &'a Bright,
     from: DVec3,
-    /// How likely each place is, of all aimed directions.
+    /// Probability of each place among the aimed directions.
     chances: [f64; MOST],
-    /// How likely a direction is aimed.
+    /// Probability that a direction is aimed.
     share: f64,
 }
 
@@ -119,12 +121,12 @@ impl Bright {
         Self { within: found.within, targets, elsewhere: ELSEWHERE * found.elsewhere, left }
     }
 
-    /// How bounces are drawn at a point of a surface, by its unit normal and albedo; none where they are not aimed.
+    /// Returns how to aim bounces at a point of a surface with this unit normal and albedo; `None` if they are not.
     pub(super) fn at(&self, from: DVec3, normal: DVec3, albedo: impl FnOnce() -> f64) -> Option<Aiming<'_>> {
         if !self.within.contains(from) {
             return None;
         }
-        // About what each brings: radiance x solid angle x cosine, bounded nearby.
+        // Roughly what each place contributes: radiance x solid angle x cosine, bounded nearby.
         let (mut chances, mut all) = ([0.0; MOST], 0.0);
         for (chance, target) in chances.iter_mut().zip(&self.targets) {
             let way = target.center - from;
@@ -150,12 +152,12 @@ impl Bright {
 }
 
 impl Aiming<'_> {
-    /// Divides a random number: that of an aimed direction, or that of the material's.
+    /// Chooses between an aimed direction (`Ok`) and one by the material (`Err`), and returns the random number for it.
     pub(super) fn divided(&self, u: f64) -> Result<f64, f64> {
         if u < self.share { Ok(u / self.share) } else { Err((u - self.share) / (1.0 - self.share)) }
     }
 
-    /// An aimed direction, the place it was aimed at and its density there.
+    /// Samples an aimed direction. Also returns the place that it was aimed at and its density there, if that is known.
     pub(super) fn draw(&self, [u, v]: [f64; 2]) -> Option<(DVec3, Option<(usize, f64)>)> {
         let (mut left, mut chosen) = (u, None);
         for (number, &chance) in self.chances.iter().enumerate().filter(|(_, chance)| **chance > 0.0) {
@@ -174,12 +176,12 @@ impl Aiming<'_> {
         Some((sample.direction, known))
     }
 
-    /// The density of a direction that the material draws with another.
+    /// Returns the density of a direction that the material samples with density `own`.
     pub(super) fn pdf(&self, direction: DVec3, own: f64) -> f64 {
         self.pdf_knowing(direction, own, None)
     }
 
-    /// The density of a direction, where that of one of the places is known already.
+    /// Returns the density of a direction, given the material's density `own` and that of one place, if it is known.
     pub(super) fn pdf_knowing(&self, direction: DVec3, own: f64, known: Option<(usize, f64)>) -> f64 {
         let ray = Ray { origin: self.from, direction };
         let mut sum = 0.0;
@@ -202,7 +204,7 @@ mod tests {
     use super::*;
     use crate::math::{Frame, cosine_hemisphere, unit};
 
-    /// Three places: upright, lying, tilted; all of them, but where a point lies in their plane, are aimed at.
+    /// Returns three places: one upright, one lying and one tilted. All are aimed at, but from their planes.
     fn bright() -> Bright {
         let place = |center: [f64; 3], u: [f64; 3], v: [f64; 3], radiance| BrightPlace {
             center: center.into(),
@@ -221,7 +223,7 @@ mod tests {
     const ROWS: usize = 12;
     const COLUMNS: usize = 24;
 
-    /// Cell of a direction: rows of equal cosine over the hemisphere, and one more for all directions below.
+    /// Returns the cell of a direction: rows of equal cosine over the hemisphere, and one for all directions below.
     fn cell(frame: &Frame, direction: DVec3) -> usize {
         let local = frame.to_local(direction);
         if local.z <= 0.0 {
@@ -231,7 +233,7 @@ mod tests {
         ((local.z * ROWS as f64) as usize).min(ROWS - 1) * COLUMNS + (column as usize).min(COLUMNS - 1)
     }
 
-    /// Directions drawn from the middle of things, and from a point in the plane of a place, follow their density.
+    /// Directions sampled from between the places, and from a point in the plane of one, follow their density.
     #[test]
     fn aimed_directions_follow_their_density() {
         let bright = bright();
@@ -243,7 +245,7 @@ mod tests {
         ] {
             let aiming = bright.at(from, normal, || 0.5).expect("it lies within");
             let frame = Frame::about(normal);
-            // The density by the middles of a fine grid of all directions.
+            // Integrates the density by the midpoints of a fine grid of all directions.
             let (rows, columns) = (ROWS * 100, COLUMNS * 100);
             let mut expected = vec![0.0; ROWS * COLUMNS + 1];
             for row in 0..2 * rows {
@@ -260,7 +262,7 @@ mod tests {
             assert!((sum - 1.0).abs() < 1e-3, "the density sums to {sum}");
             let (mut counts, total) = (vec![0.0; expected.len()], 1 << 18);
             for number in 0..total {
-                // Points of two additive sequences: spread, but without the structure of cells.
+                // Points of two additive sequences: well spread, but without a structure of cells.
                 let u = |step: f64| (0.5 + f64::from(number) * step).fract();
                 let [a, b] = [u(0.754_877_666_246_692_8), u(0.569_840_290_998_053_3)];
                 let direction = match aiming.divided(a) {
@@ -269,7 +271,7 @@ mod tests {
                 };
                 counts[cell(&frame, direction)] += 1.0;
             }
-            // Sums over cells err by the grid; draws by less than independent ones would.
+            // The sums over cells have the error of the grid. Draws vary less than independent ones would.
             for (i, (count, share)) in counts.iter().zip(&expected).enumerate() {
                 let due = share * f64::from(total);
                 let limit = 4.5 * due.max(1.0).sqrt() + 2e-3 * due + 5.0;

@@ -1,40 +1,41 @@
 //! Adaptive sampling: where an image takes more samples than on average, and where fewer.
 //!
-//! Of a time that is given, the error is least where the samples n of a pixel go as the root of its variance over what
-//! a sample of it takes (Neyman 1934, *On the Two Different Aspects of the Representative Method*). A pilot whose
-//! samples are not used for the image tells that, so that no pixel depends on its own samples: else it would be too
-//! dark (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*). Counts are powers of two times the
-//! samples asked for, as sets of random numbers are spread evenly in powers of two.
+//! In a given time, the error is smallest if the number of samples of a pixel is proportional to the square root of its
+//! variance over the cost of a sample (Neyman 1934, *On the Two Different Aspects of the Representative Method*). A
+//! pilot estimates both. Its samples are not used for the image, so no pixel's count depends on its own samples.
+//! Otherwise the pixel would be too dark (Kirk & Arvo 1991, *Unbiased Sampling Techniques for Image Synthesis*). Counts
+//! are the requested number of samples times a power of two, because sets of random numbers are well distributed in
+//! powers of two.
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-/// How many samples the pixels of each cell of the format take.
+/// The sampling rates of pixels, for each cell of the format.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampleDensity {
-    /// Cells along both sides, 1 or more. Each has as many pixels as any other, or one more.
+    /// Number of cells along both sides, 1 or more. Each cell has as many pixels as any other, or one more.
     pub cells: [u32; 2],
-    /// Of each cell, row by row, the power of two of its samples, [`LEAST`](Self::LEAST) to [`MOST`](Self::MOST).
+    /// Power of two of the samples in each cell, row by row, from [`LEAST`](Self::LEAST) to [`MOST`](Self::MOST).
     pub powers: Vec<i8>,
 }
 
-/// By what power of two a pixel takes more samples than on average.
+/// The sampling rate of a pixel: a power of two, relative to the average.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rate(i8);
 
 impl SampleDensity {
-    /// Half as many samples.
+    /// Half as many samples as on average.
     pub const LEAST: i8 = -1;
-    /// Four times as many samples.
+    /// Four times as many samples as on average.
     pub const MOST: i8 = 2;
 
-    /// Samples for each one on average, by a power.
+    /// Returns the factor on the average number of samples, given its power of two.
     pub fn times(power: i8) -> f64 {
         f64::from(power).exp2()
     }
 
-    /// The rate of a pixel; beyond the format's edge, that of the nearest one.
+    /// Returns the rate of a pixel. Beyond the edge of the format, it is the rate of the nearest pixel.
     pub(super) fn rate(&self, format: [u32; 2], pixel: [i32; 2]) -> Rate {
         let place = |axis: usize| {
             let at = pixel[axis].clamp(0, format[axis] as i32 - 1) as u64;
@@ -46,19 +47,19 @@ impl SampleDensity {
 }
 
 impl Rate {
-    /// Samples for each one on average.
+    /// Returns the factor on the average number of samples.
     pub fn times(self) -> f64 {
         SampleDensity::times(self.0)
     }
 
-    /// Those that it takes where so many of all are due.
+    /// Returns the samples that the pixel takes, given those that an average pixel takes.
     pub fn of(self, all: &Range<u32>) -> Range<u32> {
         let of =
             |number: u32| if self.0 < 0 { number.div_ceil(1 << -self.0) } else { number.saturating_mul(1 << self.0) };
         of(all.start)..of(all.end)
     }
 
-    /// The one of all that one of its own is taken with.
+    /// Returns the sample of an average pixel with which a sample of this one is taken.
     pub fn among_all(self, own: u32) -> u32 {
         if self.0 < 0 { own << -self.0 } else { own >> self.0 }
     }

@@ -1,4 +1,4 @@
-//! The dyes of a scene, as sources of light and as what light excites.
+//! The dyes of a scene, both as light sources and as what light excites.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,27 +9,27 @@ use crate::material::{Diffuse, Material};
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve, Distinct, Draw, Dye, Emission, Lanes, Quantity, Response, Table};
 
-/// The least chance of a dye, but for many of them, and the most of all: only how paths are drawn depends on it.
+/// Smallest probability of one dye, unless there are many, and largest of all together: only sampling depends on them.
 const LEAST: f64 = 0.05;
 const MOST: f64 = 0.75;
 
 #[derive(Clone, Debug)]
 pub(super) struct Dyes {
-    /// The number of the first dye of each material, and of one more.
+    /// The number of the first dye of each material, and at the end the number of all dyes.
     first: Vec<usize>,
-    /// What the lanes of each source are worth to each dye.
+    /// For each dye, the response to the lanes of each source.
     excitations: Vec<Vec<Response>>,
-    /// What share of even light each shines again, about.
+    /// Roughly the share of light of a flat spectrum that each dye emits again.
     shares: Vec<f64>,
-    /// How many lights there are, behind which dyes follow as sources.
+    /// Number of lights. As sources, dyes are numbered after the lights.
     lights: usize,
-    /// The matte white surface at which paths look for what excites a dye: `excitations` know how much that absorbs.
+    /// The matte white surface at which paths look for light that excites a dye: `excitations` include what it absorbs.
     pub(super) white: Material<Table>,
 }
 
 impl Dyes {
-    /// The dyes of a scene and what the light of each is worth to the sensor; none where there are no dyes, or where
-    /// lanes are no wavelengths. Makes the basis one for them.
+    /// Returns the dyes of a scene and the sensor's responses to their light, and replaces the basis by one that
+    /// excites them. Returns `None` if there are no dyes, or if lanes are not wavelengths.
     pub(super) fn new(scene: &Scene<Curve>, basis: &mut Basis) -> Option<(Self, Vec<Response>)> {
         let (mut first, mut dyes): (Vec<usize>, Vec<Dye>) = (Vec::new(), Vec::new());
         for named in &scene.materials {
@@ -63,30 +63,30 @@ impl Dyes {
         Some((Self { first, excitations, shares, lights: lights.len(), white }, responses))
     }
 
-    /// The numbers of an object's dyes.
+    /// Returns the numbers of an object's dyes.
     #[inline]
     pub(super) fn of(&self, scene: &Scene<Table>, object: u32) -> Range<usize> {
         let material = scene.objects[object as usize].material as usize;
         self.first[material]..self.first[material + 1]
     }
 
-    /// How likely a path goes on with each of some dyes where it goes on in one way.
+    /// Returns the probabilities of following each of these dyes, for a path that continues in only one way.
     pub(super) fn chances(&self, dyes: Range<usize>) -> DyeChances<'_> {
         let total: f64 = self.shares[dyes].iter().sum();
         DyeChances { dyes: self, fit: (MOST / total).min(1.0), total }
     }
 
-    /// A dye as a source of light.
+    /// Returns the number of a dye as a source of light.
     pub(super) fn source(&self, dye: usize) -> SourceId {
         self.lights + dye
     }
 
-    /// What the lanes of a source are worth to a dye.
+    /// Returns a dye's response to the lanes of a source.
     pub(super) fn excitation(&self, dye: usize, source: SourceId) -> &Response {
         &self.excitations[dye][source]
     }
 
-    /// The most that `number` returns for a dye, as a source with its lanes, which light of an emission excites.
+    /// Returns the maximum of `number` over all dyes, each as a source with the lanes that a light's emission excites.
     pub(super) fn most_excited<const N: usize>(
         &self,
         light: LightId,
@@ -99,14 +99,14 @@ impl Dyes {
         (0..self.excitations.len()).map(of_dye).fold(0.0, f64::max)
     }
 
-    /// How much a dye shines where light arrives in lanes: the number that stands for its brightness.
+    /// Returns the brightness of a dye where light arrives in lanes.
     pub(super) fn excited<const N: usize>(&self, dye: usize, received: &ReceivedLight<N>) -> f64 {
         let ReceivedLight { source, draw, lanes, parted } = *received;
         self.excitation(dye, source).sensor(draw, *lanes, parted)[0]
     }
 }
 
-/// How likely a path goes on with some dyes.
+/// The probabilities with which a path follows some dyes.
 pub(super) struct DyeChances<'a> {
     dyes: &'a Dyes,
     fit: f64,
@@ -114,12 +114,12 @@ pub(super) struct DyeChances<'a> {
 }
 
 impl DyeChances<'_> {
-    /// With one of them.
+    /// Returns the probability of one of the dyes.
     pub(super) fn of(&self, dye: usize) -> f64 {
         self.fit * self.dyes.shares[dye]
     }
 
-    /// With any.
+    /// Returns the probability of all dyes together.
     pub(super) fn total(&self) -> f64 {
         self.fit * self.total
     }

@@ -1,24 +1,24 @@
-//! How the first surface sent light to the camera.
+//! The lobe by which the first surface sent light to the camera.
 
 use super::white::White;
 use crate::material::{Lobes, Material, Scatter, ScatterContext};
 use crate::math::DVec3;
 use crate::spectrum::{Lanes, Table};
 
-/// The lobe of the first surface by which light came to the camera.
+/// The lobe of the first surface by which light reached the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FirstLobe {
-    /// Reflected in every direction: this share of each film channel by a diffuse lobe, the rest by a glossy one.
+    /// Reflected by a lobe of nonzero width: `diffuse` is the diffuse share of each film channel, the rest is glossy.
     Reflected { diffuse: [f32; 3] },
-    /// Mirrored.
+    /// Reflected specularly.
     Specular,
-    /// Come through the surface.
+    /// Transmitted through the surface.
     Transmitted,
 }
 
 impl FirstLobe {
-    /// Of a material that scatters light from the unit vector `wi` in every direction, through the surface or not.
-    /// Where it reflects by both lobes, these are compared in white light: exact where each lane is a film channel.
+    /// Returns the lobe by which a material scatters light from the unit vector `wi`, across the surface if `crosses`.
+    /// Diffuse and glossy reflection are compared in white light, which is exact if each lane is a film channel.
     pub(super) fn scattered<const N: usize>(
         white: Option<&White>,
         material: &Material<Table>,

@@ -4,26 +4,26 @@ use std::collections::HashMap;
 
 use crate::math::Distribution2d;
 
-/// Cells along each side of the square.
+/// Number of cells along each side of the square.
 const SIDE: usize = 64;
-/// Share of the photons that is sent everywhere, whatever was learned: what was missed must not be much too bright.
+/// Share of the photons that is sent everywhere, whatever was learned. It bounds the brightness of what was missed.
 const EVERYWHERE: f64 = 0.2;
 
 /// A density on the unit square, constant in each of its cells.
 ///
-/// Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*, learned where to send light in the same way.
+/// Jensen 1995, *Importance Driven Path Tracing Using the Photon Map*, learns where to send light in the same way.
 #[derive(Clone, Debug)]
 pub(super) struct Guide {
     cells: Distribution2d,
 }
 
 impl Guide {
-    /// A density of 1 everywhere.
+    /// Returns a density of 1 everywhere.
     pub(super) fn even() -> Self {
         Self::of(|_| 1.0)
     }
 
-    /// The density that follows which of some photons were seen: their places, and whether they were.
+    /// Learns a density from some photons: their places, and whether they were seen.
     pub(super) fn learned(photons: &[([f64; 2], bool)]) -> Self {
         let (mut sent, mut seen) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]);
         for &(place, was_seen) in photons {
@@ -32,7 +32,7 @@ impl Guide {
             seen[cell] += f64::from(u8::from(was_seen));
         }
         let share: Vec<f64> = sent.iter().zip(&seen).map(|(sent, seen)| seen / f64::max(*sent, 1.0)).collect();
-        // What begins in a cell may reach into the next one.
+        // A region that begins in one cell may reach into the next.
         let spread = |cell: usize| {
             let (row, column) = (cell / SIDE, cell % SIDE);
             let near = |x: usize| x.saturating_sub(1)..=(x + 1).min(SIDE - 1);
@@ -41,8 +41,8 @@ impl Guide {
         Self::following(&(0..SIDE * SIDE).map(|cell| share[cell] + 0.25 * spread(cell)).collect::<Vec<_>>())
     }
 
-    /// The density that follows weights of some cells, by their numbers: as much those of single cells as those of
-    /// blocks of 2 x 2, 4 x 4 and 8 x 8 cells, where few of many places are known.
+    /// Returns a density that follows weights of cells, given by number. Weights of single cells count as much as those
+    /// of blocks of 2 x 2, 4 x 4 and 8 x 8 cells, because few of many places are known.
     pub(super) fn weighted(weights: &[(u32, f32)]) -> Self {
         let mut wanted = vec![0.0; SIDE * SIDE];
         for level in 0..=3 {
@@ -57,7 +57,7 @@ impl Guide {
         Self::following(&wanted)
     }
 
-    /// The density that follows what is wanted of each cell, for the most part.
+    /// Returns a density that is mostly proportional to what is wanted of each cell.
     fn following(wanted: &[f64]) -> Self {
         let total: f64 = wanted.iter().sum();
         if total == 0.0 {
@@ -69,22 +69,22 @@ impl Guide {
         })
     }
 
-    /// A constant density in all cells that the largest disc of the square reaches into, 0 in the others.
+    /// Returns a constant density in all cells that the largest disk in the square reaches into, and 0 in the others.
     pub(super) fn disc() -> Self {
         Self::of(|cell| f64::from(u8::from(touches_disc(cell))))
     }
 
-    /// A density with probabilities of the cells, up to a factor.
+    /// Returns a density from the probabilities of cells, up to a factor.
     fn of(probability: impl Fn(usize) -> f64) -> Self {
         Self { cells: Distribution2d::new([SIDE; 2], |[column, row]| probability(row * SIDE + column), |_| 1.0) }
     }
 
-    /// A place of the square for two random numbers.
+    /// Samples a place in the square from two random numbers.
     pub(super) fn sample(&self, u: [f64; 2]) -> [f64; 2] {
         self.cells.sample_place(u)
     }
 
-    /// The part of the square in which most places are drawn, about: of n cells that are equally likely, n cells.
+    /// Returns roughly the part of the square in which most places are sampled: for n equally likely cells, n cells.
     pub(super) fn extent(&self) -> f64 {
         let probability = |cell: usize| self.cells.probability([cell % SIDE, cell / SIDE]);
         1.0 / ((SIDE * SIDE) as f64 * (0..SIDE * SIDE).map(|cell| probability(cell) * probability(cell)).sum::<f64>())
@@ -95,7 +95,7 @@ impl Guide {
     }
 }
 
-/// Whether the largest disc of the square reaches into a cell.
+/// Returns whether the largest disk in the square reaches into a cell.
 fn touches_disc(cell: usize) -> bool {
     let nearest = |at: usize| {
         let (low, high) = (2.0 * at as f64 / SIDE as f64 - 1.0, 2.0 * (at + 1) as f64 / SIDE as f64 - 1.0);
@@ -127,7 +127,7 @@ mod tests {
         for guide in [Guide::even(), Guide::disc(), learned.clone(), weighted] {
             let total: f64 = grid(SIDE as u32).map(|place| guide.density(place)).sum::<f64>() / (SIDE * SIDE) as f64;
             assert!((total - 1.0).abs() < 1e-12, "the density sums to {total}");
-            // An integral over the disc by drawing places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
+            // Integrates over the disk by sampling places: pi / 4 for its area, a sixteenth of it for (x - 1 / 2)^2.
             let inside = |p: [f64; 2]| (p[0] - 0.5) * (p[0] - 0.5) + (p[1] - 0.5) * (p[1] - 0.5) < 0.25;
             let square = |p: [f64; 2]| if inside(p) { (p[0] - 0.5) * (p[0] - 0.5) } else { 0.0 };
             let draws = grid(1000).map(|u| guide.sample(u)).map(|p| square(p) / guide.density(p));

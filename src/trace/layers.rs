@@ -1,4 +1,4 @@
-//! The layers that are asked for beside the image: which they are, and where their sums stand.
+//! The layers that are requested besides the image, and where their sums are stored.
 
 use std::collections::HashMap;
 
@@ -12,38 +12,38 @@ use crate::spectrum::{Basis, Curve, apply};
 
 /// The layers of a world's image.
 ///
-/// A pixel, a camera sample and what photons show in a pixel each have a row of numbers for them: three sums of a
-/// layer of light, and so on in the order of the layers.
+/// Each pixel, each camera sample and the splatted photons of each pixel have a row of numbers: three sums for a layer
+/// of light, and so on, in the order of the layers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layers {
-    /// In the order in which they were asked for.
+    /// The requested layers, in the order of the request.
     pub(super) wanted: Vec<Layer>,
-    /// Of each layer that there is, where its numbers begin, if it is wanted.
+    /// For each layer that exists, where its numbers begin, if it is requested.
     places: Vec<Option<usize>>,
-    /// Numbers in a row.
+    /// Length of a row.
     pub(super) numbers: usize,
     /// The group of each light, and the names of the groups' layers.
     group_of: Vec<usize>,
     pub(super) groups: Vec<String>,
-    /// Which surface is the first.
+    /// Which surface counts as the first.
     pub(super) first: FirstSurface,
-    /// The numbers by which mattes tell objects apart: of each matte that is wanted, a number for each object.
+    /// The IDs by which mattes tell objects apart: for each requested matte, an ID for each object.
     pub(super) ids: Vec<(Layer, Vec<u32>)>,
     /// Where the numbers of shadow catchers begin, if there are any: see [`CatcherLight`].
     caught: Option<usize>,
-    /// The bands of a spectral image, if one is asked for.
+    /// The bands of a spectral image, if one is requested.
     pub(super) spectrum: Option<Spectrum>,
-    /// Whether light is told apart by the lobe of the first surface.
+    /// Whether light is separated by the lobe of the first surface.
     pub(super) lobes_apart: bool,
-    /// A light of radiance 1, by which albedo, lobes and residual are looked at.
+    /// A light of radiance 1, used to measure albedo, lobes and residual.
     pub(super) white: Option<White>,
-    /// How bright red, green and blue of 1 are.
+    /// The luminance of unit red, green and blue.
     luminance: [f64; 3],
-    /// The color of the film's white: no albedo is above it.
+    /// The color of the film's white: the largest possible albedo.
     pub(super) film_white: [f64; 3],
 }
 
-/// The name that each object has in a matte.
+/// Returns the name of each object in a matte.
 fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
     scene.objects.iter().map(move |object| match matte {
         Layer::CryptoMaterial => scene.materials[object.material as usize].name.as_str(),
@@ -52,46 +52,46 @@ fn names<S>(scene: &Scene<S>, matte: Layer) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Light that a pixel's shadow catchers send to the camera, as a color, or as luminance; or sums of it.
+/// Light that a pixel's shadow catchers send to the camera, as color or as luminance, or sums of it.
 #[derive(Clone, Copy)]
 pub(super) struct CatcherLight<T> {
-    /// With all objects.
+    /// The light with all objects.
     pub(super) with: T,
-    /// With those alone that are in the plate or light it.
+    /// The light with only those objects that are in the plate or light it.
     pub(super) without: T,
-    /// The share of the pixel that they cover.
+    /// The share of the pixel that shadow catchers cover.
     pub(super) share: f64,
 }
 
 impl CatcherLight<[f64; 3]> {
-    /// The part of each channel that other objects take, times the share of the pixel; negative where they add light.
+    /// Returns the share of each channel that other objects take, times that of the pixel; negative if they add light.
     pub(super) fn shadow(&self) -> [f64; 3] {
         [0, 1, 2].map(|channel| self.share * taken(self.with[channel], self.without[channel]))
     }
 }
 
-/// The part of some light that is not there with all objects; 0 of no light.
+/// Returns the share of some light that is missing with all objects present; 0 if there is no light.
 fn taken(with: f64, without: f64) -> f64 {
     if without > 0.0 { 1.0 - with / without } else { 0.0 }
 }
 
 impl CatcherLight<f64> {
-    /// A sum, without what it was before.
+    /// Returns what was added to the sum since `before`.
     pub(super) fn since(self, before: Self) -> Self {
         Self { with: self.with - before.with, without: self.without - before.without, share: self.share - before.share }
     }
 
-    /// The alpha there: the share of the luminance that other objects take, times that of the pixel; 0 of more light.
+    /// Returns the alpha: the share of luminance that other objects take, times that of the pixel; 0 if they add light.
     pub(super) fn coverage(&self) -> f64 {
         (self.share * taken(self.with, self.without)).clamp(0.0, self.share)
     }
 }
 
-/// Numbers of shadow catchers: two colors and a share.
+/// Values for shadow catchers: two colors and a share.
 const OF_CAUGHT: usize = 7;
-/// Numbers of polarization: the luminance of each Stokes component.
+/// Values for polarization: the luminance of each Stokes component.
 pub(super) const STOKES: usize = 4;
-/// Numbers of a half of the samples: a color, and how many samples they are.
+/// Values for a half of the samples: a color, and how many samples it has.
 pub(super) const OF_A_HALF: usize = 4;
 
 impl Layers {
@@ -138,7 +138,7 @@ impl Layers {
         layers
     }
 
-    /// What the numbers of the mattes stand for.
+    /// Returns the manifests that name what the IDs of the mattes stand for.
     pub(super) fn manifests<S>(&self, scene: &Scene<S>) -> Vec<Manifest> {
         self.ids.iter().map(|(matte, _)| Manifest::new(matte.name(), names(scene, *matte))).collect()
     }
@@ -147,18 +147,18 @@ impl Layers {
         self.wanted.is_empty() && self.caught.is_none() && self.spectrum.is_none()
     }
 
-    /// Where in a row the numbers of a layer begin; none if it is not wanted.
+    /// Returns where in a row the numbers of a layer begin; `None` if it is not requested.
     #[inline]
     pub(super) fn at(&self, layer: Layer) -> Option<usize> {
         self.places[layer as usize]
     }
 
-    /// Whether it matters of which light gathered photons are, whether they were dispersed, or what their spectra are.
+    /// Returns whether layers need each gathered photon's light, spectrum or polarization, or whether it was dispersed.
     pub(super) fn tell_photons_apart(&self) -> bool {
         self.at(Layer::Lights).or(self.at(Layer::Dispersed)).is_some() || self.has_stokes() || self.spectrum.is_some()
     }
 
-    /// Whether anything is wanted of first surfaces.
+    /// Returns whether any layer shows first surfaces.
     pub(super) fn see_surfaces(&self) -> bool {
         use Layer::{Albedo, GeometricNormal, Normal, Position, Uv};
         [Albedo, Normal, GeometricNormal, Position, Uv].iter().any(|layer| self.at(*layer).is_some())
@@ -183,12 +183,12 @@ impl Layers {
         }
     }
 
-    /// By how much other objects change the light on a shadow catcher, if a row has some: what alpha is made of.
+    /// Returns by how much other objects change the light on a shadow catcher, if there is one. Alpha follows from it.
     pub(super) fn changed(&self, row: &[f64]) -> [f64; 3] {
         self.caught.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| row[at + channel] - row[at + 3 + channel]))
     }
 
-    /// What shadow catchers show, by the sums of so many samples and what photons show.
+    /// Returns the light of shadow catchers, from the sums of `kept` samples and what photons splat.
     pub(super) fn caught(&self, sums: &[f64], splatted: &[f64], kept: f64) -> Option<CatcherLight<[f64; 3]>> {
         let at = self.caught?;
         let mean = |number: usize| sums[at + number] / kept + splatted.get(at + number).copied().unwrap_or_default();
@@ -196,7 +196,7 @@ impl Layers {
         Some(CatcherLight { with, without, share: mean(6) })
     }
 
-    /// The luminance of what shadow catchers send.
+    /// Returns the luminance of the light of shadow catchers.
     pub(super) fn luminance_caught(&self, caught: &CatcherLight<[f64; 3]>) -> CatcherLight<f64> {
         let [with, without] = [&caught.with, &caught.without].map(|rgb| self.luminance_of(rgb));
         CatcherLight { with, without, share: caught.share }
@@ -210,7 +210,7 @@ impl Layers {
         }
     }
 
-    /// Adds light to a row by the lobe of the first surface.
+    /// Adds light to the layers of a row, by the lobe of the first surface.
     fn add_by_lobe(&self, row: &mut [f64], first: FirstLobe, bounces: u32, rgb: &[f64; 3]) {
         let mut add = |direct: Layer, indirect: Layer, share: [f64; 3]| {
             let layer = if bounces == 1 { direct } else { indirect };
@@ -227,7 +227,7 @@ impl Layers {
         }
     }
 
-    /// Adds three numbers to those of a layer in a row, if it is wanted.
+    /// Adds three numbers to a layer's numbers in a row, if the layer is requested.
     #[inline]
     pub(super) fn add_to(&self, layer: Layer, row: &mut [f64], numbers: [f64; 3]) {
         if let Some(at) = self.at(layer) {
@@ -235,12 +235,12 @@ impl Layers {
         }
     }
 
-    /// Whether anything is wanted of Stokes vectors.
+    /// Returns whether any layer needs Stokes vectors.
     pub(super) fn has_stokes(&self) -> bool {
         self.wanted.iter().copied().any(Layer::is_of_polarization)
     }
 
-    /// Adds S1, S2 and S3 of light to a row, times a factor.
+    /// Adds S1, S2 and S3 of light, times a factor, to a row.
     #[cold]
     pub(super) fn add_stokes(&self, row: &mut [f64], stokes: [[f64; 3]; 3], factor: f64) {
         for (layer, color) in Layer::STOKES.into_iter().zip(stokes) {

@@ -1,5 +1,5 @@
 //! How far a plan looks ahead.
 
-/// Rays that one look ahead follows, about, if it has seen something by then. A plan looks some ten times, and a ray
-/// takes half a microsecond to two: together they take a second or two, however many rays a path or a photon has.
+/// Rough number of rays of one look ahead, if it has found something by then. A plan looks some ten times, and a ray
+/// takes half a microsecond to two. All looks take a second or two together, however many rays a path or a photon has.
 pub const RAYS_OF_A_LOOK: u64 = 1 << 17;

@@ -7,13 +7,13 @@ use crate::scene::{MaterialId, Scene};
 use crate::shape::{Plane, Shape, SurfacePoint};
 use crate::spectrum::{Draw, Lanes, Table};
 
-/// Different media that may overlap in one place: a lens of varying index is made of many shells.
+/// Maximum number of different media that may overlap in one place: a lens of varying index is made of many shells.
 pub const MOST_MEDIA: usize = 16;
 
-/// The media around a point, each with how many bodies of it are there.
+/// The media around a point, each with the number of its bodies around the point.
 ///
-/// Of several, the one of highest priority is really there (Schmidt & Budge 2002, *Simple Nested Dielectrics in Ray
-/// Traced Images*). Counting by material lets one body be made of many objects.
+/// If there are several, the medium of highest priority is really there (Schmidt & Budge 2002, *Simple Nested
+/// Dielectrics in Ray Traced Images*). Counting by material lets one body be made of many objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Media {
     materials: [MaterialId; MOST_MEDIA],
@@ -21,17 +21,17 @@ pub(super) struct Media {
     len: u8,
 }
 
-/// Whether an object counts.
+/// A predicate that tells whether an object counts.
 type Counts<'a> = &'a dyn Fn(u32) -> bool;
 
-/// What crossing a surface does to the media of a ray.
+/// The change of a ray's media where it crosses a surface.
 #[derive(Clone, Copy)]
 pub(super) struct Boundary {
-    /// The medium the ray came through; none is vacuum.
+    /// The medium on the side that the ray comes from; `None` is vacuum.
     pub(super) here: Option<MaterialId>,
-    /// The medium it enters if it goes on.
+    /// The medium that it enters if it crosses the surface.
     pub(super) beyond: Option<MaterialId>,
-    /// What it then enters or leaves; none if the media around it stay as they are.
+    /// The body that it then enters or leaves; `None` if the media around it stay the same.
     change: Option<MediumChange>,
 }
 
@@ -43,21 +43,21 @@ struct MediumChange {
 }
 
 impl Boundary {
-    /// The medium that the ray came through, and the one it enters if it goes on.
+    /// Returns the medium that the ray comes from, and the one that it enters if it crosses the surface.
     pub(super) fn sides(&self) -> [Option<MaterialId>; 2] {
         [self.here, self.beyond]
     }
 }
 
 impl Media {
-    /// The media around a point, by walking from it to infinity and back in thought: every body whose inside the walk
-    /// leaves more often than it enters is around the start. A half space may reach to infinity one way, so where there
-    /// are any the other way is walked as well.
+    /// Finds the media around a point. A straight walk from the point to infinity leaves every body around the point
+    /// more often than it enters it. This does not hold for half spaces, which may reach to infinity. They are counted
+    /// by the planes that the point lies behind.
     pub(super) fn around(scene: &Scene<Table>, start: DVec3, direction: DVec3) -> Self {
         Self::around_of(scene, start, direction, &|_| true)
     }
 
-    /// The media around a point, of those objects that count. Walks begin near `direction`.
+    /// Finds the media around a point, among the objects that count. The straight walk starts near `direction`.
     pub(super) fn around_of(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Self {
         let is_bounded = |object: u32| scene.objects[object as usize].shape.is_bounded() && counts(object);
         let left = Self::left_by(scene, start, aside(direction), &is_bounded);
@@ -71,7 +71,7 @@ impl Media {
         media
     }
 
-    /// How much more often a walk to infinity leaves bodies of each medium than it enters them.
+    /// Returns how much more often a walk to infinity leaves bodies of each medium than it enters them.
     fn left_by(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Vec<(MaterialId, i32)> {
         let mut balance: Vec<(MaterialId, i32)> = Vec::new();
         for MediumChange { material, enters } in medium_changes(scene, Ray { origin: start, direction }, None, counts) {
@@ -84,18 +84,19 @@ impl Media {
         balance
     }
 
-    /// The media after walking from one point to another along a straight line, through those objects that count.
+    /// Returns the media after a straight walk from one point to another, through the objects that count.
     pub(super) fn after_walk(self, scene: &Scene<Table>, [from, to]: [DVec3; 2], counts: Counts) -> Self {
         let Some(direction) = (to - from).try_normalize() else { return self };
         medium_changes(scene, Ray { origin: from, direction }, Some(to), counts).fold(self, Self::behind)
     }
 
-    /// The medium that is really there.
+    /// Returns the medium that is really there.
     pub(super) fn inside(&self, scene: &Scene<Table>) -> Option<MaterialId> {
         strongest(scene, self.materials[..self.len as usize].iter().copied())
     }
 
-    /// What a ray hits that crosses a body's surface; none if it never entered the body, or there is no room for more.
+    /// Returns the boundary where a ray crosses a body's surface; `None` if it never entered the body, or if there is
+    /// no room for another medium.
     fn boundary(&self, scene: &Scene<Table>, material: MaterialId, enters: bool) -> Option<Boundary> {
         let (here, at) = (self.inside(scene), self.place(material));
         let beyond = if enters {
@@ -110,18 +111,18 @@ impl Media {
         Some(Boundary { here, beyond, change: Some(MediumChange { material, enters }) })
     }
 
-    /// The media behind a boundary of these.
+    /// Returns the media behind a boundary of these media.
     pub(super) fn beyond(self, boundary: &Boundary) -> Self {
         boundary.change.map_or(self, |change| self.behind(change))
     }
 
-    /// The media behind the surface of a body; these if they do not fit to it.
+    /// Returns the media behind the surface of a body; unchanged if the surface does not fit them.
     fn behind(self, MediumChange { material, enters }: MediumChange) -> Self {
         if enters { self.entered(material) } else { self.left(material) }.unwrap_or(self)
     }
 
-    /// What a ray of a direction hits that crosses a surface of any material, which may bound no medium; and whether
-    /// the bodies around the ray fit to it.
+    /// Returns the boundary where a ray of this direction crosses a surface of any material, which may bound no medium.
+    /// Also returns whether the surface fits the media around the ray.
     pub(super) fn at_surface(
         &self,
         scene: &Scene<Table>,
@@ -137,13 +138,13 @@ impl Media {
         self.boundary(scene, material, enters).map_or((same, false), |boundary| (boundary, true))
     }
 
-    /// These media and others.
+    /// Returns these media combined with others.
     pub(super) fn and(self, others: &Self) -> Self {
         let of_each = others.materials.iter().zip(&others.counts).take(others.len as usize);
         of_each.fold(self, |media, (&material, &count)| media.with(material, count.into()))
     }
 
-    /// These media and so many bodies of one, as far as there is room.
+    /// Returns these media with `count` more bodies of one medium, or as many as there is room for.
     fn with(self, material: MaterialId, count: u32) -> Self {
         (0..count).fold(self, |media, _| media.entered(material).unwrap_or(media))
     }
@@ -179,10 +180,11 @@ impl Media {
     }
 }
 
-/// Surfaces a straight walk crosses at most; more are taken for a walk that never ends.
+/// Maximum number of surfaces that a straight walk crosses. A longer walk is taken to be endless.
 const MOST_CROSSINGS: usize = 100_000;
 
-/// The clear bodies that a straight walk enters and leaves, to a point or to infinity, of those objects that count.
+/// Lists the clear bodies that a straight walk to a point or to infinity enters and leaves, among the objects that
+/// count.
 fn medium_changes(
     scene: &Scene<Table>,
     mut ray: Ray,
@@ -202,10 +204,11 @@ fn medium_changes(
     surfaces.take(MOST_CROSSINGS).filter(is_of_body)
 }
 
-/// How many half spaces of each medium a point lies in, of those planes that count.
+/// Returns how many half spaces of each medium a point lies in, among the planes that count.
 ///
-/// What is between two planes that look away from each other is a slab: behind which of them one is everywhere does not
-/// count. So many are taken off as lie around at infinity, forward or backward, or where all planes of the medium look.
+/// Two planes that face away from each other bound a slab. Every point is behind at least one of them, so that one does
+/// not count. The number of half spaces around a point at infinity is therefore subtracted: the smallest of those
+/// forward, backward, and in the mean direction that the planes of the medium face.
 fn behind_planes(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: Counts) -> Vec<(MaterialId, u32)> {
     let mut planes: Vec<(MaterialId, Vec<&Plane>)> = Vec::new();
     for (number, object) in scene.unbounded().filter(|(number, _)| counts(*number)) {
@@ -226,23 +229,23 @@ fn behind_planes(scene: &Scene<Table>, start: DVec3, direction: DVec3, counts: C
     planes.into_iter().map(|(material, planes)| (material, count(&planes))).filter(|(_, count)| *count > 0).collect()
 }
 
-/// Of several media in one place, the one that is really there.
+/// Returns which of several media in one place is really there.
 fn strongest(scene: &Scene<Table>, media: impl Iterator<Item = MaterialId>) -> Option<MaterialId> {
     media.max_by_key(|material| (medium(scene, *material).priority, *material))
 }
 
-/// A unit vector near another. One that a scene gives, toward what a camera looks at or straight up, may lead exactly
-/// to a corner of an outline, which is hit once where a body is entered and left, or neither.
+/// Returns a unit vector near another. A direction given by a scene, toward what the camera looks at or straight up,
+/// may lead exactly to a corner of an outline. It is hit once where a body is entered and left, or not.
 fn aside(direction: DVec3) -> DVec3 {
     unit(Frame::about(direction).to_world(DVec3::new(7.31e-4, 4.19e-4, 1.0)))
 }
 
-/// The dielectric that fills a medium.
+/// Returns the dielectric that fills a medium.
 pub(super) fn medium(scene: &Scene<Table>, material: MaterialId) -> &Dielectric<Table> {
     scene.materials[material as usize].material.medium().expect("only dielectrics become media")
 }
 
-/// The refractive index of a medium, per lane; 1 in vacuum.
+/// Returns the refractive index of a medium, per lane; 1 in vacuum.
 pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside: Option<MaterialId>) -> [f64; N] {
     match inside {
         Some(material) => draw.read_exact(&medium(scene, material).index),
@@ -250,7 +253,8 @@ pub(super) fn index<const N: usize>(scene: &Scene<Table>, draw: &Draw<N>, inside
     }
 }
 
-/// What radiance in the second medium is worth in the first, per lane: it is as the square of the index.
+/// Returns the factor from radiance in the second medium to radiance in the first, per lane: radiance is proportional
+/// to the square of the index.
 pub(super) fn change_of_radiance<const N: usize>(
     scene: &Scene<Table>,
     draw: &Draw<N>,
@@ -263,7 +267,7 @@ pub(super) fn change_of_radiance<const N: usize>(
     })
 }
 
-/// The same, not yet read.
+/// Returns the refractive index of a medium without reading it for any lane; 1 in vacuum.
 pub(super) fn index_around(scene: &Scene<Table>, inside: Option<MaterialId>) -> Index<'_> {
     match inside.map(|material| &medium(scene, material).index) {
         Some(table) if table.is_flat() => Index::Same(table.bins()[0]),
@@ -272,11 +276,11 @@ pub(super) fn index_around(scene: &Scene<Table>, inside: Option<MaterialId>) -> 
     }
 }
 
-/// The index by which all rays are refracted on each side of a surface; none where that is each lane's own.
+/// Returns the index by which all rays are refracted on each side of a surface; `None` if each lane has its own.
 ///
-/// Shares are exact where media have flat faces, and no lane loses or wins light anywhere. What is left out: a lane
-/// travels as far inside as the ray, and a surface that scatters widely there gets light from outside over the ray's
-/// solid angle, which is (n / d)^2 of the light of a lane of index n by a ray of index d.
+/// Shares are exact where media have flat faces, and no lane loses or gains light anywhere. Two effects are neglected.
+/// A lane travels as far inside as the ray. A surface that scatters widely there receives light from outside over the
+/// ray's solid angle, which is (n / d)^2 of the light of a lane of index n if the ray has index d.
 pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>; 2]) -> [Option<f64>; 2] {
     let tables = sides.map(|side| side.map(|material| &medium(scene, material).index));
     if tables.iter().flatten().all(|table| table.direction().is_none()) {
@@ -288,17 +292,17 @@ pub(super) fn direction_indices(scene: &Scene<Table>, sides: [Option<MaterialId>
     })
 }
 
-/// Whether there are more media than may overlap in one place.
+/// Returns whether there are more media than may overlap in one place.
 pub(super) fn are_many(scene: &Scene<Table>) -> bool {
     scene.materials.iter().filter(|named| named.material.medium().is_some()).nth(MOST_MEDIA).is_some()
 }
 
-/// The bodies around each light; none where they may differ from point to point.
+/// Returns the bodies around each light; `None` where they may differ from point to point.
 pub(super) fn media_of_lights(scene: &Scene<Table>) -> Vec<Option<Media>> {
     (0..scene.lights.len()).map(|light| media_of(scene, light)).collect()
 }
 
-/// The bodies around a light; none where they may differ from point to point.
+/// Returns the bodies around a light; `None` if they may differ from point to point.
 fn media_of(scene: &Scene<Table>, light: LightId) -> Option<Media> {
     if scene.materials.iter().all(|named| named.material.medium().is_none()) {
         return Some(Media::default());

@@ -4,17 +4,18 @@
 //!
 //! 1. A lane whose throughput is 0 is not on the ray.
 //! 2. Lanes on one ray share its geometry, random numbers and density, and differ only in throughput.
-//! 3. A surface answers with branches, a direction and the lanes that came by it; dispersive lanes part there.
-//! 4. The walker is a loop over pending rays: it follows all branches while the weight is large, then one, then
-//!    plays roulette. A weight is the mean throughput over the lanes, without the factor of radiance between media.
-//! 5. Light that passes through holes and panes makes no other kind of path: next-event estimation and
-//!    photons look through them.
+//! 3. A surface answers with branches, each a direction and the lanes that take it; dispersive lanes part there.
+//! 4. The walker is a loop over pending rays. It follows all branches while the weight is large, then one, and then
+//!    plays Russian roulette. A weight is the mean throughput over the lanes, without the factor of radiance between
+//!    media.
+//! 5. Passing through holes and panes does not change the kind of a path: next-event estimation and photons look
+//!    through them.
 //! 6. In Heckbert's notation, with S for surfaces that mirror or refract and D for those that scatter widely: photons
-//!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`; paths from the camera then leave exactly those out.
-//! 7. Light that one diffuse surface sends another may be looked for at vertices of light paths and photons: `L (S|D)*
-//!    D D S* E`. Paths from the camera then go on to such a surface, and gather photons there, with the probability of
-//!    the rest alone, or else for other lights.
-//! 8. Light that reaches the camera is a contribution handed to the sensor.
+//!    may find `L S+ D E`, and gathered photons `L S+ D (D|S)* E`. Paths from the camera then leave out exactly these.
+//! 7. Light from one diffuse surface to another may be estimated at vertices of light paths and photons:
+//!    `L (S|D)* D D S* E`. Paths from the camera then continue to such a surface, and gather photons there, only with
+//!    the complementary probability, or for other lights.
+//! 8. Light that reaches the camera is a contribution that the sensor receives.
 //! 9. Random numbers are a pure function of seed, pixel, sample, branch and use; sums have a fixed order.
 //!
 //! A folder uses the files beside it and the folders above it in this list, never those below:

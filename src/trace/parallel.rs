@@ -1,8 +1,8 @@
-//! Work on all threads. Work is handed over as a `dyn` function: what deals it out is compiled once for each type of
-//! result, not once for every number of lanes.
+//! Work on all threads. Work is passed as a `dyn` function, so that the code that distributes it is compiled once for
+//! each type of result, and not once for every number of lanes.
 //!
-//! Pieces are dealt out one by one. Rayon's own choice for two threads is a quarter of them at a time, so that one
-//! waits for the other at the end.
+//! Pieces are dealt out one by one. With two threads, Rayon itself would deal out a quarter of them at a time, so that
+//! one thread would wait for the other at the end.
 
 use std::panic::resume_unwind;
 use std::thread;
@@ -32,7 +32,7 @@ pub(super) fn alone<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Does pieces of work 0 to `count` - 1, and answers their results in that order.
+/// Runs pieces of work 0 to `count` - 1, and returns their results in that order.
 pub(super) fn in_parallel<T: Send>(count: usize, work: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
     (0..count).into_par_iter().with_max_len(1).map(work).collect()
 }

@@ -1,4 +1,4 @@
-//! One pass over the pixels: which samples it takes.
+//! One pass over the pixels, and the samples that it takes.
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -11,36 +11,36 @@ use super::photon_targets::PhotonTargets;
 use super::replicates::{HALF, REPLICATES};
 use crate::math::seed_of;
 
-/// Which samples a pass takes of each pixel, and of which random numbers.
+/// The samples that a pass takes of each pixel, and their random numbers.
 #[derive(Clone, Debug)]
 pub(super) struct Pass {
-    /// Counted from 0.
+    /// Number of the pass, from 0.
     number: u32,
     /// Its samples in the sequence of its seed.
     pub(super) numbers: Range<u32>,
-    /// Of camera samples and light vertices.
+    /// The seed of camera samples and light vertices.
     pub(super) seed: u64,
-    /// Whose samples they are, where there are replicates.
+    /// The replicate that the samples belong to, if there are replicates.
     pub(super) replicate: Option<u32>,
 }
 
 impl Pass {
-    /// One of a render without replicates.
+    /// Returns a pass of a render without replicates.
     pub(super) fn of_one_render(world: &World, number: u32, numbers: Range<u32>) -> Self {
         Self { number, numbers, seed: world.method.seed, replicate: None }
     }
 
-    /// One of a replicate.
+    /// Returns a pass of one replicate.
     pub(super) fn of_replicate(world: &World, number: u32, numbers: Range<u32>, replicate: u32) -> Self {
         Self { number, numbers, seed: seed_of(world.method.seed, replicate.into()), replicate: Some(replicate) }
     }
 
-    /// One whose photons alone are looked at, by a pilot.
+    /// Returns a pass for a pilot that looks only at its photons.
     pub(super) fn of_photons_alone(world: &World, number: u32) -> Self {
         Self::of_one_render(world, number, 0..0)
     }
 
-    /// The seed of its photons, and how many passes' photons of that seed come before.
+    /// Returns the seed of its photons, and the number of earlier passes whose photons have that seed.
     pub(super) fn photon_seed(&self) -> (u64, u64) {
         match self.replicate {
             None => (self.seed, self.number.into()),
@@ -48,8 +48,8 @@ impl Pass {
         }
     }
 
-    /// Some targets with the photons that it sends to them: all of theirs, or, where there are replicates, a part of
-    /// `times` as many, as large as its part of the method's samples.
+    /// Returns targets with the photons that this pass sends to them. Without replicates, these are all their photons.
+    /// With replicates, these are `times` as many, in proportion to the pass's share of the method's samples.
     pub(super) fn targets<'t>(&self, world: &World, targets: &'t PhotonTargets, times: u32) -> Cow<'t, PhotonTargets> {
         let part = self.numbers.len() as f64 / f64::from(world.method.samples);
         match self.replicate {
@@ -58,33 +58,33 @@ impl Pass {
         }
     }
 
-    /// Whether it is of the first half of all replicates, where there are some.
+    /// Returns whether it belongs to the first half of all replicates; `None` without replicates.
     pub(super) fn is_of_first_half(&self) -> Option<bool> {
         self.replicate.map(|replicate| replicate < HALF)
     }
 }
 
-/// A stage of a render in replicates: each takes as many samples.
+/// A stage of a render in replicates, in which each replicate takes the same number of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Stage {
     /// Samples of a pixel that each replicate had before it.
     pub(super) before: u32,
-    /// How many each takes; 0 before it is known.
+    /// Samples of a pixel that each replicate takes; 0 before this is known.
     pub(super) size: u32,
-    /// The replicate whose turn it is, and how many it has taken.
+    /// The replicate whose turn it is, and the number of samples that it has taken.
     replicate: u32,
     taken: u32,
 }
 
 impl Stage {
-    /// The next pass, of at most so many samples.
+    /// Returns the next pass, of at most `most` samples.
     pub(super) fn pass(self, world: &World, number: u32, most: u32) -> Pass {
         let start = self.before + self.taken;
         let end = self.before + self.size.min(self.taken + most);
         Pass::of_replicate(world, number, start..end, self.replicate)
     }
 
-    /// After so many more samples of the replicate whose turn it is.
+    /// Returns the stage after more samples of the replicate whose turn it is.
     pub(super) fn after(mut self, samples: u32) -> Self {
         self.taken += samples;
         if self.taken == self.size {
@@ -96,7 +96,7 @@ impl Stage {
         self
     }
 
-    /// Samples of a pixel that a replicate has, but for the pass under way.
+    /// Returns the samples of a pixel that a replicate has, without those of the pass in progress.
     pub(super) fn samples_of(self, replicate: u32) -> u32 {
         self.before
             + match replicate.cmp(&self.replicate) {
@@ -106,7 +106,7 @@ impl Stage {
             }
     }
 
-    /// Whether it can be one, after so many samples of each pixel.
+    /// Returns whether this is a possible stage after this number of samples of each pixel.
     pub(super) fn is_after(self, samples: u32) -> bool {
         let Self { before, size, replicate, taken } = self;
         let each = |count: u32| u64::from(REPLICATES as u32) * u64::from(count);

@@ -1,9 +1,10 @@
-//! How light paths start whose vertices paths from the camera look at.
+//! How light paths start, to whose vertices paths from the camera connect.
 //!
-//! Those of lamps start anywhere on them. Those of a sun, or of what is bright in an image of the sky, start toward the
-//! places in its light that paths from the camera find: on a disc across that light, densest where such places lie
-//! behind. All other light of a sky starts through openings of a room. Light beside the disc and the openings is left
-//! to paths from the camera: of every ray to the sun or the sky it is known whether it runs through them.
+//! Paths of lamps start anywhere on them. Paths of a sun, or of the bright parts of a sky image, start toward the
+//! sunlit places that paths from the camera find. They start on a disk across the light, most densely where such places
+//! lie behind it. All other light of a sky starts through the openings of a room. Light outside the disk and the
+//! openings is left to paths from the camera: for every ray to the sun or the sky, it is known whether it passes
+//! through them.
 
 use std::f64::consts::PI;
 
@@ -17,41 +18,41 @@ use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
 
-/// Places in the light of a sun, or of what is bright in an image of the sky, that paths from the camera find.
+/// Places lit by a sun, or by the bright parts of a sky image, that paths from the camera find.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SunlitPlaces {
     /// The sun or the sky.
     pub light: LightId,
-    /// A ball around nearly all of them.
+    /// The center of a ball around nearly all of the places.
     pub center: DVec3,
-    /// Its radius.
+    /// The radius of the ball.
     pub radius: f64,
-    /// The numbers of those cells of a grid across the ball behind which light was found, and how much.
+    /// The cells of a grid across the ball behind which light was found: the number of each, and how much light.
     pub cells: Vec<(u32, f32)>,
 }
 
-/// Openings of a room through which paths from skies start.
+/// Openings of a room through which light paths of skies start.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SkyOpenings {
     /// The openings.
     pub openings: Vec<Opening>,
-    /// The share of the skies' light in the room that comes by other ways, about, 0 to 1.
+    /// Rough share of the skies' light in the room that arrives by other ways, 0 to 1.
     pub missed: f64,
 }
 
-/// How paths of a light start.
+/// How the paths of a light start.
 #[derive(Clone, Debug)]
 pub(super) enum PathStart {
-    /// They do not: its light is left to paths from the camera.
+    /// Nowhere: its light is left to paths from the camera.
     Nowhere,
-    /// Wherever the light leaves it.
+    /// Wherever the light emits.
     Anywhere,
     /// From a sun or a sky.
     Sky(Box<SkyStart>),
 }
 
 impl PathStart {
-    /// Of one light, where places in the light of some are known, and openings of a room.
+    /// Returns the start of one light's paths, given the sunlit places of some lights and the openings of a room.
     pub(super) fn of(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Self {
         let flux = scene.lights[id].flux();
         if flux > 0.0 && flux.is_finite() {
@@ -60,7 +61,7 @@ impl PathStart {
         SkyStart::new(scene, id, sunlit, openings).map_or(Self::Nowhere, |start| Self::Sky(Box::new(start)))
     }
 
-    /// The flux of the paths, per emission, about; 0 where there are none.
+    /// Returns the approximate flux of the paths per unit of emission; 0 if there are none.
     pub(super) fn flux(&self, light: &Light<Table>) -> f64 {
         match self {
             Self::Nowhere => 0.0,
@@ -69,7 +70,7 @@ impl PathStart {
         }
     }
 
-    /// The start of a path, for four random numbers; its factor makes flux of the emission. None where it is dark.
+    /// Samples the start of a path. Its factor turns emission into flux. Returns `None` where the light is dark.
     pub(super) fn emit(&self, scene: &Scene<Table>, light: &Light<Table>, u: [f64; 4]) -> Option<LeSample> {
         match self {
             Self::Nowhere => None,
@@ -78,7 +79,7 @@ impl PathStart {
         }
     }
 
-    /// Whether paths start with all light that may matter, but for what comes beside a beam or openings.
+    /// Returns whether paths start with all light that may matter, except for light outside a beam or openings.
     pub(super) fn finds_most(&self, light: &Light<Table>) -> bool {
         match self {
             Self::Nowhere => false,
@@ -90,7 +91,7 @@ impl PathStart {
         }
     }
 
-    /// Whether paths start along a ray to the light.
+    /// Returns whether paths start along a ray to the light.
     pub(super) fn covers(&self, light: &Light<Table>, ray: &Ray) -> bool {
         match self {
             Self::Nowhere => false,
@@ -100,16 +101,16 @@ impl PathStart {
     }
 }
 
-/// Paths from a sun or a sky, ready to be started.
+/// The starts of paths from a sun or a sky.
 #[derive(Clone, Debug)]
 pub(super) struct SkyStart {
-    /// Those of a sun, or of what is bright in an image of the sky.
+    /// The beam of a sun, or of the bright parts of a sky image.
     beam: Option<SkyBeam>,
-    /// Those of all else of a sky ..
+    /// Openings through which all other light of a sky starts.
     openings: Vec<Opening>,
-    /// .. with their flux per emission, about.
+    /// Approximate flux through the openings, per unit of emission.
     of_openings: f64,
-    /// A ball around all that is finite.
+    /// A ball around everything finite.
     world: Ball,
 }
 
@@ -118,12 +119,12 @@ pub(super) struct SkyStart {
 struct SkyBeam {
     beam: Beam,
     guide: Guide,
-    /// The flux that is worth sending, per emission: to about the area in which light was found.
+    /// The flux that is worth sending, per unit of emission: toward about the area in which light was found.
     flux: f64,
 }
 
 impl SkyStart {
-    /// None where no light was found and no opening, or the light does not come from far away.
+    /// Returns `None` if neither light nor an opening was found, or if the light is not infinitely far away.
     fn new(scene: &Scene<Table>, id: LightId, sunlit: &[SunlitPlaces], openings: &[Opening]) -> Option<Self> {
         let light = scene.lights.get(id).filter(|light| light.is_infinite())?;
         let sunlit = sunlit.iter().find(|sunlit| sunlit.light == id);
@@ -162,11 +163,11 @@ impl SkyStart {
 }
 
 impl SkyBeam {
-    /// None where no light was found.
+    /// Returns `None` if no light was found.
     fn new(light: &Light<Table>, sunlit: &SunlitPlaces) -> Option<Self> {
         let beam = light.beam(&Ball { center: sunlit.center, radius: sunlit.radius })?;
         let guide = Guide::weighted(&sunlit.cells);
-        // The disc is a part of the square of the guide.
+        // The disk covers only a part of the guide's square.
         let flux = guide.extent() * (4.0 / PI) * beam.flux;
         (flux > 0.0 && flux.is_finite()).then_some(Self { beam, guide, flux })
     }

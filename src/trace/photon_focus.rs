@@ -1,4 +1,4 @@
-//! Which part of a large smooth surface throws light onto what the camera sees: of a sea, only a bay.
+//! Which part of a large smooth surface casts light onto what the camera sees: of a sea, only a bay.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,39 +9,39 @@ use crate::scene::{Primitive, Scene};
 use crate::shape::Ball;
 use crate::spectrum::Table;
 
-/// Camera rays along each side of the image.
+/// Number of camera rays along each side of the image.
 const SIDE: u32 = 24;
-/// Most smooth surfaces that a ray passes, and most lights that are looked for.
+/// Maximum number of smooth surfaces that a ray passes, and of lights that are considered.
 const SURFACES: usize = 8;
 const LIGHTS: usize = 4;
-/// Beyond all surfaces.
+/// A distance beyond all surfaces.
 const FAR: f64 = 1e100;
-/// Fewest places that tell where light comes through.
+/// Minimum number of places that show where light comes through.
 const FEWEST: usize = 16;
-/// Places so many times as far from the camera as the nearest belong to the next part.
+/// Places more than this factor farther from the camera than the nearest ones belong to the next part.
 const FARTHER: f64 = 2.5;
-/// Share of the places that a part has at least.
+/// Smallest share of the places in a part.
 const LEAST: f64 = 1.0 / 32.0;
-/// How much larger balls are than what was found: refracted light comes through beside the straight line, and surfaces
-/// beside the image light what is in it.
+/// How much larger balls are than the places found: refracted light comes through beside the straight line, and
+/// surfaces outside the image light what is in it.
 const WIDER: f64 = 1.5;
-/// Parts are told apart where they are so many times as small as the whole.
+/// Parts are kept if they are smaller than the whole by this factor.
 const SMALLER: f64 = 3.0;
-/// Share of the photons that is sent to all of the whole.
+/// Share of the photons that is sent to the entire whole.
 const EVERYWHERE: f64 = 0.1;
-/// Of a surface that has no end, photons are sent to so many times what was found.
+/// On an unbounded surface, how much larger the region that receives photons is than the places found.
 const REACH: f64 = 6.0;
 
-/// How smooth an object is that photons can be sent to.
+/// The smoothness of an object that photons can be sent to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Smoothness {
-    /// Wherever light goes on from it.
+    /// Smooth wherever light leaves it.
     Whole,
-    /// It scatters light widely as well, as what lies under a clear coat does.
+    /// Also scatters light widely, as what lies under a clear coat does.
     Partial,
-    /// It mirrors or refracts light nearly as smooth ones do: by narrow lobes.
+    /// Mirrors or refracts light nearly as smooth objects do: by narrow lobes.
     Narrow,
-    /// It mirrors some of it so, and scatters light widely as well.
+    /// Mirrors some light by narrow lobes, and also scatters light widely.
     NarrowPartial,
 }
 
@@ -49,7 +49,7 @@ impl Smoothness {
     /// All kinds.
     pub const ALL: [Self; 4] = [Self::Whole, Self::Partial, Self::Narrow, Self::NarrowPartial];
 
-    /// How smooth an object is; none if photons cannot be sent to it.
+    /// Returns the smoothness of an object; `None` if photons cannot be sent to it.
     pub fn of<S>(scene: &Scene<S>, object: usize) -> Option<Self> {
         let material = scene.material_of(object as u32);
         let lobes = material.lobes();
@@ -58,46 +58,47 @@ impl Smoothness {
         match (material.is_smooth_somewhere(), lobes.intersects(Lobes::BROAD)) {
             (true, false) => Some(Self::Whole),
             (true, true) => Some(Self::Partial),
-            // By normals other than a surface's own, what crosses it widely cannot be followed forward alike.
+            // With normals other than the geometric one, rough transmission cannot be followed forward the same way.
             (false, false) if lobes.intersects(Lobes::NARROW_TRANSMISSION) && is_bent() => None,
             (false, false) => lobes.is_narrow().then_some(Self::Narrow),
             (false, true) => lobes.has_narrow_apart().then_some(Self::NarrowPartial),
         }
     }
 
-    /// How smooth an object is, if that is among the kinds of smoothness that photons are sent to.
+    /// Returns the smoothness of an object, if photons are sent to objects of that kind.
     pub fn sent_to<S>(scene: &Scene<S>, object: usize, to: &[Self]) -> Option<Self> {
         Self::of(scene, object).filter(|smoothness| to.contains(smoothness))
     }
 }
 
-/// A place on a smooth surface by way of which light may come to what the camera sees.
+/// A place on a smooth surface through which light may reach what the camera sees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FocusPlace {
     pub(super) at: DVec3,
     smoothness: Smoothness,
-    /// Whether the surface has no end.
+    /// Whether the surface is unbounded.
     endless: bool,
-    /// How far the camera is.
+    /// Distance to the camera.
     distance: f64,
 }
 
-/// A ball around a part of such places, and its share of the photons of the whole.
+/// A ball around one part of the places, and its share of the photons of the whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FocusBall {
     pub(super) ball: Ball,
     pub(super) share: f64,
 }
 
-/// Whether the camera may see a small part of what lies in a ball: it is wider than the image there.
+/// Returns whether the camera may see only a small part of a ball, because the ball is wider than the image there.
 fn is_large(scene: &Scene<Table>, ball: &Ball) -> bool {
     let distance = (ball.center - scene.camera.position()).length();
     let pixels = f64::hypot(f64::from(scene.film.width), f64::from(scene.film.height));
     distance < ball.radius || scene.camera.pixel_width(distance) * pixels < 2.0 * ball.radius
 }
 
-/// Such places, where some of the targets are large: those that the camera sees, and those that lie on the straight way
-/// to a light from what it sees straight on through smooth surfaces. The same whatever part of the image is made.
+/// Finds the smooth places through which light may reach what the camera sees, if some targets are large. These are the
+/// places that the camera sees, and those on the straight line to a light from what it sees directly through smooth
+/// surfaces. They do not depend on the part of the image that is rendered.
 pub(super) fn places(
     scene: &Scene<Table>,
     lights: &[LightId],
@@ -124,8 +125,9 @@ pub(super) fn places(
     found
 }
 
-/// Walks straight through smooth surfaces and sheets, adds where photons are sent to on the way, and answers where
-/// another surface is, or one that is smooth only in part. A ray that has left no surface is the camera's.
+/// Walks straight through smooth surfaces and see-through sheets, and adds the places on the way that photons are sent
+/// to. Returns the first other surface, or one that is smooth only in part. A ray that has left no surface is a camera
+/// ray.
 fn walk(
     scene: &Scene<Table>,
     to: &[Smoothness],
@@ -157,7 +159,7 @@ fn walk(
     None
 }
 
-/// The way from a place to the middle of a light; to the sky, beyond all surfaces.
+/// Returns the vector from a place to the middle of a light; toward the sky, it leads beyond all surfaces.
 fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     match light {
         Light::Sun(_) | Light::Environment(_) => light.bright_direction([0.5; 2]).map_or(DVec3::ZERO, |sky| sky * FAR),
@@ -167,16 +169,17 @@ fn way_to(light: &Light<Table>, place: DVec3) -> DVec3 {
     }
 }
 
-/// The ball within which photons are sent to surfaces without end; none where these show the camera nothing.
+/// Returns the ball within which photons are sent to unbounded surfaces; `None` if too few of their places were found.
 pub(super) fn reach(places: &[FocusPlace]) -> Option<Ball> {
     let places: Vec<FocusPlace> = places.iter().filter(|place| place.endless).copied().collect();
     (places.len() >= FEWEST).then(|| around(&places, REACH))
 }
 
-/// The parts, at most so many, of what is so smooth in a ball; none where it is seen as a whole, or not at all.
+/// Returns at most `most` parts of what has this smoothness in a ball; none if it is seen as a whole, or not at all.
 ///
-/// A part of n places gets photons for the square root of n: by area, the near ones would get too few, and by pixels
-/// the far ones, where photons are gathered around places that look longer than wide.
+/// A part with n places receives photons in proportion to the square root of n. In proportion to area, the near parts
+/// would receive too few. In proportion to pixels, the far ones would: there, photons are gathered around places that
+/// look longer than wide.
 pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball, most: usize) -> Vec<FocusBall> {
     let is_in = |place: &&FocusPlace| place.smoothness == smoothness && whole.contains(place.at);
     let mut places: Vec<FocusPlace> = places.iter().filter(is_in).copied().collect();
@@ -190,7 +193,7 @@ pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball,
         let far = FARTHER * places[(told + least - 1).min(places.len() - 1)].distance;
         let near = places.partition_point(|place| place.distance <= far).max(told + 1);
         let end = if parts.len() + 1 < most { near } else { places.len() };
-        // Around what is nearer, too.
+        // The ball also encloses all nearer places.
         parts.push(FocusBall { ball: around(&places[..end], WIDER), share: ((end - told) as f64).sqrt() });
         told = end;
     }
@@ -200,7 +203,7 @@ pub(super) fn parts(places: &[FocusPlace], smoothness: Smoothness, whole: &Ball,
     parts
 }
 
-/// A ball around some places, so many times as large as it must be.
+/// Returns a ball around some places, enlarged by a factor.
 fn around(places: &[FocusPlace], wider: f64) -> Ball {
     let ball = Ball::of_box(&Bounds::around(places.iter().map(|place| place.at)));
     Ball { radius: wider * ball.radius, ..ball }
@@ -230,7 +233,7 @@ mod tests {
         }
         let share: f64 = parts.iter().map(|part| part.share).sum();
         assert!((share - 0.9).abs() < 1e-12, "{share} of the photons are sent to parts");
-        // Seen as a whole, there are none.
+        // There are no parts if the surface is seen as a whole.
         let small = Ball { radius: 0.5 * parts[0].ball.radius, ..parts[0].ball };
         assert_eq!(super::parts(&places, Smoothness::Whole, &small, 6), []);
     }

@@ -10,57 +10,58 @@ use crate::scene::Scene;
 use crate::shape::Ball;
 use crate::spectrum::Table;
 
-/// Photons of one light toward one ball of objects that are all as smooth, or toward a part of it.
+/// Photons of one light toward one ball of equally smooth objects, or toward a part of the ball.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTarget {
     pub(super) light: LightId,
     smoothness: Smoothness,
     pub(super) photons: u64,
-    /// The share of those of the whole ball; of a part, it is worth as much however small it is.
+    /// Share of the whole ball's photons. A part is worth its share however small the part is.
     share: f64,
-    /// Whether it is a part of the whole before it.
+    /// Whether it is a part of the preceding whole.
     is_part: bool,
     beam: Beam,
-    /// Which of the beam's ways are worth it.
+    /// Which part of the beam is worth sending photons into.
     pub(super) guide: Arc<Guide>,
-    /// The flux that it sends, about.
+    /// Approximate flux that it sends.
     flux: f64,
 }
 
-/// All the ways photons are sent, and to what.
+/// All targets of photons, and the lights that send them.
 #[derive(Clone, Debug)]
 pub(super) struct PhotonTargets {
-    /// Those of one light follow each other.
+    /// The targets. Those of one light follow each other.
     pub(super) targets: Vec<PhotonTarget>,
     /// Which lights send photons.
     pub(super) lights: Vec<bool>,
-    /// Which objects they are sent to, by how smooth these are ..
+    /// The smoothness of each object that photons are sent to.
     objects: Vec<Option<Smoothness>>,
-    /// .. and where to those that have no end.
+    /// Where photons are sent to unbounded objects.
     pub(super) reach: Option<Ball>,
-    /// A ball around all that is finite.
+    /// A ball around everything finite.
     world: Ball,
-    /// Photons asked for.
+    /// Requested number of photons.
     photons: u64,
 }
 
-/// Most balls of objects that photons are sent to: of more, neighbors share one; and most targets of all lights.
+/// Maximum number of balls of objects that photons are sent to, and of targets of all lights. If there are more
+/// objects, neighbors share a ball.
 const MOST: usize = 32;
 const MOST_AIMS: usize = 8192;
-/// Most parts of a ball, and of all balls of all lights if that is more than one for each.
+/// Maximum number of parts of a ball, and of all balls of all lights unless each ball has only one.
 const MOST_PARTS: usize = 6;
 const MOST_TOLD_APART: usize = 12;
-/// Balls that are held against each other.
+/// Maximum number of balls that are compared with each other.
 const MANY: usize = 4096;
-/// Share of the photons that all targets get alike; the others go by flux.
+/// Share of the photons that is distributed evenly over all targets; the rest is distributed by flux.
 const EVENLY: f64 = 0.1;
-/// What a clear coat mirrors, about: of the flux that is sent to what is smooth in part, this goes on from there.
+/// Rough reflectance of a clear coat: of the flux sent to partly smooth objects, this share goes on from there.
 const MIRRORED: f64 = 0.05;
 
 impl PhotonTargets {
-    /// From some lights, given with their luminances, skies among them also through openings, to all objects of some
-    /// kinds of smoothness, of large ones mostly to places that matter; none if there is none, or none of the lights
-    /// shines there.
+    /// Returns the targets of some lights, given with their luminances, toward all objects of some kinds of smoothness.
+    /// Skies among the lights also send photons through openings. On large objects, most photons go to the places that
+    /// matter. Returns `None` if there are no such objects, or if no light shines there.
     pub(super) fn new(
         scene: &Scene<Table>,
         lights: &[(LightId, f64)],
@@ -102,18 +103,18 @@ impl PhotonTargets {
         self.targets.iter().map(|target| target.photons).sum()
     }
 
-    /// Whether photons are sent to a place on an object.
+    /// Returns whether photons are sent to a place on an object.
     pub(super) fn include(&self, scene: &Scene<Table>, object: u32, place: DVec3) -> bool {
         let is_near = || self.reach.is_some_and(|reach| reach.contains(place));
         self.objects[object as usize].is_some() && (scene.objects[object as usize].shape.is_bounded() || is_near())
     }
 
-    /// The flux that all targets send, about, as CIE Y.
+    /// Returns the approximate flux that all targets send, as CIE Y.
     pub(super) fn flux(&self) -> f64 {
         self.targets.chunk_by(of_one).map(flux).sum()
     }
 
-    /// The target of one of all the photons, counted from the first target on.
+    /// Returns the target of a photon, given the photon's number among those of all targets.
     pub(super) fn of_photon(&self, number: u64) -> usize {
         let mut before = 0;
         let holds = |target: &PhotonTarget| {
@@ -123,26 +124,26 @@ impl PhotonTargets {
         self.targets.iter().position(holds).unwrap_or(self.targets.len() - 1)
     }
 
-    /// Follows what other targets of the same scene, of all these lights, have learned.
+    /// Adopts what other targets of the same scene, with all these lights, have learned.
     pub(super) fn follow(&mut self, guided: &Self) {
         self.targets.clone_from(&guided.targets);
         self.targets.retain(|target| self.lights[target.light] && self.objects.contains(&Some(target.smoothness)));
         self.share_out();
     }
 
-    /// Those of some lights alone, given in order, to what is so smooth.
+    /// Keeps only the targets of some lights, given in order, and of one kind of smoothness.
     pub(super) fn only(mut self, lights: &[LightId], smoothness: Smoothness) -> Self {
         self.targets.retain(|target| target.smoothness == smoothness && lights.binary_search(&target.light).is_ok());
         self.objects.iter_mut().for_each(|object| *object = object.filter(|smooth| *smooth == smoothness));
         self
     }
 
-    /// Whether any are sent to what is so smooth.
+    /// Returns whether photons are sent to objects of this kind of smoothness.
     pub(super) fn aim_at(&self, smoothness: Smoothness) -> bool {
         self.targets.iter().any(|target| target.smoothness == smoothness)
     }
 
-    /// The same with another number of photons, so many times as many.
+    /// Returns these targets with the number of photons multiplied by a factor.
     pub(super) fn times(&self, factor: f64) -> Self {
         let photons = (factor * self.photons as f64).ceil() as u64;
         let mut targets = Self { photons, ..self.clone() };
@@ -150,7 +151,7 @@ impl PhotonTargets {
         targets
     }
 
-    /// Lets each target have its part of the photons, most of them by flux.
+    /// Distributes the photons over the targets, mostly by flux.
     fn share_out(&mut self) {
         let (total, count) = (self.flux(), self.targets.len() as f64);
         for whole in self.targets.chunk_by_mut(of_one) {
@@ -166,7 +167,7 @@ impl PhotonTargets {
         }
     }
 
-    /// Follows what was learned: of some photons of each target, their `guide_uv` and whether the camera saw them.
+    /// Learns from some photons of each target: their `guide_uv`, and whether the camera saw them.
     pub(super) fn learn(&mut self, found: &[Vec<([f64; 2], bool)>]) {
         for (target, photons) in self.targets.iter_mut().zip(found) {
             let seen = photons.iter().filter(|photon| photon.1).count();
@@ -178,7 +179,7 @@ impl PhotonTargets {
         self.share_out();
     }
 
-    /// Whether photons of a light start along the line of a ray that leads to it.
+    /// Returns whether photons of a light start along the line of a ray that leads to it.
     pub(super) fn start_along(&self, scene: &Scene<Table>, light: LightId, ray: &Ray) -> bool {
         let source = &scene.lights[light];
         if !self.lights[light] || source.sends_photons_from(ray.direction) {
@@ -189,10 +190,11 @@ impl PhotonTargets {
         self.targets.iter().any(|target| target.light == light && target.beam.opening.is_some() && starts(target))
     }
 
-    /// The start of a photon of a target for a place that its guide has drawn and two random numbers; none where the
-    /// light does not shine.
+    /// Samples the start of a photon of one target, for a place sampled by its guide and two random numbers. Returns
+    /// `None` if the light does not shine there.
     ///
-    /// Its flux is divided by how many photons all targets of the light send along that line: beams may overlap.
+    /// The flux is divided by the density of photons that all targets of the light send along that line, because beams
+    /// may overlap.
     pub(super) fn sample_le(
         &self,
         scene: &Scene<Table>,
@@ -213,8 +215,8 @@ impl PhotonTargets {
     }
 }
 
-/// The targets of a light with a luminance: each ball, followed by its parts; of a sky, the same through each opening.
-/// Photons start by one of two guides, the even one or, toward what is apart from the light, the disc.
+/// Returns the targets of a light with a luminance: each ball, followed by its parts; for a sky, also through each
+/// opening. Photons start by one of two guides, the even one or, toward what is apart from the light, the disk.
 fn of_light(
     scene: &Scene<Table>,
     light: LightId,
@@ -247,24 +249,24 @@ fn of_light(
     targets
 }
 
-/// Whether a target is a part of the same whole as the one before it.
+/// Returns whether a target is a part of the same whole as the one before it.
 fn of_one(_: &PhotonTarget, next: &PhotonTarget) -> bool {
     next.is_part
 }
 
-/// The flux that is sent to a whole, about, which may have been found seen in parts alone.
+/// Returns the approximate flux that is sent to a whole. Some of it may have been seen only through the parts.
 fn flux(targets: &[PhotonTarget]) -> f64 {
     let (parts, wholes): (Vec<_>, Vec<_>) = targets.iter().partition(|target| target.is_part);
     let sum = |of: Vec<&PhotonTarget>| of.iter().map(|target| target.flux).sum::<f64>();
     f64::max(sum(wholes), sum(parts))
 }
 
-/// A ball around all that is finite; none where nothing is.
+/// Returns a ball around everything finite; `None` if nothing is.
 pub(super) fn ball_around_all(scene: &Scene<Table>) -> Option<Ball> {
     scene.objects.iter().filter_map(|object| object.shape.ball()).reduce(Ball::around)
 }
 
-/// The ray of a path from the sky, started outside of a ball around all that is finite, beyond all planes without end.
+/// Returns the ray of a path from the sky, started outside a ball around everything finite and beyond all planes.
 pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> Ray {
     let sky = -ray.direction;
     let out = (world.center - ray.origin).dot(sky) + 2.0 * world.radius;
@@ -277,12 +279,12 @@ pub(super) fn started_outside(scene: &Scene<Table>, world: &Ball, ray: &Ray) -> 
     Ray { direction: ray.direction, ..back }
 }
 
-/// Balls of which none lies in another; of more than are wanted, neighbors as one.
+/// Returns the balls that lie in no other ball. If more than `most` are left, neighbors are merged.
 fn gathered(balls: Vec<Ball>, most: usize) -> Vec<Ball> {
     let holds = |a: &Ball, b: &Ball| (a.center - b.center).length() + b.radius <= a.radius;
     let mut outer: Vec<Ball> = Vec::new();
     if balls.len() > MANY {
-        // So many are not held against each other.
+        // Too many balls to compare with each other.
         outer = balls;
     } else {
         for ball in balls {

@@ -1,38 +1,39 @@
-//! Replicates: renders of the same image that know nothing of each other, side by side.
+//! Replicates: statistically independent renders of the same image, side by side.
 
 use serde::{Deserialize, Serialize};
 
 use super::layers::CatcherLight;
 use crate::film::{Filter, PassSum, SampleWeights};
 
-/// How many there are.
+/// Number of replicates.
 pub const REPLICATES: usize = 8;
-/// How many of them are the first half.
+/// Number of replicates in the first half.
 pub(super) const HALF: u32 = REPLICATES as u32 / 2;
 
-/// What the replicates found in the pixels of a tile; empty where there is but one render.
+/// The sums of the replicates over the pixels of a tile; empty if there is only one render.
 ///
-/// Numbers of 32 bits do: sums of as many samples of each replicate are as wrong in all of them, and what is told of
-/// them is how far they are apart.
+/// Numbers of 32 bits are enough. Sums of the same number of samples have similar rounding errors in all replicates,
+/// and only the differences between replicates are used.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(super) struct Replicates {
     light: ReplicateSums,
-    /// By how much gathered photons blur it; empty where none are gathered.
+    /// How much gathered photons blur the light; empty if none are gathered.
     blur: ReplicateSums,
-    /// What photons show, times the samples that they were sent beside; empty where none are sent.
+    /// Light that photons splat, times the number of samples that they were sent with; empty if none are sent.
     splatted: Vec<[[f32; 3]; REPLICATES]>,
-    /// How much of it is covered; empty where no shadow catcher makes noise of that.
+    /// How much of each pixel is covered; empty unless shadow catchers add noise to that.
     covered: Vec<[CoverageSums; REPLICATES]>,
 }
 
-/// How much of a pixel is covered: sums over samples.
+/// Sums over samples for the coverage of a pixel.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 struct CoverageSums {
-    /// Samples that hit something, of those that are added and subtracted.
+    /// Samples that hit something, among those that are added and those that are subtracted.
     met: [u32; 2],
-    /// The luminance of shadow catchers with all objects and with those of the plate alone, and samples of them.
+    /// Luminance of shadow catchers with all objects, with those of the plate alone, and number of samples that hit
+    /// them.
     caught: [f32; 3],
-    /// What photons add to the first, times the samples that they were sent beside.
+    /// What photons add to the luminance with all objects, times the number of samples that they were sent with.
     splatted: f32,
 }
 
@@ -43,7 +44,7 @@ impl CoverageSums {
         (0..3).for_each(|i| self.caught[i] += caught[i] as f32);
     }
 
-    /// The alpha of a pixel, by the weights of its samples, where photons were shown for so many.
+    /// Returns the alpha of a pixel by the weights of its samples, if photons were splatted for `splatted_for` samples.
     fn alpha(&self, weights: &SampleWeights, splatted_for: f64) -> f64 {
         let met = weights.sum(self.met.map(f64::from)) / weights.taken();
         let [with, without, share] = self.caught.map(|sum| f64::from(sum) / weights.added());
@@ -52,8 +53,8 @@ impl CoverageSums {
     }
 }
 
-/// Of each pixel, the samples of each replicate: those that are added, and those that are subtracted, which are empty
-/// where the filter is nowhere negative.
+/// For each pixel, the sums of each replicate over the samples that are added, and over those that are subtracted. The
+/// latter are empty if the filter is nowhere negative.
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct ReplicateSums([Vec<[Sum; REPLICATES]>; 2]);
 
@@ -85,7 +86,7 @@ impl ReplicateSums {
         self.0.each_ref().map(Vec::len) == other.0.each_ref().map(Vec::len)
     }
 
-    /// Adds the samples of a pixel in one pass of a replicate; of those that are not kept nothing.
+    /// Adds the samples of a pixel that one pass of a replicate kept.
     fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2]) {
         for (sums, pass) in self.0.iter_mut().zip(samples) {
             if let Some(sums) = sums.get_mut(pixel) {
@@ -94,34 +95,34 @@ impl ReplicateSums {
         }
     }
 
-    /// The samples of a pixel that a replicate has: those that are added, and those that are subtracted.
+    /// Returns the sums of a pixel in a replicate: of samples that are added, and of those that are subtracted.
     fn of(&self, pixel: usize, replicate: usize) -> [Sum; 2] {
         self.0.each_ref().map(|sums| sums.get(pixel).map_or(Sum::default(), |sums| sums[replicate]))
     }
 
-    /// How many they are.
+    /// Returns the number of samples of a pixel that a replicate kept.
     fn kept(&self, pixel: usize, replicate: usize) -> u32 {
         self.of(pixel, replicate).iter().map(|sum| sum.kept).sum()
     }
 
-    /// What they count.
+    /// Returns the weights of a pixel's samples in a replicate.
     fn weights(&self, pixel: usize, replicate: usize, filter: Filter) -> SampleWeights {
         SampleWeights::new(filter, self.of(pixel, replicate).map(|sum| sum.kept))
     }
 
-    /// The mean of a pixel's samples of a replicate.
+    /// Returns the mean of a pixel's samples in a replicate.
     fn mean(&self, pixel: usize, replicate: usize, filter: Filter) -> [f64; 3] {
         let (weights, [added, subtracted]) = (self.weights(pixel, replicate, filter), self.of(pixel, replicate));
         std::array::from_fn(|i| weights.sum([added.rgb[i].into(), subtracted.rgb[i].into()]) / weights.taken())
     }
 }
 
-/// Sums over some pixels, of products of what two replicates found.
+/// Sums over pixels of the products of what two replicates found.
 #[derive(Default)]
 pub(super) struct Products(pub(super) [[f64; REPLICATES]; REPLICATES]);
 
 impl Products {
-    /// Adds a pixel, with some channels.
+    /// Adds a pixel with `C` channels.
     pub(super) fn add<const C: usize>(&mut self, replicates: &[[f64; C]; REPLICATES]) {
         for (products, a) in self.0.iter_mut().zip(replicates) {
             for (product, b) in products.iter_mut().zip(replicates) {
@@ -130,7 +131,7 @@ impl Products {
         }
     }
 
-    /// Adds other pixels.
+    /// Adds the sums of other pixels.
     pub(super) fn join(&mut self, other: &Self) {
         let sums = self.0.iter_mut().flatten();
         sums.zip(other.0.iter().flatten()).for_each(|(sum, more)| *sum += more);
@@ -138,14 +139,14 @@ impl Products {
 }
 
 impl Replicates {
-    /// Of so many pixels; of samples that are subtracted, of gathered photons and of shadow catchers if there are any.
+    /// Returns empty sums for some pixels, with subtracted samples, gathered photons and shadow catchers if needed.
     pub(super) fn new(pixels: usize, is_signed: bool, gathers: bool, catches: bool) -> Self {
         let blur = if gathers { ReplicateSums::new(pixels, is_signed) } else { ReplicateSums::default() };
         let covered = if catches { vec![[CoverageSums::default(); REPLICATES]; pixels] } else { Vec::new() };
         Self { light: ReplicateSums::new(pixels, is_signed), blur, splatted: Vec::new(), covered }
     }
 
-    /// Bytes of memory that they take for each pixel, where photons are shown or not.
+    /// Returns the bytes of memory per pixel; `shows` tells whether photons are splatted.
     pub(super) fn bytes_of_pixel(is_signed: bool, gathers: bool, catches: bool, shows: bool) -> usize {
         let kinds = (1 + usize::from(is_signed)) * (1 + usize::from(gathers));
         let [catches, shows] = [catches, shows].map(usize::from);
@@ -154,7 +155,8 @@ impl Replicates {
             + shows * size_of::<[[f32; 3]; REPLICATES]>()
     }
 
-    /// Whether it has as many sums of each kind as another one, or none yet of what photons show.
+    /// Returns whether there are as many sums of each kind as in `other`; those of splatted photons may still be
+    /// missing.
     pub(super) fn is_shaped_as(&self, other: &Self) -> bool {
         self.light.is_shaped_as(&other.light)
             && self.blur.is_shaped_as(&other.blur)
@@ -162,14 +164,14 @@ impl Replicates {
             && self.covered.len() == other.covered.len()
     }
 
-    /// Adds the samples of a pixel in one pass of a replicate, and by how much gathered photons blur them: of both,
-    /// those that are added, and those that are subtracted.
+    /// Adds the samples of a pixel from one pass of a replicate, and how much gathered photons blur them. Of both, the
+    /// first are added, and the second are subtracted.
     pub(super) fn add(&mut self, pixel: usize, replicate: u32, samples: [&PassSum; 2], blurs: [&PassSum; 2]) {
         self.light.add(pixel, replicate, samples);
         self.blur.add(pixel, replicate, blurs);
     }
 
-    /// Adds what photons of a replicate show in a pixel.
+    /// Adds what photons of a replicate splat onto a pixel.
     pub(super) fn show(&mut self, pixel: usize, replicate: u32, rgb: [f64; 3]) {
         if self.splatted.is_empty() {
             self.splatted = vec![[[0.0; 3]; REPLICATES]; self.light.pixels()];
@@ -178,7 +180,7 @@ impl Replicates {
         (0..3).for_each(|i| sum[i] += rgb[i] as f32);
     }
 
-    /// Adds how much of a pixel one pass of a replicate covers, where shadow catchers sent so much luminance.
+    /// Adds the coverage of a pixel from one pass of a replicate, in which shadow catchers sent the luminance `caught`.
     pub(super) fn add_alpha(
         &mut self,
         pixel: usize,
@@ -189,12 +191,12 @@ impl Replicates {
         self.covered[pixel][replicate as usize].add(samples, caught);
     }
 
-    /// Adds the luminance that photons of a replicate show on shadow catchers in a pixel.
+    /// Adds the luminance that photons of a replicate splat onto shadow catchers in a pixel.
     pub(super) fn show_caught(&mut self, pixel: usize, replicate: u32, luminance: f64) {
         self.covered[pixel][replicate as usize].splatted += luminance as f32;
     }
 
-    /// The alpha of a pixel in each replicate, after so many samples of each; none without shadow catchers.
+    /// Returns the alpha of a pixel in each replicate, after `each` samples of each; `None` without shadow catchers.
     pub(super) fn alpha(&self, pixel: usize, filter: Filter, each: u32) -> Option<[f64; REPLICATES]> {
         let of = |replicate: usize| {
             let weights = self.light.weights(pixel, replicate, filter);
@@ -203,12 +205,12 @@ impl Replicates {
         (!self.covered.is_empty()).then(|| std::array::from_fn(of))
     }
 
-    /// A pixel as each replicate has it, after so many samples of each.
+    /// Returns the color of a pixel in each replicate, after `each` samples of each.
     pub(super) fn pixel(&self, pixel: usize, filter: Filter, each: u32) -> [[f64; 3]; REPLICATES] {
         std::array::from_fn(|replicate| self.pixel_of(replicate, pixel, filter, each.into()))
     }
 
-    /// A pixel as one replicate has it, where its photons were shown for so many samples.
+    /// Returns the color of a pixel in one replicate, whose photons were splatted for `splatted_for` samples.
     fn pixel_of(&self, replicate: usize, pixel: usize, filter: Filter, splatted_for: f64) -> [f64; 3] {
         let mean = self.light.mean(pixel, replicate, filter);
         let splatted = self.splatted.get(pixel).map_or([0.0; 3], |splatted| splatted[replicate]);
@@ -216,14 +218,14 @@ impl Replicates {
         std::array::from_fn(|i| mean[i] + f64::from(splatted[i]) / splatted_for)
     }
 
-    /// By how much each replicate says that a pixel is blurred; none where no photons are gathered.
+    /// Returns the blur of a pixel, as estimated by each replicate; `None` if no photons are gathered.
     pub(super) fn blur(&self, pixel: usize, filter: Filter) -> Option<[[f64; 3]; REPLICATES]> {
         let gathers = self.blur.pixels() > 0;
         gathers.then(|| std::array::from_fn(|replicate| self.blur.mean(pixel, replicate, filter)))
     }
 
-    /// The variance of a pixel's mean over all replicates that have begun, where the photons of each were shown for so
-    /// many samples; none as long as fewer than two have.
+    /// Returns the variance of a pixel's mean over all replicates that have begun; `None` while fewer than two have.
+    /// `splatted_for` is the number of samples for which the photons of each replicate were splatted.
     pub(super) fn variance(&self, pixel: usize, filter: Filter, splatted_for: [f64; REPLICATES]) -> Option<[f64; 3]> {
         let begun = (0..REPLICATES).filter(|&replicate| self.light.kept(pixel, replicate) > 0);
         let pixels: Vec<[f64; 3]> =

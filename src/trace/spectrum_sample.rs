@@ -1,29 +1,29 @@
-//! What camera samples leave in the bands of a spectral image.
+//! What camera samples contribute to the bands of a spectral image.
 //!
-//! Lanes are summed over all samples of a pixel, and are spread over the bands once for all of them.
+//! Lanes are summed over all samples of a pixel, and are distributed over the bands once for all of them.
 
 use super::received_light::{ReceivedLight, SourceId};
 use crate::scene::Scene;
 use crate::spectrum::visible::{EFFICACY, luminous};
 use crate::spectrum::{BandResponse, Basis, Curve, Distinct, Lanes, WavelengthBands};
 
-/// The bands of a spectral image, and what the lanes of each light are to them.
+/// The bands of a spectral image, and how the lanes of each light contribute to them.
 #[derive(Clone, Debug)]
 pub(super) struct Spectrum {
     pub(super) bands: WavelengthBands,
-    /// Whether S1, S2 and S3 are wanted of each band.
+    /// Whether S1, S2 and S3 of each band are requested.
     pub(super) has_stokes: bool,
-    /// Where their sums begin in a row: those of all bands, and behind them those of each other component.
+    /// Where their sums begin in a row: first those of all bands, then those of each other component.
     pub(super) at: usize,
-    /// The spectral radiance that a 1 of the sums is: 1, or in W m^-2 sr^-1 nm^-1 where the scene's light is absolute.
+    /// The spectral radiance of a sum of 1: 1, or in W m^-2 sr^-1 nm^-1 if the scene's light is absolute.
     pub(super) unit: f64,
-    /// Of each source of light, which of the responses it has.
+    /// For each source of light, the number of its response.
     response_of: Vec<usize>,
     responses: Vec<BandResponse>,
 }
 
 impl Spectrum {
-    /// None if lanes are no wavelengths.
+    /// Returns `None` if lanes are not wavelengths.
     pub(super) fn new(scene: &Scene<Curve>, basis: &Basis, bands: WavelengthBands, at: usize) -> Option<Self> {
         let (mut distinct, mut responses) = (Distinct::default(), Vec::new());
         let mut response_of = Vec::new();
@@ -35,12 +35,12 @@ impl Spectrum {
             }));
         }
         let responses = responses.into_iter().collect::<Option<_>>()?;
-        // In absolute light, an even spectrum of this radiance has the luminance of white.
+        // In absolute light, a flat spectrum of this radiance has the luminance of white.
         let unit = scene.format.white_luminance.map_or(1.0, |white| white / (EFFICACY * luminous()));
         Some(Self { bands, has_stokes: scene.format.has_stokes(), at, unit, response_of, responses })
     }
 
-    /// Numbers in a row.
+    /// Returns the number of values in a row.
     pub(super) fn numbers(&self) -> usize {
         self.components() * self.bands.count()
     }
@@ -49,12 +49,12 @@ impl Spectrum {
         if self.has_stokes { 4 } else { 1 }
     }
 
-    /// What a source's lanes are to the bands.
+    /// Returns how a source's lanes contribute to the bands.
     pub(super) fn response(&self, source: SourceId) -> &BandResponse {
         &self.responses[self.response_of[source]]
     }
 
-    /// Light in all bands, and S1, S2 and S3 of it if they are wanted, of which `stokes` are the parts.
+    /// Returns light in all bands, times a factor, and its S1, S2 and S3, given as parts of it, if they are requested.
     pub(super) fn of<const N: usize>(
         &self,
         received: &ReceivedLight<N>,
@@ -71,7 +71,7 @@ impl Spectrum {
         all
     }
 
-    /// Lanes of each component.
+    /// Returns the lanes of each component.
     fn parts<const N: usize>(
         &self,
         lanes: &Lanes<N>,
@@ -82,18 +82,18 @@ impl Spectrum {
     }
 }
 
-/// Light that one camera sample after another leaves in the bands.
+/// What one camera sample after another contributes to the bands.
 pub(super) struct SpectrumSample<'a, const N: usize> {
     spectrum: &'a Spectrum,
-    /// Of the sample at hand: lanes that never parted, with the number of their component and response and a factor;
-    /// and light of single wavelengths, with the number of its component and band.
+    /// Light of the current sample: lanes that never parted, with the number of their component and response and a
+    /// factor; and light of single wavelengths, with the number of its component and band.
     together: Vec<(usize, Lanes<N>, f64)>,
     alone: Vec<(usize, f64)>,
-    /// Sums of the samples that were kept and are added, and of those that are subtracted.
+    /// Sums over the samples that were kept: those that are added, and those that are subtracted.
     kept: [SpectrumSums<N>; 2],
 }
 
-/// Sums of samples, of one component after the other: lanes by their response, and bands.
+/// Sums over samples, one component after another: lanes by their response, and bands.
 #[derive(Clone)]
 struct SpectrumSums<const N: usize> {
     lanes: Vec<[f64; N]>,
@@ -113,7 +113,7 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         self.alone.clear();
     }
 
-    /// Receives light and the parts of it that S1, S2 and S3 are, times a factor.
+    /// Receives light, times a factor, with its S1, S2 and S3 as parts of it.
     pub(super) fn receive(&mut self, received: &ReceivedLight<N>, stokes: Option<&[Lanes<N>; 3]>, factor: f64) {
         let Self { spectrum, together, alone, .. } = self;
         let ReceivedLight { source, draw, lanes, parted } = *received;
@@ -127,7 +127,7 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         }
     }
 
-    /// Receives a component of light of a single wavelength: its band, if it falls into any, and how much it is.
+    /// Receives a component of light of a single wavelength: its band, if it falls into any, and its amount.
     pub(super) fn receive_alone(&mut self, component: usize, found: Option<(usize, f64)>) {
         if component < self.spectrum.components() {
             let first_band = component * self.spectrum.bands.count();
@@ -135,12 +135,12 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         }
     }
 
-    /// What a source's lanes are to the bands.
+    /// Returns how a source's lanes contribute to the bands.
     pub(super) fn response(&self, source: SourceId) -> &'a BandResponse {
         self.spectrum.response(source)
     }
 
-    /// Keeps what the sample, which is added or subtracted, has received.
+    /// Keeps what the sample has received, to be added or subtracted.
     pub(super) fn keep(&mut self, is_subtracted: bool) {
         let SpectrumSums { lanes: sums, bands } = &mut self.kept[usize::from(is_subtracted)];
         for (response, lanes, factor) in self.together.drain(..) {
@@ -150,7 +150,7 @@ impl<'a, const N: usize> SpectrumSample<'a, N> {
         self.alone.drain(..).for_each(|(band, light)| bands[band] += light);
     }
 
-    /// Adds all that was kept to rows of sums, and begins anew. Where nothing is subtracted the second may be empty.
+    /// Adds everything that was kept to rows of sums, and resets it. If nothing is subtracted, the second may be empty.
     pub(super) fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
         let Self { spectrum, kept, .. } = self;
         for (row, kept) in rows.into_iter().zip(kept).filter(|(row, _)| !row.is_empty()) {

@@ -1,4 +1,4 @@
-//! A white light, by which surfaces are looked at.
+//! A white light, in which surfaces are measured.
 
 use crate::spectrum::{Basis, Curve, Draw, Lanes, Quantity, Response, Table};
 
@@ -15,7 +15,7 @@ impl White {
         Self { response: basis.response(&one), emission: basis.tabulate(Quantity::Emission, &one) }
     }
 
-    /// The film's red, green and blue of it times a factor on each lane; `parted` says whether lanes parted on the way.
+    /// Returns the film's red, green and blue of it, times a factor on each lane; `parted` tells whether lanes parted.
     pub(super) fn times<const N: usize>(&self, draw: &Draw<N>, lanes: Lanes<N>, parted: bool) -> [f64; 3] {
         self.response.sensor(draw, lanes * draw.read(&self.emission), parted)
     }

@@ -1,6 +1,6 @@
-//! The one place where a basis chooses how many lanes travel together.
+//! The one place that chooses how many lanes of a basis travel together.
 
-/// Does work in `N` lanes, the narrowest compiled width that a basis fits into: `in_lanes!(basis, N => work::<N>())`.
+/// Runs work in `N` lanes, the narrowest compiled width that a basis fits into: `in_lanes!(basis, N => work::<N>())`.
 macro_rules! in_lanes {
     ($basis:expr, $n:ident => $work:expr) => {
         match $basis.lanes() {
@@ -21,7 +21,7 @@ macro_rules! in_lanes {
     };
 }
 
-/// Does work in a world's lanes, with what its paths know of polarization where no Stokes layers are made:
+/// Runs work in a world's lanes, with the polarization that its paths carry if no Stokes layers are made:
 /// `in_lanes_of!(world, N, P => work::<N, P>())`.
 macro_rules! in_lanes_of {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {
@@ -38,7 +38,7 @@ macro_rules! in_lanes_of {
     };
 }
 
-/// Does work in a world's lanes, with all that its layers ask of polarization:
+/// Runs work in a world's lanes, with the polarization that its layers need:
 /// `in_lanes_of_layers!(world, N, P => work::<N, P>())`.
 macro_rules! in_lanes_of_layers {
     ($world:expr, $n:ident, $p:ident => $work:expr) => {

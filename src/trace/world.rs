@@ -15,57 +15,57 @@ use crate::math::{DVec3, Ray};
 use crate::scene::{Hit, Scene, Visibility};
 use crate::spectrum::{Curve, Distinct, Draw, MAX_LANES, Quantity, Response, Table, Waves, apply};
 
-/// Lights that are weighed one by one: of more, neighbors in the scene as one.
+/// Maximum number of groups of lights that are weighed separately. If there are more lights, neighbors share one.
 const LIGHTS: usize = 16;
 
-/// A scene on the lanes of one method: everything the tracer reads.
+/// A scene tabulated for the lanes of one method: everything the tracer reads.
 #[derive(Clone, Debug)]
 pub struct World {
     pub(super) scene: Scene<Table>,
     pub(super) method: Method,
     /// Where the lanes lie in the spectrum.
     pub(super) waves: Waves,
-    /// What is asked for beside the image.
+    /// The layers that are requested besides the image.
     pub(super) layers: Layers,
     /// X + Y + Z of each film channel.
     xyz_of_channel: [f64; 3],
     /// The dyes that light excites, if there are any.
     pub(super) dyes: Option<Dyes>,
-    /// What the lanes of each light, and behind those of each dye, are worth to the sensor.
+    /// The sensor's response to the lanes of each light, followed by those of each dye.
     pub(super) responses: Vec<Response>,
     /// Lights that next-event estimation samples.
     pub(super) sampled_lights: Vec<LightId>,
-    /// Which light is chosen where only one is sampled.
+    /// Chooses the light where only one is sampled.
     pub(super) light_sampler: LightSampler,
     /// The bodies around the camera.
     pub(super) camera_media: Media,
-    /// Those that the camera does not see.
+    /// The bodies around the camera that it does not see.
     pub(super) hidden_media: Media,
     pub(super) has_media: bool,
-    /// Whether light comes from a sky without anything bright, of which bounces find much.
+    /// Whether light comes from a sky without bright parts, whose light bounces often find.
     pub(super) has_soft_light: bool,
     /// Whether there are objects that the camera does not see, or sees as holes.
     pub(super) hides_objects: bool,
-    /// Whether some of them are holdouts or shadow catchers, over which samples count in whole.
+    /// Whether some objects are holdouts or shadow catchers, for which a sample counts as a whole.
     pub(super) has_mattes: bool,
     /// The lobes of each material.
     pub(super) lobes: Vec<Lobes>,
     /// Whether each object lets light pass through; empty where none does.
     see_through: Vec<bool>,
-    /// What bounces are aimed at.
+    /// The bright places that bounces are aimed at.
     pub(super) bright: Option<Bright>,
-    /// How paths of each light start, for light vertices.
+    /// How light paths of each light start, for light vertices.
     pub(super) path_starts: Arc<[PathStart]>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) photon_targets: Option<PhotonTargets>,
-    /// The same of each pass of its map.
+    /// Where each pass of the light pass's map sends photons.
     pub(super) map_targets: Option<PhotonTargets>,
-    /// The bodies around each light; none where they may differ from point to point.
+    /// The bodies around each light; `None` where they may differ from point to point.
     light_media: Arc<OnceLock<Vec<Option<Media>>>>,
 }
 
 impl World {
-    /// The scene, tabulated for the method. Nothing is learned of it: see [`prepare`](super::prepare).
+    /// Tabulates a scene for a method. Nothing is learned about it: see [`prepare`](super::prepare).
     pub fn new(scene: &Scene<Curve>, mut method: Method) -> Self {
         let (dyes, of_dyes) = Dyes::new(scene, &mut method.basis).unzip();
         let (mut tables, mut responses) = (Distinct::default(), Distinct::default());
@@ -126,7 +126,7 @@ impl World {
         world
     }
 
-    /// This world with another light pass, before any photons are sent ahead.
+    /// Returns this world with another light pass, before any photons are sent ahead.
     pub fn with_light_pass(&self, light_pass: Option<LightPass>) -> Self {
         let mut world = self.clone();
         world.method.light_pass = light_pass;
@@ -134,7 +134,7 @@ impl World {
         world
     }
 
-    /// This world, its light pass's photons sent where another world of the same scene has learned to.
+    /// Returns this world with its light pass's photons guided by what another world of the same scene has learned.
     pub fn guided_by(mut self, guided: &Self) -> Self {
         if let (Some(targets), Some(guided)) = (&mut self.photon_targets, &guided.photon_targets) {
             targets.follow(guided);
@@ -142,7 +142,7 @@ impl World {
         self
     }
 
-    /// This world with other bright places that bounces are aimed at.
+    /// Returns this world with other bright places that bounces are aimed at.
     pub fn with_bright(&self, bright: Option<BrightPlaces>) -> Self {
         let mut world = self.clone();
         world.bright = bright.as_ref().map(Bright::new);
@@ -150,7 +150,8 @@ impl World {
         world
     }
 
-    /// This world with light vertices: paths of suns start toward places in their light, of skies through openings.
+    /// Returns this world with light vertices: paths of suns start toward sunlit places, those of skies through
+    /// openings.
     pub fn with_light_vertices(&self, sunlit: Vec<SunlitPlaces>, openings: SkyOpenings) -> Self {
         let mut world = self.clone();
         world.method = Method { light_vertices: true, sunlit, openings, ..world.method };
@@ -158,38 +159,38 @@ impl World {
         world
     }
 
-    /// This world with more samples at some places and fewer at others.
+    /// Returns this world with more samples in some places and fewer in others.
     pub fn with_density(mut self, density: Option<SampleDensity>) -> Self {
         self.method.density = density;
         self
     }
 
-    /// How many samples a pixel of the format takes.
+    /// Returns the sampling rate of a pixel of the format.
     pub(super) fn rate(&self, pixel: [i32; 2]) -> Rate {
         let format = [self.scene.film.width, self.scene.film.height];
         self.method.density.as_ref().map_or(Rate::default(), |density| density.rate(format, pixel))
     }
 
-    /// This world with polarization traced or not.
+    /// Returns this world with polarization traced or not.
     pub fn with_polarization(mut self, polarization: Polarizing) -> Self {
         self.method.polarization = polarization;
         self
     }
 
-    /// This world with the whole format in view, whatever part of it is made: all parts learn the same.
+    /// Returns this world with the whole format in view, whatever part is rendered: all parts then learn the same.
     pub fn of_the_format(&self) -> Self {
         let mut world = self.clone();
         world.scene.film = world.scene.film.of_the_format();
         world
     }
 
-    /// Camera samples of the format, whatever part of it is made.
+    /// Returns the number of camera samples of the whole format, whatever part of it is rendered.
     pub fn samples_of_the_format(&self) -> f64 {
         let film = self.scene.film;
         f64::from(film.width) * f64::from(film.height) * f64::from(self.method.samples)
     }
 
-    /// CIE Y of what a light shines, or of what dyes shine that it excites, if that is more.
+    /// Returns the CIE Y of a light's emission or, if it is larger, of the emission of dyes that the light excites.
     pub(super) fn luminance(&self, light: LightId) -> f64 {
         let draw = Draw::<MAX_LANES>::fixed(self.method.basis.fixed_lanes());
         let emission = draw.read(self.scene.lights[light].emission());
@@ -213,40 +214,41 @@ impl World {
         (self.photon_targets, self.map_targets) = (targets_of(pass.photons), map);
     }
 
-    /// The same world with what each light's lanes are worth replaced, for tests that look at single lanes.
+    /// Returns this world with the response to each light's lanes replaced, for tests of single lanes.
     #[doc(hidden)]
     pub fn with_responses(mut self, replace: impl Fn(&Response) -> Response) -> Self {
         self.responses = self.responses.iter().map(replace).collect();
         self
     }
 
-    /// The scene as the tracer sees it.
+    /// Returns the scene as the tracer sees it.
     pub fn scene(&self) -> &Scene<Table> {
         &self.scene
     }
 
-    /// How it is rendered.
+    /// Returns the method by which it is rendered.
     pub fn method(&self) -> &Method {
         &self.method
     }
 
-    /// Whether any surface fluoresces.
+    /// Returns whether any surface fluoresces.
     pub fn fluoresces(&self) -> bool {
         self.dyes.is_some()
     }
 
-    /// Whether any object lets light pass through.
+    /// Returns whether any object lets light pass through.
     pub(super) fn has_see_through(&self) -> bool {
         !self.see_through.is_empty()
     }
 
-    /// Whether an object lets light pass through.
+    /// Returns whether an object lets light pass through.
     pub(super) fn is_see_through(&self, object: u32) -> bool {
         self.see_through.get(object as usize).is_some_and(|&on| on)
     }
 
-    /// Whether paths for light vertices end at an object: where interpolated normals bend glass or mirrors, whose light
-    /// cannot be followed forward alike, and where light crosses rough surfaces. Paths from the camera find it.
+    /// Returns whether light paths for light vertices end at an object. They end where interpolated or bumped normals
+    /// bend glass or mirrors, whose light cannot be followed forward the same way, and where light crosses rough
+    /// surfaces. Paths from the camera find this light.
     pub(super) fn ends_light_paths(&self, object: u32) -> bool {
         let object = &self.scene.objects[object as usize];
         let lobes = self.lobes[object.material as usize];
@@ -254,12 +256,12 @@ impl World {
         lobes.intersects(Lobes::NON_DELTA_TRANSMISSION) || (smooth && lobes.has_delta())
     }
 
-    /// How much light there is in a film color: X + Y + Z.
+    /// Returns the amount of light in a film color: X + Y + Z.
     pub(super) fn amount(&self, rgb: [f64; 3]) -> f64 {
         (0..3).map(|channel| rgb[channel] * self.xyz_of_channel[channel]).sum::<f64>().abs()
     }
 
-    /// By what share light that is seen as one color is brighter as another.
+    /// Returns the relative increase in the amount of light from one color to another.
     pub(super) fn share_of_change(&self, rgb: [f64; 3], changed: [f64; 3]) -> f64 {
         let amount = self.amount(rgb);
         if amount > 0.0 { self.amount(changed) / amount - 1.0 } else { 0.0 }
@@ -269,7 +271,7 @@ impl World {
         self.scene.objects[object as usize].visibility
     }
 
-    /// The media around the start of a ray of the camera, but for those that it does not see.
+    /// Returns the media around the start of a camera ray, without those that the camera does not see.
     pub(super) fn media_at_camera(&self, ray: &Ray) -> Media {
         if !self.has_media || !self.scene.camera.starts_away() {
             return self.camera_media;
@@ -277,25 +279,25 @@ impl World {
         self.media_seen_at(ray.origin)
     }
 
-    /// The media around a ray that leaves a light.
+    /// Returns the media around a ray that leaves a light.
     pub(super) fn media_at_light(&self, light: LightId, ray: &Ray) -> Media {
         let known = self.light_media.get_or_init(|| media_of_lights(&self.scene))[light];
         known.unwrap_or_else(|| Media::around(&self.scene, ray.origin, ray.direction))
     }
 
-    /// The media around a ray, but for those that the camera does not see.
+    /// Returns the media around a ray, without those that the camera does not see.
     pub(super) fn seen_media(&self, ray: &Ray) -> Media {
         Media::around_of(&self.scene, ray.origin, ray.direction, &|object| self.scene.is_seen(object))
     }
 
-    /// The media around a point on a straight way from the camera, but for those that it does not see.
+    /// Returns the media around a point on a straight line from the camera, without those that the camera does not see.
     #[cold]
     pub(super) fn media_seen_at(&self, point: DVec3) -> Media {
         let way = [self.scene.camera.position(), point];
         self.camera_media.after_walk(&self.scene, way, &|object| self.scene.is_seen(object))
     }
 
-    /// The media around a surface that the camera's ray has hit, of bodies that the camera does not see.
+    /// Returns the media around a surface that a camera ray has hit, of bodies that the camera does not see.
     #[cold]
     pub(super) fn media_hidden_at(&self, ray: &Ray, hit: &Hit) -> Media {
         let is_hidden = |object: u32| !self.scene.is_seen(object);
@@ -304,9 +306,9 @@ impl World {
         walked(walked(self.hidden_media, [camera, start]), [start, end])
     }
 
-    /// Whether next-event estimation at a vertex of the given weight samples every light, or one.
+    /// Returns whether next-event estimation at a vertex of the given weight samples every light, and not only one.
     pub(super) fn samples_all_lights(&self, weight: impl FnOnce() -> f64) -> bool {
-        /// Lights that may all be sampled from one vertex.
+        /// Maximum number of lights that may all be sampled from one vertex.
         const MANY: usize = 8;
         match self.method.transport {
             Transport::Deterministic { .. } => true,
@@ -316,7 +318,7 @@ impl World {
         }
     }
 
-    /// The pass's lights, each for itself; of many, neighbors in the scene together.
+    /// Returns the lights of the light pass, each in a group of its own. If there are many, neighbors share a group.
     pub(super) fn photon_light_groups(&self) -> Vec<Vec<LightId>> {
         let Some(pass) = &self.method.light_pass else { return Vec::new() };
         let mut lights = pass.lights.clone();
@@ -325,22 +327,22 @@ impl World {
         lights.chunks(of_group).map(<[LightId]>::to_vec).collect()
     }
 
-    /// The openings at which bounces are aimed.
+    /// Returns the openings at which bounces are aimed.
     pub fn openings(&self) -> Vec<Opening> {
         self.method.bright.as_ref().map_or(Vec::new(), |bright| bright.openings().openings)
     }
 
-    /// Whether photons are sent to a place on an object.
+    /// Returns whether photons are sent to a place on an object.
     pub(super) fn is_photon_target(&self, object: u32, place: DVec3) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.include(&self.scene, object, place))
     }
 
-    /// Whether photons are sent to some of the surfaces that have no end.
+    /// Returns whether photons are sent to any unbounded surface.
     pub fn reaches_without_end(&self) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.reach.is_some())
     }
 
-    /// Whether paths gather photons where the camera does not see them straight.
+    /// Returns whether paths gather photons where the camera does not see them directly.
     pub(super) fn has_map(&self) -> bool {
         self.map_targets.is_some()
     }
@@ -349,12 +351,12 @@ impl World {
         self.photon_targets.as_ref().is_some_and(|targets| targets.lights[light])
     }
 
-    /// Whether light paths for light vertices start along a ray that hits a light.
+    /// Returns whether light paths for light vertices start along a ray that hits a light.
     pub(super) fn is_found_by_light_paths(&self, light: LightId, ray: &Ray) -> bool {
         self.path_starts.get(light).is_some_and(|start| start.covers(&self.scene.lights[light], ray))
     }
 
-    /// Whether photons bring the light of a ray that hits a light.
+    /// Returns whether photons carry the light along a ray that hits a light.
     pub(super) fn is_found_by_photons(&self, light: LightId, ray: &Ray) -> bool {
         self.photon_targets.as_ref().is_some_and(|targets| targets.start_along(&self.scene, light, ray))
     }

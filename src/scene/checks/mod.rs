@@ -1,4 +1,4 @@
-//! What the author of a scene should know of the world that it means: rays look for it.
+//! Checks of the finished scene by ray tracing, for mistakes that its author should know about.
 
 mod on_surface;
 mod open_glass;
@@ -12,7 +12,7 @@ use crate::spectrum::Curve;
 
 pub(super) use probe::{met_from_outside, ray_into};
 
-/// Adds to the warnings of a scene what is most likely not meant.
+/// Adds warnings about what is most likely not intended.
 pub(super) fn check(scene: &mut Scene<Curve>) {
     let dark = match scene.lights.iter().all(|light| light.emission().is_dark()) {
         true => vec!["nothing shines, so the image will be black".into()],
@@ -27,7 +27,7 @@ pub(super) fn check(scene: &mut Scene<Curve>) {
     scene.warnings.extend(black);
 }
 
-/// Shadow catchers on which no shadow can be seen.
+/// Returns warnings about shadow catchers on which no shadow can be seen.
 fn black_catchers(scene: &Scene<Curve>) -> Vec<String> {
     let is_black = |object: &&Object| scene.materials[object.material as usize].material.is_black();
     let catchers =

@@ -1,4 +1,4 @@
-//! Cameras and lights that stand exactly in a surface, neither on one side of it nor on the other.
+//! Cameras and lights that lie exactly in a surface, neither on one side of it nor on the other.
 
 use super::unlit::name;
 use crate::light::Light;
@@ -6,17 +6,17 @@ use crate::math::{Bounds, DVec3, Ray};
 use crate::scene::Scene;
 use crate::spectrum::Curve;
 
-/// Most lights that are looked at.
+/// Maximum number of lights that are checked.
 const MOST: usize = 4096;
-/// Parts of the scene's size: from how far away a place is looked at, and how near a surface counts as being there. The
-/// latter is far above rounding and far below anything meant.
+/// Fractions of the scene's size: the distance from which a place is probed, and the distance within which a surface
+/// counts as being there. The latter is far above rounding errors and far below anything intended.
 const STEP: f64 = 1e-7;
 const NEAR: f64 = 1e-13;
 
-/// What is wrong with the camera and with points and spots that stand in a surface.
+/// Returns warnings about the camera, point lights and spotlights that lie in a surface.
 ///
 /// Rounding decides where such a light shines (row L9 of the stability catalog). Whether such a camera counts as inside
-/// of a clear body depends on where it looks.
+/// a clear body depends on where it looks.
 pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
     let places = scene.lights.iter().enumerate().filter_map(|(id, light)| match light {
         Light::Point(point) => Some((id, DVec3::from(point.position))),
@@ -42,9 +42,9 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
     camera.into_iter().chain(lights).collect()
 }
 
-/// The object in whose surface a place lies, if it lies in one.
+/// Returns the object in whose surface a place lies, if there is one.
 fn surface_at(scene: &Scene<Curve>, place: DVec3, size: f64) -> Option<u32> {
-    // One of the three leads through the surface, whatever its normal.
+    // At least one of the three axes leads through the surface, whatever its normal.
     DVec3::AXES.into_iter().find_map(|direction| {
         let hit = scene.intersect(&Ray { origin: place - direction * (STEP * size), direction })?;
         ((hit.intersection.t - STEP * size).abs() <= NEAR * size).then_some(hit.object)

@@ -7,14 +7,15 @@ use crate::scene::text::and_more;
 use crate::shape::Shape;
 use crate::spectrum::Curve;
 
-/// Most flat surfaces that are looked at.
+/// Maximum number of flat surfaces that are checked.
 const MOST: usize = 1024;
-/// Rays into the body of each.
+/// Rays into the body behind each surface.
 const RAYS: u32 = 64;
 
-/// What is wrong with quads, discs and triangles of a dielectric behind which light goes on forever.
+/// Returns a warning about quads, discs and triangles of a dielectric behind which light may go on forever.
 ///
-/// Where others close the body, or opaque surfaces such as the ground of a pond do, light that enters meets them.
+/// There is none if light that enters always meets another surface: one that closes the body, or an opaque one such as
+/// the ground of a pond.
 pub(super) fn open_glass(scene: &Scene<Curve>) -> Option<String> {
     let is_flat = |shape: &Shape| matches!(shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_));
     let objects = (0..).zip(scene.objects.iter());
@@ -28,7 +29,7 @@ pub(super) fn open_glass(scene: &Scene<Curve>) -> Option<String> {
     ))
 }
 
-/// Whether light that enters by a surface may meet nothing more.
+/// Returns whether light that enters through a surface may meet nothing else.
 fn is_open(scene: &Scene<Curve>, shape: &Shape) -> bool {
     (0..RAYS).any(|number| {
         let sampler = Sampler::new(5, [number, 0], 0);

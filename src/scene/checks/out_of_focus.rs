@@ -1,18 +1,18 @@
-//! Lenses by which nothing that the camera sees is in focus.
+//! Lenses that leave nothing that the camera sees in focus.
 
 use super::view::View;
 use crate::scene::Scene;
 use crate::scene::text::shown;
 use crate::spectrum::Curve;
 
-/// Least rays that meet something, of 576.
+/// Minimum number of rays that must hit something, of 576.
 const LEAST: usize = 144;
-/// Diameter of a point's image, in heights of the image, from which on nothing of it can be told.
+/// Diameter of a point's blur circle, in heights of the image, above which the point is unrecognizable.
 const BLURRED: f64 = 0.25;
-/// A radius of this part of the distance in focus is that of no lens: a fast one has a twentieth.
+/// A lens radius above this fraction of the focus distance is unrealistic: a fast lens has a twentieth.
 const WIDE: f64 = 0.25;
 
-/// What is wrong with a lens that blurs nearly all that the camera sees beyond recognition.
+/// Returns a warning about a lens that blurs nearly everything that the camera sees beyond recognition.
 pub(super) fn out_of_focus(scene: &Scene<Curve>) -> Option<String> {
     let camera = &scene.camera;
     let lens = camera.lens?;

@@ -1,9 +1,10 @@
-//! Rays onto bodies from outside.
+//! Rays that hit bodies from outside.
 
 use crate::math::{Bounds, DVec3, Ray, ball_surface};
 use crate::shape::{Shape, SurfacePoint};
 
-/// A ray from outside of a box to the place at these shares of its sides, by way of a ball around it.
+/// Returns a ray that starts outside of a box and leads to the place at these fractions of its sides. It passes through
+/// a point of a ball around the box, which `on_ball` selects.
 pub(in crate::scene) fn ray_into(bounds: &Bounds, place: DVec3, on_ball: [f64; 2]) -> Option<Ray> {
     let size = bounds.size().length();
     let target = bounds.min + bounds.size() * place;
@@ -11,7 +12,8 @@ pub(in crate::scene) fn ray_into(bounds: &Bounds, place: DVec3, on_ball: [f64; 2
     Some(Ray { origin: target - direction * (2.0 * size), direction })
 }
 
-/// The point of a bounded shape that such a ray into its box meets first, and the direction of the ray.
+/// Returns the first point of a bounded shape that a ray from `ray_into` through its box hits, and the direction of
+/// that ray.
 pub(in crate::scene) fn met_from_outside(
     shape: &Shape,
     place: DVec3,

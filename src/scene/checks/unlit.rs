@@ -1,8 +1,8 @@
-//! Lights that light nothing the camera could see.
+//! Lights that light nothing that the camera can see.
 //!
-//! Paths from the camera look for places that a light reaches, and paths from the light for places that the camera
-//! sees: one that is found either way is enough. Where light goes behind a clear body is not followed: a doubt speaks
-//! for the light.
+//! Paths from the camera look for places that a light reaches, and paths from the light look for places that the camera
+//! sees. One find in either direction is enough. Light behind a clear body is not followed: a light gets the benefit of
+//! the doubt.
 
 use super::probe::met_from_outside;
 use super::view::{SurfaceSide, View};
@@ -13,22 +13,22 @@ use crate::scene::Scene;
 use crate::shape::{Shape, Sides, SurfacePoint};
 use crate::spectrum::Curve;
 
-/// Paths from one light.
+/// Paths traced from one light.
 const PATHS: u32 = 256;
-/// Points of all clear bodies that may stand in the light of the sky.
+/// Points in all clear bodies that are tested for light from the sky.
 const POINTS: usize = 1024;
-/// Rays that look for a hole to the sky, and how many of them find more than a small one.
+/// Rays that look for a hole to the sky. If one of the first `FEW` finds a hole, it is not a small one.
 const LOOKS: u32 = 1 << 19;
 const FEW: u32 = 1 << 8;
-/// Rays after which no more lights are looked at.
+/// Number of rays after which no more lights are checked.
 const MOST_RAYS: u64 = 1 << 20;
-/// Most lights that are warned of one by one.
+/// Maximum number of lights that get a warning each.
 const TOLD: usize = 4;
 
-/// What is wrong with each light of which nothing can be seen.
+/// Returns a warning about each light of which nothing can be seen.
 pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     let mut view = View::new(scene);
-    // There is no warning of one that is switched off.
+    // A light that is switched off gets no warning.
     let shines = |id: &LightId| scene.lights[*id].is_sampled() && !scene.lights[*id].emission().is_dark();
     let mut dark: Vec<LightId> = (0..scene.lights.len()).filter(shines).collect();
     view.look(|view, places| {
@@ -55,7 +55,7 @@ pub(super) fn unlit(scene: &Scene<Curve>) -> Vec<String> {
     found
 }
 
-/// What is wrong with a camera that sees neither an object nor a sky.
+/// Returns a warning if the camera sees neither an object nor a sky.
 fn empty_view(view: &View) -> Option<String> {
     let Scene { lights, hidden_lights, .. } = view.scene;
     let shows_sky = (0..lights.len()).any(|id| lights[id].is_infinite() && !hidden_lights.contains(&id));
@@ -65,7 +65,8 @@ fn empty_view(view: &View) -> Option<String> {
         .then(|| "the camera sees no object: none of 576 rays meets one; `look_at` is a point that it looks at".into())
 }
 
-/// The name of the opaque object that the camera is inside of, if all that it sees is the inside of one.
+/// Returns the name of the object that the camera is inside of, if it sees nothing but the inside of one object. That
+/// object is assumed to be opaque.
 fn around_the_camera(view: &View) -> Option<String> {
     let mut met = view.first_met();
     let (object, _) = met.next()??;
@@ -74,7 +75,7 @@ fn around_the_camera(view: &View) -> Option<String> {
     is_inside.then(|| view.scene.objects[object as usize].name.clone())
 }
 
-/// What is wrong with a light that paths from the camera have not met.
+/// Returns what is wrong with a light that no path from the camera has found.
 fn what_is_wrong(view: &View, id: LightId) -> Option<String> {
     let light = &view.scene.lights[id];
     let why = match light {
@@ -95,17 +96,17 @@ fn what_is_wrong(view: &View, id: LightId) -> Option<String> {
     })
 }
 
-/// What paths from a light found.
+/// The result of paths from a light.
 enum Paths {
-    /// The camera sees it, or something that it lights, or may see it behind a clear body.
+    /// The camera sees the light or something that it lights, or may do so through a clear body.
     Seen,
-    /// No object at all, but itself.
+    /// They meet no object except the light itself.
     PastEverything,
-    /// Only what the camera does not see.
+    /// They meet only what the camera does not see.
     Unseen,
 }
 
-/// Whether a light reaches a place, or is there.
+/// Returns whether a light reaches a place, or is itself at that place.
 fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
     let digits = place.point.position.to_array().map(|x| x.to_bits() as u32);
     let [u, v, ..] = Sampler::new(2, [digits[0], digits[1]], digits[2]).four_plain(BranchKey::CAMERA, 0);
@@ -114,7 +115,7 @@ fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
         let above = sample.ray.direction.dot(place.normal) > 0.0;
         Some(above && !view.is_occluded(&sample.ray, sample.distance, sample.object))
     };
-    // Nearly all samples of an image of the sky may lead to its sun.
+    // Nearly all samples of a sky image may go toward its sun.
     let sees_sky = || {
         let direction = cosine_about(place.normal, [u, v]);
         let shines = matches!(light, Light::Environment(sky) if sky.shines_toward(direction));
@@ -123,7 +124,7 @@ fn reaches(view: &View, light: &Light<Curve>, place: &SurfaceSide) -> bool {
     place.shines(light) || lit() == Some(true) || sees_sky()
 }
 
-/// Whether the light of a sky comes to a clear body, which may send it anywhere.
+/// Returns whether light from a sky reaches a clear body, which may send it anywhere.
 fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
     let clear = (0..view.scene.objects.len()).filter(|&object| view.scene.is_clear(object as u32));
     let boxes: Vec<_> = clear.filter_map(|object| view.scene.objects[object].shape.bounds()).collect();
@@ -138,7 +139,8 @@ fn reaches_a_clear_body(view: &View, light: &Light<Curve>) -> bool {
     })
 }
 
-/// Whether the sky is seen through a hole that few rays find: what it lights beyond may be seen through it as well.
+/// Returns whether the sky is visible only through a hole that few rays find. What the sky lights beyond the hole may
+/// then be visible through it as well.
 fn sees_through_a_hole(view: &View) -> bool {
     let sees = |number: u32| {
         let place = &view.places[number as usize % view.places.len()];
@@ -149,7 +151,7 @@ fn sees_through_a_hole(view: &View) -> bool {
     !(0..FEW).any(sees) && (FEW..LOOKS).any(sees)
 }
 
-/// Follows paths from a lamp, a point or a spot.
+/// Traces paths from a lamp, a point light or a spotlight.
 fn paths_of(view: &View, light: &Light<Curve>) -> Paths {
     let own = if let Light::Area(area) = light { Some(area.object) } else { None };
     let mut meets_others = false;
@@ -175,10 +177,10 @@ fn paths_of(view: &View, light: &Light<Curve>) -> Paths {
     if meets_others { Paths::Unseen } else { Paths::PastEverything }
 }
 
-/// Where a path leaves a light.
+/// The start of a path from a light.
 struct Start {
     ray: Ray,
-    /// The lamp's surface on the side that shines.
+    /// The lamp's surface, on the side that shines.
     surface: Option<SurfaceSide>,
 }
 
@@ -194,7 +196,7 @@ fn start(light: &Light<Curve>, sampler: &Sampler) -> Option<Start> {
     }
 }
 
-/// A point of a lamp, met from outside, and a direction from there by the cosine.
+/// Samples a point of a lamp by a ray from outside, and a cosine-distributed direction from there.
 fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     let [x, y, z, _] = sampler.four_plain(BranchKey::CAMERA, 1);
     let [a, b, c, d] = sampler.four_plain(BranchKey::CAMERA, 2);
@@ -205,7 +207,8 @@ fn start_on(area: &Area<Curve>, sampler: &Sampler) -> Option<Start> {
     Some(Start { ray, surface: Some(SurfaceSide { point, normal, object: area.object }) })
 }
 
-/// What messages call a light: the object that shines, or the number of the `[[light]]`, counted from 1, and its kind.
+/// Returns the name of a light in messages: that of the object that shines, or the number of the `[[light]]`, counted
+/// from 1, and its kind.
 pub(super) fn name(scene: &Scene<Curve>, id: LightId) -> String {
     let light = &scene.lights[id];
     if let Light::Area(area) = light {
@@ -215,7 +218,7 @@ pub(super) fn name(scene: &Scene<Curve>, id: LightId) -> String {
     format!("light {} ({})", before + 1, light.kind_name())
 }
 
-/// Whether it may be inside out, as a sphere may not.
+/// Returns whether a shape may be inside out, which a sphere cannot be.
 fn is_closed_mesh(shape: &Shape) -> bool {
     matches!(shape, Shape::Mesh(_) | Shape::Instance(_)) && shape.is_closed()
 }

@@ -1,6 +1,6 @@
-//! What the camera sees, straight or by way of other surfaces: roughly, by a few thousand rays.
+//! What the camera sees, directly or via other surfaces, estimated roughly with a few thousand rays.
 //!
-//! Clear bodies, panes and cutouts let rays pass straight on.
+//! Rays pass straight through clear bodies, panes and cutouts.
 
 use std::cell::Cell;
 
@@ -13,10 +13,10 @@ use crate::spectrum::Curve;
 
 /// Camera rays along each side of the image.
 const SIDE: u32 = 24;
-/// Surfaces of a path that turn it, and all of its surfaces.
+/// Maximum number of surfaces that turn a path, and of all surfaces on it.
 const DEEP: usize = 6;
 const LONGEST: usize = 64;
-/// Places that the camera sees which are compared with another one.
+/// Number of places seen by the camera that another place is tested against.
 const OTHERS: u32 = 4;
 
 /// One side of an opaque surface.
@@ -27,12 +27,12 @@ pub(super) struct SurfaceSide {
     pub(super) object: u32,
 }
 
-/// The places on a few paths from the camera, and what rays are asked for.
+/// The places on a few paths from the camera, and the number of rays traced.
 pub(super) struct View<'a> {
     pub(super) scene: &'a Scene<Curve>,
-    /// What paths from the camera meet.
+    /// The places where paths from the camera hit surfaces.
     pub(super) places: Vec<SurfaceSide>,
-    /// Rays asked for so far.
+    /// Rays traced so far.
     pub(super) rays: Cell<u64>,
     occluder: Cell<Option<u32>>,
 }
@@ -42,7 +42,8 @@ impl<'a> View<'a> {
         Self { scene, places: Vec::new(), rays: Cell::new(0), occluder: Cell::new(None) }
     }
 
-    /// Follows the camera's rays, far ones first, until `found` returns `true` to the places of one of them.
+    /// Follows the camera's rays, in an order that soon covers the image, until `found` returns `true` for the places
+    /// on one of them.
     pub(super) fn look(&mut self, mut found: impl FnMut(&Self, &[SurfaceSide]) -> bool) {
         // A stride that is coprime to the number of rays visits them all.
         for i in (0..SIDE * SIDE).map(|i| (i * 229) % (SIDE * SIDE)) {
@@ -59,8 +60,8 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Follows a ray over surfaces that scatter evenly or mirror; `met` gets each of them, and ends the walk by `true`,
-    /// which is the answer then. A ray of the camera goes straight through what the camera does not see.
+    /// Follows a ray over surfaces that scatter evenly or mirror. `met` receives each of them and ends the walk by
+    /// returning `true`, which is then the result. A camera ray passes straight through what the camera does not see.
     pub(super) fn walk(
         &self,
         is_camera: bool,
@@ -99,14 +100,14 @@ impl<'a> View<'a> {
         false
     }
 
-    /// One of the rays through all of the image, row by row.
+    /// Returns one of the rays of a grid over the image, counted row by row.
     fn camera_ray(&self, number: u32) -> Ray {
         let film = self.scene.film;
         let at = |i: u32, size: u32| (f64::from(i) + 0.5) * f64::from(size) / f64::from(SIDE);
         self.scene.camera.ray(DVec2::new(at(number % SIDE, film.width), at(number / SIDE, film.height)))
     }
 
-    /// What rays through all of the image meet first.
+    /// Returns what each ray of the grid over the image hits first.
     fn first_hits(&self) -> impl Iterator<Item = Option<(Ray, Hit)>> {
         (0..SIDE * SIDE).map(|i| {
             let ray = self.camera_ray(i);
@@ -114,7 +115,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// The objects that rays through all of the image meet first, each with whether it is met from its back.
+    /// Returns the objects that the rays of the grid over the image hit first, each with whether its back was hit.
     pub(super) fn first_met(&self) -> impl Iterator<Item = Option<(u32, bool)>> {
         self.first_hits().map(|met| {
             let (ray, hit) = met?;
@@ -123,13 +124,13 @@ impl<'a> View<'a> {
         })
     }
 
-    /// How far along the viewing direction that lies which rays through all of the image meet first.
+    /// Returns the depths at which the rays of the grid over the image first hit something.
     pub(super) fn depths(&self) -> impl Iterator<Item = f64> {
         let depth = |(ray, hit): (Ray, Hit)| self.scene.camera.depth(ray.origin + ray.direction * hit.intersection.t);
         self.first_hits().flatten().map(depth)
     }
 
-    /// Whether light never crosses an object.
+    /// Returns whether light never crosses an object.
     fn is_opaque(&self, object: u32) -> bool {
         let material = self.scene.material_of(object);
         !material.lobes().is_transmissive() && !material.is_see_through()
@@ -140,7 +141,7 @@ impl<'a> View<'a> {
         self.scene.is_occluded_by(ray, distance, light, &self.occluder, &|object| self.is_opaque(object))
     }
 
-    /// Whether the camera, or a place on paths from it, sees a place.
+    /// Returns whether the camera, or one of a few places on its paths, sees a place.
     pub(super) fn is_seen(&self, place: &SurfaceSide, number: u32) -> bool {
         let from = place.point.position;
         let to_camera = match self.scene.camera.projection() {
@@ -157,7 +158,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Whether a place on a lamp is in the picture.
+    /// Returns whether a place on a lamp is visible in the image.
     pub(super) fn is_in_view(&self, place: &SurfaceSide) -> bool {
         let Some(seen) = self.scene.camera.see(place.point.position, [0.5; 2]) else { return false };
         let size = DVec2::new(self.scene.film.width.into(), self.scene.film.height.into());
@@ -165,8 +166,8 @@ impl<'a> View<'a> {
         inside && self.is_free(place, seen.start)
     }
 
-    /// Whether the picture may show an object between the rays through it: the box of one reaches into the picture, or
-    /// lies around the camera, or a corner of the picture shows one without end.
+    /// Returns whether the image may show an object that lies between the rays of the grid: the box of an object
+    /// reaches into the image or lies around the camera, or a ray through a corner of the image hits something.
     pub(super) fn may_miss_an_object(&self) -> bool {
         let Scene { camera, film, objects, .. } = self.scene;
         let size = DVec2::new(film.width.into(), film.height.into());
@@ -187,7 +188,7 @@ impl<'a> View<'a> {
             || corners.iter().any(|&corner| self.scene.intersect_seen(&camera.ray(corner), None).is_some())
     }
 
-    /// Whether nothing opaque lies between a place and a point before it.
+    /// Returns whether nothing opaque lies between a place and a point in front of it.
     fn is_free(&self, place: &SurfaceSide, to: DVec3) -> bool {
         let above = to - place.point.position;
         if above.dot(place.normal) <= 0.0 {
@@ -201,7 +202,7 @@ impl<'a> View<'a> {
 }
 
 impl SurfaceSide {
-    /// Whether the light is this place.
+    /// Returns whether this side of the surface is where the light shines.
     pub(super) fn shines(&self, light: &Light<Curve>) -> bool {
         let front = self.point.normal.dot(self.normal) > 0.0;
         matches!(light, Light::Area(area) if area.object == self.object && area.sides.shine(front))

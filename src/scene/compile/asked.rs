@@ -1,13 +1,13 @@
-//! The spectra that the keys of a material ask for.
+//! The spectra that the keys of a material give.
 
 use crate::scene::text::{Fields, Value};
 
-/// The spectrum of a key.
+/// The spectrum that a key gives.
 #[derive(Clone, Copy)]
 pub(super) enum Asked<'d> {
     There(Value<'d>),
     Default(f64),
-    /// It is missing or wrong: a mistake is kept.
+    /// The key is missing or wrong, and a mistake has been recorded.
     Lacking,
 }
 

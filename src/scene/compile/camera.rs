@@ -8,11 +8,11 @@ use crate::math::DVec3;
 use crate::scene::text::{Fields, Value, above_0_to, at, shown};
 use crate::scene::{Camera, FilmSettings, Lens, PolarizingFilter, Projection};
 
-/// Nearest focus: what a lens bends by, radius over this, stays within f64.
+/// Smallest focus distance. The slope by which a lens bends rays, its radius over this distance, stays within f64.
 const NEAREST_FOCUS: f64 = 1e-30;
 /// Widest sensor, in mm: a kilometer.
 const WIDEST_SENSOR: f64 = 1e6;
-/// Largest shift in heights of the image.
+/// Largest shift, in heights of the image.
 const MAX_SHIFT: f64 = 1000.0;
 
 /// ```toml
@@ -26,7 +26,7 @@ const MAX_SHIFT: f64 = 1000.0;
 /// polarizer = { axis = 90 }  # a filter before it: degrees from the image's right toward its top
 /// ```
 ///
-/// The film is absent if it is wrong.
+/// `film` is none if the film has a mistake.
 pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSettings>) -> Option<Camera> {
     Fields::read(value, |camera| {
         let position = camera.need("position", point);
@@ -63,7 +63,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
     })
 }
 
-/// How directions become places in the image.
+/// The mapping from directions to positions in the image.
 #[derive(Clone, Copy)]
 enum ProjectionKind {
     /// Rays from one point through a window.
@@ -80,7 +80,7 @@ const PROJECTIONS: [(&str, ProjectionKind); 3] = [
     ("equirectangular", ProjectionKind::Equirectangular),
 ];
 
-/// The projection, if the camera has the keys for it and no other.
+/// Reads the projection. The camera must have the keys for it and no others.
 fn projection(context: &mut Context, camera: &mut Fields, kind: Option<ProjectionKind>) -> Option<Projection> {
     let keys = ["vertical_fov", "height", "shift", "lens"].map(|key| camera.get(key));
     let [vertical_fov, height, ..] = keys;
@@ -115,7 +115,7 @@ fn projection(context: &mut Context, camera: &mut Fields, kind: Option<Projectio
     }
 }
 
-/// Width of the sensor in mm, or of the film in a camera.
+/// Reads the width of the sensor in mm, or that of the film in a film camera.
 fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
     match kind {
         ProjectionKind::Perspective => {
@@ -143,9 +143,9 @@ fn shift(value: Value) -> Option<[f64; 2]> {
     }
 }
 
-/// `lens = { radius = 0.02, focus_distance = 6 }`: the radius of the opening in scene units, 0 for a pinhole, and the
-/// distance along the viewing direction at which points are sharp, `inf` for those infinitely far away. What the camera
-/// looks at is so far away.
+/// Reads `lens = { radius = 0.02, focus_distance = 6 }`: the radius of the aperture in scene units, 0 for a pinhole,
+/// and the distance along the viewing direction at which points are sharp, `inf` for infinity. `far` is the distance of
+/// the point that the camera looks at.
 fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
     Fields::read(value, |lens| {
         let radius = lens.need("radius", |value| {
@@ -162,8 +162,8 @@ fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
     })
 }
 
-/// `polarizer = { axis = 90, extinction = 0 }`: the direction that it lets through in degrees, and what it lets through
-/// across that.
+/// Reads `polarizer = { axis = 90, extinction = 0 }`: the direction of its axis in degrees, and its transmittance
+/// across the axis.
 fn filter(value: Value) -> Option<PolarizingFilter> {
     Fields::read(value, |filter| {
         let axis = filter.need("axis", |value| {
@@ -175,7 +175,7 @@ fn filter(value: Value) -> Option<PolarizingFilter> {
     })
 }
 
-/// What a polarizer lets through across its axis, of what it lets through along it.
+/// Reads the transmittance of a polarizer across its axis, relative to that along the axis.
 pub(super) fn extinction(value: Value) -> Option<f64> {
     let help = "of what is let through along the axis: 0 of a perfect polarizer, about 0.0001 of a sheet";
     value.within(0.0..=1.0, "an extinction lies between 0 and 1", Some(help))

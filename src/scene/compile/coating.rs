@@ -6,7 +6,7 @@ use crate::scene::text::{Fields, Value};
 
 const EXAMPLE: &str = "write coating = [{ index = 1.38, thickness_nm = 100 }, ..], from the outside inward";
 
-/// The layers of a material, if it has any; none if they are wrong, which is a mistake.
+/// Reads the coating of a material, if it has one. Returns none if it is wrong, which is recorded as a mistake.
 pub(super) fn coating<'d>(fields: &mut Fields<'d>) -> Option<Option<Coating<Asked<'d>>>> {
     let Some(value) = fields.get("coating") else { return Some(None) };
     if !value.node().is_array() {
@@ -41,7 +41,8 @@ fn layer_of<'d>(fields: &mut Fields<'d>) -> Option<CoatingLayer<Asked<'d>>> {
     Some(CoatingLayer { index, k, is_metal: metal.or(n).is_some(), thickness })
 }
 
-/// A pane, or with a thickness a film of one layer; none if its keys do not fit together, which is a mistake.
+/// Reads a pane, or a film of one layer if there is a thickness, a `metal` or an `n`. Returns none if its keys do not
+/// fit together, which is recorded as a mistake.
 pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
     let index = fields.get("index");
     let (transmittance, thickness) = (fields.get("transmittance"), fields.get("thickness_nm"));

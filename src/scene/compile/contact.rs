@@ -1,4 +1,4 @@
-//! Clear bodies and flat lamps that share a part of their surface with something else.
+//! Clear bodies and flat lamps that share a part of their surface with another object.
 
 use super::context::Context;
 use super::near_pairs::{MOST_PAIRS, NEAR, near_pairs};
@@ -9,13 +9,13 @@ use crate::scene::Object;
 use crate::scene::checks::ray_into;
 use crate::shape::{Plane, Shape};
 
-/// Rays by which two bodies are compared: enough to find one that shares a fiftieth of what is seen of it.
+/// Rays by which two bodies are compared: enough to find a shared part that is a fiftieth of the visible surface.
 const RAYS: u32 = 256;
-/// Surfaces of a body that one ray is followed through.
+/// Maximum number of surfaces of a body that a ray is followed through.
 const DEEP: usize = 4;
 
-/// Clear bodies may overlap but not share a surface: rounding would decide which of the two a ray meets. Of a flat lamp
-/// in another surface nothing may be seen.
+/// Reports objects that share a surface. Clear bodies may overlap but not share a surface, since rounding would decide
+/// which of the two a ray hits. A flat lamp that lies in another surface may be invisible.
 pub(super) fn contacts(context: &mut Context, placed: &Placed) {
     for (first, second) in coinciding(placed) {
         let [body, other] = [first, second].map(|number| &placed.objects[number]);
@@ -38,15 +38,15 @@ pub(super) fn contacts(context: &mut Context, placed: &Placed) {
     }
 }
 
-/// A lamp that has no inside.
+/// Returns whether an object is a lamp that has no inside.
 fn is_flat_lamp(placed: &Placed, object: &Object) -> bool {
     let shines = matches!(placed.material(object).material, Material::Emissive(_));
     shines && matches!(*object.shape, Shape::Quad(_) | Shape::Disc(_) | Shape::Triangle(_))
 }
 
-/// Pairs of objects whose surfaces coincide in part, the first one a clear body or a flat lamp.
+/// Returns the pairs of objects whose surfaces partly coincide. The first one is a clear body or a flat lamp.
 ///
-/// A ray that leaves one of them starts beyond the other and never meets it (row M2 of the stability catalog).
+/// A ray that leaves one of them starts beyond the other and never hits it (row M2 of the stability catalog).
 fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
     let objects = &placed.objects;
     let counting: Vec<bool> =
@@ -59,7 +59,8 @@ fn coinciding(placed: &Placed) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Pairs of such as count and planes that cut their boxes or lie beside them; two planes may always be one.
+/// Returns the pairs of an object marked in `counting` and a plane that cuts its box or lies beside it. Two planes
+/// always make a pair, since they may be the same.
 fn with_planes(objects: &[Object], counting: &[bool]) -> impl Iterator<Item = (usize, usize)> {
     let plane = |number: usize| match &*objects[number].shape {
         Shape::Plane(plane) => Some((number, plane)),

@@ -1,4 +1,4 @@
-//! What the reading of one part of a scene leaves for that of others.
+//! State that the parts of a scene share while they are read.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
@@ -12,31 +12,31 @@ use crate::scene::text::{Document, LocatedBy, Value};
 use crate::shape::Mesh;
 use crate::spectrum::{Channel, Image};
 
-/// What was read so far, besides the scene itself.
+/// What has been read so far, besides the scene itself.
 #[derive(Default)]
 pub(super) struct Context {
     warnings: Vec<Warning>,
-    /// Warnings of values, which may be read for two purposes and are warned of once.
+    /// Warnings about values. A value may be read for two purposes, but is warned about once.
     warned: HashSet<Warning>,
-    /// The hash of the scene's texts and the files that they name.
+    /// Hash of the scene's texts and of the files that they name.
     pub(super) hash: Sha256,
-    /// The files that they name and that were read.
+    /// The files that the texts name and that have been read.
     pub(super) files: Vec<PathBuf>,
-    /// Length of a scene unit in meters, if the scene says it.
+    /// Length of a scene unit in meters, if the scene gives it.
     pub(super) meters_per_unit: Option<f64>,
-    /// Whether paths scatter from diffuse surfaces once at most.
+    /// Whether paths continue from one diffuse surface to another at most once.
     pub(super) few_bounces: bool,
     /// Luminance of the film's white in cd/m^2, if the scene's light is absolute.
     pub(super) white_luminance: Option<f64>,
-    /// Images by their file and by what was read of it.
+    /// Images by their file, the meaning of their numbers and the channel.
     pub(super) images: BTreeMap<(PathBuf, Meaning, Option<Channel>), Arc<Image>>,
     /// Meshes by their file and whether they are smooth.
     pub(super) meshes: HashMap<(PathBuf, bool), Arc<Mesh>>,
-    /// Meshes whose normals are means of those of their faces.
+    /// Meshes whose normals are averages of those of their faces.
     pub(super) averaged: HashSet<*const Mesh>,
 }
 
-/// What the author should know, and where the reason stands.
+/// A message for the author, and the place of its cause.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Warning {
     place: Option<Range<usize>>,
@@ -48,7 +48,7 @@ impl Context {
         Self { hash: Sha256::new_with_prefix(text.as_bytes()), ..Self::default() }
     }
 
-    /// Notes a file that was read.
+    /// Records a file that has been read.
     pub(super) fn has_read(&mut self, file: PathBuf, bytes: &[u8]) {
         self.hash.update(bytes);
         self.files.push(file);
@@ -58,7 +58,7 @@ impl Context {
         self.warnings.push(Warning { place: None, message: message.into() });
     }
 
-    /// Warns of a value, by the place where it stands.
+    /// Warns about a value, with its place in the text.
     pub(super) fn warn_at(&mut self, place: Value, message: impl Into<String>) {
         let warning = Warning { place: Some(place.span()), message: message.into() };
         if self.warned.insert(warning.clone()) {

@@ -1,4 +1,4 @@
-//! From a spectrum as written to one of which every value is known.
+//! From a spectrum as written to a curve whose values are all known.
 
 use super::context::Context;
 use super::curve_name::{
@@ -24,7 +24,7 @@ const CAUCHY: &str = "for a glass, A is about 1.5 and B about 0.004 um^2";
 const SELLMEIER: &str = "c holds squared wavelengths in um^2: square the coefficients if they are wavelengths";
 const ABBE: &str = "for a glass, nd is about 1.4 to 2.1 and vd 18 to 95";
 
-/// The spectrum that a text means, the same all over.
+/// Converts a text to a spectrum that is the same all over a surface.
 pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     if let (Some(luminance), false) = (text.luminance, quantity == Quantity::Emission) {
         return luminance.place.advise(format!("{} has no luminance", article(quantity)), "use `scale`");
@@ -52,7 +52,7 @@ pub(super) fn curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Q
     }
 }
 
-/// Tells that a quantity cannot be written like this.
+/// Reports that a quantity cannot be written in this form.
 fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
     let key = || format!("`{}`", text.place.key());
     let (form, help) = match text.kind {
@@ -68,7 +68,7 @@ fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
     text.value.advise(format!("{} cannot be given by {form}", article(quantity)), help)
 }
 
-/// Why a quantity cannot vary over a surface.
+/// Returns why a quantity cannot vary over a surface.
 fn even(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Emission => "only a surface can show it: give an object an `emissive` material",
@@ -78,7 +78,7 @@ fn even(quantity: Quantity) -> &'static str {
     }
 }
 
-/// How a quantity may be written.
+/// Returns how a quantity may be written.
 fn forms(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Emission => "write a number, { rgb = [red, green, blue] } or { illuminant = \"D65\" }",
@@ -96,7 +96,7 @@ fn forms(quantity: Quantity) -> &'static str {
     }
 }
 
-/// What a text says, looked up and read.
+/// Looks up and reads the kind of spectrum that a text gives.
 fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<CurveKind> {
     if !text.fits(quantity) {
         return unfit(text, quantity);
@@ -143,11 +143,11 @@ fn kind<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> 
     }
 }
 
-/// Refuses a share that is a color from 0 to 255, as screens have it.
+/// Refuses a share that is a color from 0 to 255, as on screens.
 fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> {
     let is_share = matches!(quantity, Quantity::Reflectance | Quantity::Transmittance | Quantity::Share);
     let first = rgb.iter().position(|x| *x > 1.0).filter(|_| is_share && text.scale.it == 1.0);
-    // What is at most 100 may be meant in percent.
+    // Numbers up to 100 may be meant in percent.
     let Some((first, color)) = first.filter(|_| rgb.iter().any(|x| *x > 100.0)).zip(of_bytes(rgb)) else {
         return Some(());
     };
@@ -156,7 +156,7 @@ fn of_screen(text: &CurveText, quantity: Quantity, rgb: [f64; 3]) -> Option<()> 
     text.place.entry(first).advise(message, help)
 }
 
-/// Refuses a list with an impossible value.
+/// Refuses a list that contains an impossible value.
 fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>) -> Option<()> {
     let scale = text.scale.it;
     values.enumerate().try_for_each(|(number, value)| {
@@ -164,18 +164,18 @@ fn each(text: &CurveText, quantity: Quantity, values: impl Iterator<Item = f64>)
     })
 }
 
-/// What is told of a scale that a value was multiplied by.
+/// Returns the part of a message that tells by which scale a value was multiplied.
 fn with_scale(scale: f64) -> String {
     if scale == 1.0 { String::new() } else { format!(" with its scale of {}", shown(scale)) }
 }
 
-/// Whether two pairs are two wavelengths and two values.
+/// Returns whether two pairs are a list of two wavelengths and a list of two values.
 fn is_transposed(pairs: &[[f64; 2]]) -> bool {
     let is_wavelength = |x: &f64| (100.0..=830.0).contains(x);
     matches!(pairs, [first, second] if first.iter().all(is_wavelength) && !second.iter().any(is_wavelength))
 }
 
-/// Refuses samples that are no spectrum of a quantity.
+/// Refuses samples that cannot be a spectrum of a quantity.
 fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(), CurveError> {
     if let Some(at) = samples.as_flattened().iter().position(|x| !x.is_finite()) {
         return Err(CurveError::new(not_finite(samples.as_flattened()[at])).at(at / 2));
@@ -224,13 +224,13 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), CurveError> {
     Err(CurveError::new(format!("a first wavelength of {first} nm is far from visible light")).help(help).at(0))
 }
 
-/// Whether pairs are values and wavelengths in nm, which increase as those of a spectrum do, in this order.
+/// Returns whether pairs are written as `[value, wavelength in nm]`, with wavelengths that increase as in a spectrum.
 fn are_swapped(samples: &[[f64; 2]]) -> bool {
     let is_value = |[value, nm]: &[f64; 2]| *value < 100.0 && (100.0..=MOST_NM).contains(nm);
     samples.len() > 1 && samples.iter().all(is_value) && samples.is_sorted_by(|a, b| a[1] < b[1])
 }
 
-/// The longest wavelength in nm that tables of visible light end at.
+/// The longest wavelength in nm at which tables of visible light end.
 const MOST_NM: f64 = 2500.0;
 
 fn file_of_samples<'d>(
@@ -240,7 +240,7 @@ fn file_of_samples<'d>(
     quantity: Quantity,
 ) -> Option<CurveKind> {
     let place = text.place;
-    // The second column is taken where none is named.
+    // Without a column, the second one is read.
     let column = text.column.unwrap_or(Spanned { place, it: 2 });
     if column.it < 2 {
         return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
@@ -267,7 +267,7 @@ fn file_of_samples<'d>(
     }
 }
 
-/// n = A + B / wavelength^2.
+/// Returns a Cauchy curve, n = A + B / wavelength^2.
 fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
     let (kind, place) = (CurveKind::Cauchy(terms), text.place);
     match bends(text.scale.it, &kind) {
@@ -280,7 +280,7 @@ fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
     }
 }
 
-/// The two-term Cauchy curve through n_d with the Abbe number V_d = (n_d - 1) / (n_F - n_C).
+/// Returns the two-term Cauchy curve through n_d with the Abbe number V_d = (n_d - 1) / (n_F - n_C).
 fn abbe(text: &CurveText, nd: Spanned<f64>, vd: Spanned<f64>) -> Option<CurveKind> {
     if vd.it <= 0.0 {
         return vd.place.refuse("an Abbe number is above 0");
@@ -320,7 +320,7 @@ fn sellmeier(text: &CurveText, b: &Spanned<Vec<f64>>, c: &Spanned<Vec<f64>>) -> 
     }
 }
 
-/// That a formula of an index bends light by a possible amount at all visible wavelengths. One of exactly 1 is of
+/// Checks that a formula of an index gives a possible value at all visible wavelengths. A value of exactly 1 comes from
 /// coefficients that are 0 or in another unit.
 fn bends(scale: f64, kind: &CurveKind) -> Result<(), CurveError> {
     let curve = Curve { scale, ..kind.clone().into() };
@@ -364,7 +364,7 @@ fn blackbody(kelvin: f64) -> Result<(), CurveError> {
     }))
 }
 
-/// An entry of the catalog.
+/// Looks up an entry of the catalog.
 fn named(context: &mut Context, text: &CurveText, name: &str, quantity: Quantity) -> Option<CurveKind> {
     let place = text.value;
     let (found, unknown): (_, fn(&str) -> CurveError) = match quantity {
@@ -381,7 +381,7 @@ fn named(context: &mut Context, text: &CurveText, name: &str, quantity: Quantity
     found.or_else(|| unknown(name).tell(place))
 }
 
-/// The absorption of a glass of the catalog per scene unit.
+/// Returns the absorption of a glass of the catalog per scene unit.
 fn absorption(context: &mut Context, place: Value, name: &str) -> Option<CurveKind> {
     let Some(glass) = data::glass(name) else { return unknown_glass(name).tell(place) };
     if glass.extinction.is_empty() {
@@ -404,7 +404,7 @@ fn absorption(context: &mut Context, place: Value, name: &str) -> Option<CurveKi
 mod tests {
     use super::*;
 
-    /// An entry of the catalog is used without a check.
+    /// Entries of the catalog are used without a check.
     #[test]
     fn every_entry_of_the_catalog_is_possible() {
         let glasses = data::glasses().map(|glass| (CurveKind::glass(glass.key), Quantity::Index));

@@ -25,7 +25,7 @@ pub(super) fn unknown_reflectance(name: &str) -> CurveError {
     unknown(name, "reflectance", full().map(bare).chain(full()))
 }
 
-/// How to write what stands in quotes and is no name: a file, a share in percent, or a number with its unit.
+/// Returns how to write a text in quotes that is not a name: a file, a share in percent, or a number with its unit.
 pub(super) fn in_quotes(text: &str) -> Option<String> {
     let has_unit = || text.split_once(' ').is_some_and(|(number, unit)| number.parse::<f64>().is_ok() && is_unit(unit));
     match share(text) {
@@ -36,23 +36,23 @@ pub(super) fn in_quotes(text: &str) -> Option<String> {
     }
 }
 
-/// Whether a word is a unit of light.
+/// Returns whether a word is a unit of light.
 fn is_unit(word: &str) -> bool {
     let word = word.to_lowercase().replace('\u{b2}', "2").replace('^', "");
     matches!(&*word, "cd" | "cd/m2" | "nit" | "nits" | "lx" | "lux" | "lm" | "lumen" | "lumens" | "w" | "w/m2" | "w/sr")
 }
 
-/// How to write an image by the name of its file.
+/// Returns how to write an image, given the name of its file.
 pub(super) fn image_called(file: &str) -> Option<String> {
     ends_in(Path::new(file), IMAGES).then(|| format!("write {{ image = {file:?} }}"))
 }
 
-/// How to write what is a color elsewhere.
+/// Returns how to write a color that is given in another program's notation.
 pub(super) fn color_called(text: &str) -> Option<String> {
     web_color(text).map(|color| format!("write {{ rgb = {color} }}, in linear light"))
 }
 
-/// How to write a light by its temperature in kelvin, such as `3000K`.
+/// Returns how to write a light that is given by its temperature in kelvin, such as `3000K`.
 pub(super) fn temperature_called(text: &str) -> Option<String> {
     let kelvin = text.strip_suffix(['K', 'k'])?.trim();
     let is_light = kelvin.parse().is_ok_and(|kelvin: f64| (1000.0..=40_000.0).contains(&kelvin));
@@ -72,7 +72,7 @@ pub(super) fn unknown_illuminant(name: &str) -> CurveError {
     }
 }
 
-/// The illuminant that is called so elsewhere: F2 for FL2, or CIE D65 for D65.
+/// Returns the illuminant that has this name elsewhere: FL2 for F2, or D65 for CIE D65.
 fn of_cie(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     let bare = lower.strip_prefix("cie ").unwrap_or(&lower);
@@ -90,7 +90,7 @@ fn of_cie(name: &str) -> Option<&'static str> {
     illuminants().find(same)
 }
 
-/// How to write the illuminant that a bare name is or nearly is.
+/// Returns how to write the illuminant whose name this is, exactly or nearly.
 pub(super) fn illuminant_called(name: &str) -> Option<String> {
     match data::illuminant(name) {
         Some(light) => Some(format!("it is an illuminant: write {{ illuminant = \"{}\" }}", light.name)),
@@ -119,13 +119,13 @@ fn unknown<'a>(name: &str, what: &str, names: impl Iterator<Item = &'a str>) -> 
     CurveError::new(format!("there is no {what} named {name:?}")).help(help)
 }
 
-/// The first of some names of several words that begins with these, such as `neutral 8 (.23 D)` with `neutral 8`.
+/// Returns the first name that begins with these whole words, such as `neutral 8 (.23 D)` for `neutral 8`.
 fn begun<'a>(words: &str, names: &[&'a str]) -> Option<&'a str> {
     let start = format!("{} ", words.to_lowercase());
     names.iter().copied().find(|name| name.to_lowercase().starts_with(&start))
 }
 
-/// What a name stands for where it is known.
+/// Returns what a name stands for in any part of the catalog.
 fn elsewhere(name: &str) -> Option<String> {
     let glass = || Some(format!("a glass: dielectric = {{ index = \"{}\" }}", data::glass(name)?.name()));
     let metal = || Some(format!("a metal: conductor = {{ metal = \"{}\" }}", data::metal(name)?.name));

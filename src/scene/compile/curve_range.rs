@@ -1,25 +1,25 @@
-//! Whether a value is possible for what a spectrum describes.
+//! The values that are possible for the quantity that a spectrum describes.
 
 use crate::scene::text::{Fault, Value, shown};
 use crate::spectrum::Quantity;
 
-/// Largest emission: far within f32, which film and lanes hold.
+/// Largest emission: far within f32, which stores film and lanes.
 const MAX_EMISSION: f64 = 1e30;
 /// Largest n and k: several times those of any metal in visible light.
 const MAX_METAL: f64 = 100.0;
-/// Largest thickness of a layer in which light interferes, in nm: 100 um.
+/// Largest thickness of an interference layer, in nm: 100 um.
 const MAX_THICKNESS_NM: f64 = 1e5;
-/// A thickness below this many nm, far less than an atom, is meant in another unit.
+/// A thickness below this many nm, far less than an atom, must be meant in another unit.
 const LEAST_THICKNESS_NM: f64 = 1e-3;
 
-/// Why a spectrum cannot be what it is used as.
+/// Why a spectrum cannot be used for a quantity.
 pub(super) struct CurveError {
     pub(super) message: String,
-    /// What to do, where that is known.
+    /// What to do, if that is known.
     pub(super) help: Option<String>,
-    /// Whether the value would be right if it was meant in percent.
+    /// Whether the value would be right if it were meant in percent.
     pub(super) is_percent: bool,
-    /// The entry of a list that is wrong, if it is one entry.
+    /// The wrong entry of a list, if a single entry is wrong.
     pub(super) entry: Option<usize>,
 }
 
@@ -47,12 +47,12 @@ impl From<CurveError> for Fault {
     }
 }
 
-/// Whether a light can be made brighter or darker by this.
+/// Returns whether a value can be a factor on the brightness of a light.
 pub(super) fn is_factor(value: f64) -> bool {
     (0.0..=MAX_EMISSION).contains(&value)
 }
 
-/// A number by which a whole light is made brighter or darker.
+/// Checks a factor on the brightness of a whole light.
 pub(super) fn factor(name: &str, value: f64) -> Result<(), CurveError> {
     let bound = match value {
         _ if value < 0.0 => "at least 0".to_owned(),
@@ -62,7 +62,7 @@ pub(super) fn factor(name: &str, value: f64) -> Result<(), CurveError> {
     Err(CurveError::new(format!("{name} is {bound}, not {}", shown(value))))
 }
 
-/// That a value is possible for a quantity; `place` says in the message where it is.
+/// Checks that a value is possible for a quantity. `place` says in the message where the value is.
 pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<(), CurveError> {
     let name = article(quantity);
     let (least, most, is_share) = match quantity {
@@ -97,7 +97,7 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
     })
 }
 
-/// That a layer of a thickness in nm is thick enough to be one, and thin enough to show that light interferes.
+/// Checks that a layer's thickness in nm is neither too small for a layer nor too large for visible interference.
 pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError> {
     let (name, value) = (article(Quantity::Thickness), shown(nm));
     if nm == 0.0 || (LEAST_THICKNESS_NM..=MAX_THICKNESS_NM).contains(&nm) {
@@ -116,7 +116,7 @@ pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError>
     Err(if help { refusal.help(format!("in m? It is in nm: then write {}", shown(in_nm))) } else { refusal })
 }
 
-/// What is said of a layer so thin that a length in um is likely meant.
+/// Returns a warning about a layer so thin that um were probably meant.
 pub(super) fn hardly_a_layer(nm: f64) -> Option<String> {
     let is_thin = (LEAST_THICKNESS_NM..ONE_NM).contains(&nm);
     is_thin.then(|| {
@@ -124,7 +124,7 @@ pub(super) fn hardly_a_layer(nm: f64) -> Option<String> {
     })
 }
 
-/// Below this, no layer is seen.
+/// Thickness in nm below which no layer is visible.
 const ONE_NM: f64 = 1.0;
 
 pub(super) fn article(quantity: Quantity) -> &'static str {

@@ -1,19 +1,19 @@
-//! Spectra as authors write them, as [`Curve`](crate::spectrum::Curve) shows.
+//! Spectra as authors write them, in the form that [`Curve`](crate::spectrum::Curve) shows.
 
 use toml::de::DeValue;
 
 use crate::scene::text::{Fields, Spanned, Value, at, exactly};
 use crate::spectrum::{Channel, Encoding, Placement, Quantity, TexelFilter, Wrap};
 
-/// Most and, as one over it, least repetitions in a unit.
+/// Maximum number of repetitions in a unit. One over it is the minimum.
 const MOST_REPEAT: f64 = 1e6;
 
-/// A spectrum as written, each value with its place.
+/// A spectrum as written, each value with its place in the text.
 #[derive(Clone)]
 pub(super) struct CurveText<'d> {
-    /// The whole.
+    /// The whole spectrum.
     pub(super) value: Value<'d>,
-    /// What its kind says.
+    /// The value that gives its kind.
     pub(super) place: Value<'d>,
     pub(super) kind: KindText<'d>,
     /// The column of a file that holds the values, counted from 1.
@@ -22,7 +22,7 @@ pub(super) struct CurveText<'d> {
     pub(super) channel: Option<Channel>,
     pub(super) wrap: Wrap,
     pub(super) filter: TexelFilter,
-    /// How often an image or a pattern fits into a unit of u and of v.
+    /// Copies of an image or a pattern in a unit of u and of v.
     pub(super) repeat: Spanned<'d, [f64; 2]>,
     /// A factor on every value.
     pub(super) scale: Spanned<'d, f64>,
@@ -50,7 +50,7 @@ pub(super) enum KindText<'d> {
 
 type SpectrumReader = for<'d> fn(Value<'d>) -> Option<KindText<'d>>;
 
-/// The keys of which a table of a spectrum has one, and what reads them.
+/// The keys that give the kind of a spectrum, and their readers. A table has exactly one of these keys.
 const KINDS: [(&str, SpectrumReader); 11] = [
     ("rgb", |value| value.array(real).map(KindText::Rgb)),
     ("samples", |value| pairs(value, "write [wavelength in nm, value]").map(KindText::Samples)),
@@ -88,10 +88,10 @@ fn pairs(value: Value, help: &'static str) -> Option<Vec<[f64; 2]>> {
     value.list(|entry| entry.as_list("", help).array(real))
 }
 
-/// The message where wavelengths and values stand in a list each.
+/// The help for wavelengths and values that stand in two separate lists.
 pub(super) const ONE_OF_EACH: &str = "write a pair for each wavelength, as in [[400, 0.2], [700, 0.9]]";
 
-/// A number that a spectrum can be made of.
+/// Reads a number that can be part of a spectrum.
 fn real(value: Value) -> Option<f64> {
     let it = value.number()?;
     finite(Spanned { place: value, it }).map(|()| it)
@@ -107,7 +107,7 @@ pub(super) fn not_finite(x: f64) -> String {
 
 const COLOR: &str = "{ rgb = [0.7, 0.5, 0.3] }";
 
-/// The keys of which a spectrum of a quantity has one.
+/// Returns the keys that can give the kind of a spectrum of a quantity.
 fn fitting(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::Index => &["rgb", "samples", "file", "cauchy", "sellmeier", "abbe"],
@@ -121,7 +121,7 @@ fn fitting(quantity: Quantity) -> &'static [&'static str] {
     }
 }
 
-/// The keys of spectra of other quantities.
+/// Returns the keys that only spectra of other quantities can have.
 fn unfit(quantity: Quantity) -> impl Iterator<Item = &'static str> {
     let fitting = fitting(quantity);
     let varies = fitting.contains(&"image");
@@ -133,14 +133,14 @@ fn unfit(quantity: Quantity) -> impl Iterator<Item = &'static str> {
     kinds.chain(others).chain(more).filter(|(_, fits)| !fits).map(|(key, _)| key)
 }
 
-/// The message where a table has no kind.
+/// Returns the message about a table without a kind.
 fn kinds_of(quantity: Quantity) -> String {
     let names: Vec<_> = fitting(quantity).iter().map(|key| format!("`{key}`")).collect();
     let (others, last) = names.split_at(names.len() - 1);
     format!("a spectrum needs one of {} or {}", others.join(", "), last.concat())
 }
 
-/// A spectrum that could stand where one has no kind.
+/// Returns an example of a spectrum, for the message about one without a kind.
 fn example(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Index => "\"N-BK7\" or { cauchy = [1.5046, 0.0042] }",
@@ -153,7 +153,7 @@ fn example(quantity: Quantity) -> &'static str {
 }
 
 impl<'d> CurveText<'d> {
-    /// What a value says as a spectrum.
+    /// Reads a value as a spectrum.
     pub(super) fn read(value: Value<'d>, quantity: Quantity) -> Option<Self> {
         match value.node() {
             DeValue::Integer(_) | DeValue::Float(_) => {
@@ -165,7 +165,8 @@ impl<'d> CurveText<'d> {
         }
     }
 
-    /// Whether a spectrum of a quantity may be written like this, whatever a name stands for.
+    /// Returns whether a spectrum of a quantity may be written in this form. A name may always be, whatever it stands
+    /// for.
     pub(super) fn fits(&self, quantity: Quantity) -> bool {
         match self.kind {
             KindText::Name(_) => true,
@@ -174,12 +175,12 @@ impl<'d> CurveText<'d> {
         }
     }
 
-    /// Where its image lies, if that is possible.
+    /// Returns the placement of its image, if that is possible.
     pub(super) fn placement(&self) -> Option<Placement> {
         Some(Placement { repeat: is_repeat(self.repeat)?, wrap: self.wrap, filter: self.filter })
     }
 
-    /// A spectrum without a table.
+    /// Returns a spectrum that is not written as a table.
     fn bare(value: Value<'d>, kind: KindText<'d>) -> Self {
         let (scale, repeat) = (Spanned { place: value, it: 1.0 }, Spanned { place: value, it: [1.0; 2] });
         let (column, encoding, channel, luminance) = (None, None, None, None);
@@ -230,7 +231,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
     Some(CurveText { value, place, kind, column, encoding, channel, wrap, filter, repeat, scale, luminance })
 }
 
-/// How often an image or a pattern fits into a unit of u and of v: a number or two.
+/// Reads how many copies of an image or a pattern there are in a unit of u and of v: one number or two.
 pub(super) fn repeat(value: Value) -> Option<[f64; 2]> {
     is_repeat(Spanned { place: value, it: one_or_two(value)? })
 }
@@ -239,7 +240,7 @@ fn one_or_two(value: Value) -> Option<[f64; 2]> {
     value.as_list("", "write [along u, along v]").one_or("[u, v]")
 }
 
-/// Numbers of copies in a unit that are neither too large nor too small.
+/// Checks that numbers of copies in a unit are neither too large nor too small.
 pub(super) fn is_repeat(Spanned { place: value, it: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
     match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
         Some(wrong) => value.refuse(format!(

@@ -85,7 +85,7 @@ fn overscan(value: Value) -> Option<Overscan> {
     }
 }
 
-/// Filters with their widths or parameters.
+/// The filters that have a width or parameters.
 const FILTER: Choice<for<'d> fn(Value<'d>) -> Option<Filter>> = Choice {
     name: "a filter",
     word: "filter",

@@ -19,7 +19,7 @@ fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<Asked<'d>>> 
     Some(Fluorescence { absorption, emission, quantum_yield: quantum_yield? })
 }
 
-/// Where the spectra of a dye are written, if it has one: its absorption and its emission.
+/// Returns where the absorption and the emission of a dye are written, if there is a dye.
 pub(super) fn written<'d>(diffuse: &Diffuse<Asked<'d>>) -> Option<[Value<'d>; 2]> {
     let dye = diffuse.fluorescence.as_ref()?;
     match [dye.absorption, dye.emission] {
@@ -28,7 +28,7 @@ pub(super) fn written<'d>(diffuse: &Diffuse<Asked<'d>>) -> Option<[Value<'d>; 2]
     }
 }
 
-/// Refuses a surface with a dye that gives back more light than it gets.
+/// Refuses a surface with a dye that returns more light than it receives.
 pub(super) fn conserves(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value; 2]) -> Option<()> {
     let Diffuse { reflectance, fluorescence: Some(dye) } = diffuse else { return Some(()) };
     let dye = dye.dye();

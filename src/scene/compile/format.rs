@@ -1,4 +1,4 @@
-//! What an image's file holds, and how its numbers are written.
+//! What an image file contains, and how its numbers are stored.
 
 use toml::de::DeValue;
 
@@ -8,10 +8,10 @@ use crate::scene::text::{Fields, Spanned, Value, above_0_to, at};
 use crate::spectrum::WavelengthBands;
 use crate::spectrum::visible::{FIRST_NM, LAST_NM};
 
-/// Largest luminance of white: that of the sun is 1.6e9.
+/// Largest luminance of white. That of the sun is 1.6e9.
 const MOST_LUMINOUS: f64 = 1e12;
 
-/// What the file holds.
+/// Reads what the file contains.
 pub(super) fn format(film: &mut Fields) -> Option<Format> {
     let layers = film.or("layers", Vec::new(), layers);
     let first = film.or("first", FirstSurface::default(), |value| value.word(&FirstSurface::NAMES));
@@ -56,7 +56,7 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
     }
 }
 
-/// Luminance of red, green and blue of 1, if the scene's light is absolute.
+/// Reads the luminance of red, green and blue of 1, if the scene's light is absolute.
 fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
     let help = "in cd/m2: 100 is about that of a screen's white";
@@ -73,8 +73,8 @@ fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     }
 }
 
-/// The bands of a spectral image: true for those that most programs expect, or from where to where, in nm, and the
-/// width of each.
+/// Reads the bands of a spectral image: true for those that most programs expect, or the first and the last band and
+/// the width of each, in nm.
 fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
     match value.node() {
         DeValue::Boolean(true) => return Some(Some(WavelengthBands::default())),
@@ -133,10 +133,10 @@ fn layers(value: Value) -> Option<Vec<Layer>> {
     layers.map(|layers| layers.concat())
 }
 
-/// Whole rates of frames that television has at 1000 / 1001 of their speed, and says with two or three digits.
+/// Whole frame rates that television runs at 1000 / 1001 of their speed, and gives with two or three digits.
 const OF_TELEVISION: [u32; 5] = [24, 30, 48, 60, 120];
 
-/// A frame rate, as a number of frames and the seconds that they take.
+/// Reads a frame rate, as a number of frames and the seconds that they take.
 fn rate(value: Value) -> Option<[u32; 2]> {
     let help = Some("for instance: 24, or 23.976");
     let rate = value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 to 1000", help)?;
@@ -148,7 +148,7 @@ fn rate(value: Value) -> Option<[u32; 2]> {
     })
 }
 
-/// Text for the header of the file, which a 0 would end.
+/// Reads a text for the header of the file, in which a 0 would end it.
 fn line(value: Value) -> Option<String> {
     let text = value.text()?;
     match text.contains('\0') {

@@ -15,10 +15,10 @@ use crate::spectrum::{Channel, Curve, CurveKind, Encoding, Image, Quantity, Text
 
 const IMAGE: FileKind =
     FileKind { nameless: "an image needs the name of its file", most_bytes: 1 << 32, endings: IMAGES };
-/// One that may be brighter than white.
+/// Images that may be brighter than white.
 pub(super) const BRIGHT_IMAGE: FileKind = FileKind { endings: &["exr", "hdr"], ..IMAGE };
 
-/// The spectrum of a surface, which may vary over it.
+/// Reads the spectrum of a surface, which may vary over it.
 pub(super) fn surface_curve<'d>(context: &mut Context, text: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     match &text.kind {
         KindText::Image(file) if text.fits(quantity) => image_curve(context, text, file, quantity),
@@ -32,7 +32,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
     let at_file = Spanned { place: text.place, it: file };
     let encoding = text.encoding.map(|encoding| encoding.it);
     let meaning = match quantity {
-        // The grays of a thickness are numbers, which no screen has shown.
+        // The grays of a thickness are numbers that no screen has encoded.
         Quantity::Thickness => Meaning::Thicknesses(encoding.unwrap_or(Encoding::Linear)),
         Quantity::Share => Meaning::Shares(encoding),
         _ => Meaning::Light(encoding),
@@ -62,7 +62,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
     }
 }
 
-/// That an image holds one number for each place, and nowhere more or less than a thickness in nm.
+/// Checks that an image has a single number at each place, and that all numbers are possible thicknesses in nm.
 fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Option<()> {
     let [r, g, b] = image.most_colorful();
     if r != g || g != b {
@@ -74,7 +74,7 @@ fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Opti
     text.scale.place.told(possible_thickness(f64::from(most) * scale, &place))
 }
 
-/// The factor on an image, if it is one, and no luminance stands in its place.
+/// Returns the factor on an image, if it is valid and no luminance is given in its place.
 pub(super) fn factor_on_image(text: &CurveText) -> Option<f64> {
     if let Some(luminance) = text.luminance {
         return luminance.place.advise("an image has no single luminance", "use `scale`");
@@ -111,7 +111,7 @@ fn checker<'d>(
 }
 
 fn square<'d>(context: &mut Context, cell: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
-    // A lamp has one spectrum, the white that colors are filters of.
+    // A lamp has a single spectrum, a white that its colors filter.
     if quantity == Quantity::Emission && !matches!(cell.kind, KindText::Number(_) | KindText::Rgb(_)) {
         let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
         return cell.value.advise(message, "make it of several lamps");
@@ -122,7 +122,7 @@ fn square<'d>(context: &mut Context, cell: &CurveText<'d>, quantity: Quantity) -
     surface_curve(context, cell, quantity)
 }
 
-/// An image as `read` takes it from its file.
+/// Reads an image from its file with `read`.
 pub(super) fn read_file(
     context: &mut Context,
     file: &Spanned<&str>,
@@ -137,7 +137,7 @@ pub(super) fn read_file(
     Some(Arc::new(image))
 }
 
-/// An image, read once for each meaning of its numbers.
+/// Reads an image, once for each meaning of its numbers and each channel.
 pub(super) fn image(
     context: &mut Context,
     file: &Spanned<&str>,

@@ -1,4 +1,4 @@
-//! Files of images that light or color a scene.
+//! Image files that light or color a scene.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::scene::decode::{Floats, Steps, Unreadable, Whole, decode_exr, decode_
 use crate::scene::text::Fault;
 use crate::spectrum::{Channel, IDENTITY, Image, Matrix, decode_srgb};
 
-/// Reads an OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
+/// Reads an OpenEXR or Radiance file from its bytes. The extension of its name says which it is.
 ///
 /// # Errors
 /// What is wrong with it, and what to do.
@@ -24,13 +24,13 @@ pub(super) fn read_image(path: &Path, bytes: &[u8]) -> Result<ImageFile, Fault> 
     }
 }
 
-/// An image, and what is to be said of its file.
+/// An image, and the warnings about its file.
 pub(super) struct ImageFile {
     pub(super) image: Image,
     pub(super) warnings: Vec<String>,
 }
 
-/// Reads a PNG, JPEG, OpenEXR or Radiance file from its bytes; the ending of its name says which it is.
+/// Reads a PNG, JPEG, OpenEXR or Radiance file from its bytes. The extension of its name says which it is.
 ///
 /// # Errors
 /// What is wrong with it, and what to do.
@@ -54,7 +54,7 @@ pub(super) fn read_texture(
     }
 }
 
-/// What an OpenEXR or Radiance file holds; of the former, alpha as well if asked.
+/// Decodes an OpenEXR or Radiance file, and the alpha of the former if requested.
 fn floats(path: &Path, bytes: &[u8], alpha: bool) -> Result<Floats, Fault> {
     match ending(path).as_str() {
         "exr" => decoded(path, "OpenEXR", bytes, |bytes| decode_exr(bytes, alpha)),
@@ -62,7 +62,7 @@ fn floats(path: &Path, bytes: &[u8], alpha: bool) -> Result<Floats, Fault> {
     }
 }
 
-/// An image that is read, and as what.
+/// The image to read, and what to read it as.
 struct TextureOf<'p> {
     path: &'p Path,
     meaning: Meaning,
@@ -71,7 +71,7 @@ struct TextureOf<'p> {
 }
 
 impl TextureOf<'_> {
-    /// Which numbers of texels are read.
+    /// Chooses the numbers of texels that are read.
     fn picked(&self, channels: usize, has_alpha: bool) -> Result<Picked, Fault> {
         let picked = Picked::new(self.path, self.channel, channels, has_alpha)?;
         if self.meaning == Meaning::Directions && picked.channels() == 1 {
@@ -81,7 +81,7 @@ impl TextureOf<'_> {
         Ok(picked)
     }
 
-    /// An image, some transparent places of which may not be read, and which may say of its colors that they are not
+    /// Adds the warnings that apply to an image: that alpha is ignored, and that the file says that its colors are not
     /// sRGB.
     fn file(&self, image: Image, ignores_alpha: bool, not_srgb: Option<&str>) -> ImageFile {
         let file = self.path.display();
@@ -146,7 +146,7 @@ impl TextureOf<'_> {
     }
 }
 
-/// Makes linear Rec.709 of an image that has colors; what is to be said of that.
+/// Converts an image with colors to linear Rec.709. Returns a warning about the conversion, if there is one.
 fn rec709(texels: &mut Texels, to_rec709: &Result<Matrix, String>) -> Option<String> {
     match to_rec709 {
         _ if texels.channels == 1 => None,
@@ -156,9 +156,9 @@ fn rec709(texels: &mut Texels, to_rec709: &Result<Matrix, String>) -> Option<Str
     }
 }
 
-/// Which numbers of a texel are read.
+/// The numbers of a texel that are read.
 struct Picked {
-    /// Numbers of a texel in the file.
+    /// Numbers per texel in the file.
     stride: usize,
     first: usize,
     last: usize,
@@ -166,7 +166,7 @@ struct Picked {
 }
 
 impl Picked {
-    /// Of texels of 1 to 4 numbers: a gray or 3 colors, and maybe alpha behind them, or alpha alone.
+    /// Chooses from texels of 1 to 4 numbers: a gray or 3 colors, optionally followed by alpha, or alpha alone.
     fn new(path: &Path, channel: Option<Channel>, stride: usize, has_alpha: bool) -> Result<Self, Fault> {
         let colors = stride - usize::from(has_alpha);
         let last = colors.max(1) - 1;
@@ -198,7 +198,7 @@ impl Picked {
         numbers.chunks_exact(self.stride).flat_map(|texel| texel[self.first..=self.last].iter().copied())
     }
 
-    /// Whether some alpha that is not read is less than `full`.
+    /// Returns whether an alpha that is not read is below `full`.
     fn ignores<T: Copy + PartialOrd>(&self, numbers: &[T], full: T) -> bool {
         self.alpha.is_some_and(|alpha| numbers.chunks_exact(self.stride).any(|texel| texel[alpha] < full))
     }
@@ -208,8 +208,8 @@ fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
-/// What files begin with, whatever they are called: the kind, and how its names end. Those of the last kinds are not
-/// read.
+/// The first bytes of files, whatever their names: these bytes, the kind of image, and its extension. The last kinds,
+/// which have none, are not read.
 const BEGINNINGS: [(&[u8], &str, &str); 9] = [
     (b"\x89PNG", "PNG", "png"),
     (b"\xff\xd8\xff", "JPEG", "jpg"),
@@ -222,7 +222,8 @@ const BEGINNINGS: [(&[u8], &str, &str); 9] = [
     (b"RIFF", "WebP", ""),
 ];
 
-/// The kind of image that a file holds, if it begins as one does, and how its name should end if it is read.
+/// Returns the kind of image that a file contains, by its first bytes, and the extension that it should have if it is
+/// read.
 fn kind_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let (_, kind, ending) = BEGINNINGS.iter().find(|(beginning, ..)| bytes.starts_with(beginning))?;
     Some((kind, ending))
@@ -232,7 +233,7 @@ fn unknown(path: &Path, help: &str) -> Fault {
     Fault::new(format!("the kind of image cannot be told from {:?}", path.display()), help)
 }
 
-/// What a decoder makes of the file.
+/// Decodes a file, or returns why it cannot be read.
 fn decoded<T>(
     path: &Path,
     kind: &str,

@@ -1,30 +1,30 @@
-//! What the numbers of an image stand for, and which of them can be.
+//! What the numbers of an image stand for, and which values they can have.
 
 use std::path::Path;
 
 use crate::scene::text::Fault;
 use crate::spectrum::{Encoding, Matrix, apply, decode_srgb};
 
-/// Largest rounding of a number of 16 bits, relative to it.
+/// Largest rounding error of a 16-bit float, relative to its value.
 const HALF: f64 = 1.0 / 2048.0;
 
 /// What the numbers of an image stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Meaning {
-    /// Light or what a surface makes of it, encoded as the scene says or else as the kind of file implies.
+    /// Light or the color of a surface, encoded as the scene says or else as the kind of file implies.
     Light(Option<Encoding>),
-    /// Shares of a surface, encoded in the same way. They are no colors.
+    /// Shares of a surface, which are not colors, encoded as the scene says or else as the kind of file implies.
     Shares(Option<Encoding>),
     /// Thicknesses, encoded as the scene says.
     Thicknesses(Encoding),
-    /// Heights, just as they are.
+    /// Heights, without an encoding.
     Heights,
-    /// Directions: the middle of the range of whole numbers is 0, of others one half.
+    /// Directions. The middle of the range of whole numbers means 0; for other numbers, one half does.
     Directions,
 }
 
 impl Meaning {
-    /// Whether numbers are encoded as sRGB, where a kind of file implies it or not.
+    /// Returns whether numbers are encoded as sRGB. `implied` says whether the kind of file implies it.
     pub(super) fn is_srgb(self, implied: bool) -> bool {
         match self {
             Self::Light(encoding) | Self::Shares(encoding) => encoding.map_or(implied, |it| it == Encoding::Srgb),
@@ -38,13 +38,13 @@ impl Meaning {
 pub(super) struct Texels<'p> {
     pub(super) path: &'p Path,
     pub(super) width: usize,
-    /// Numbers of a texel.
+    /// Numbers per texel.
     pub(super) channels: usize,
     pub(super) numbers: Vec<f32>,
 }
 
 impl Texels<'_> {
-    /// Refuses numbers that no light and no surface has; negative ones that are only noise become 0.
+    /// Refuses numbers that neither light nor a surface can have. Negative ones that are only noise become 0.
     pub(super) fn check(&mut self, meaning: Meaning, is_lossy: bool) -> Result<(), Fault> {
         let (allowed, help) = match meaning {
             Meaning::Light(_) => (0.0..=f32::MAX, "light is finite and not negative"),
@@ -69,21 +69,23 @@ impl Texels<'_> {
         Err(Fault::new(message, format!("{help}{save}")))
     }
 
-    /// How far below 0 a number is noise: were all of them that wrong, their mean would be off by no more than 16 bits
-    /// round it. Filters and conversions leave such numbers behind, and so do compressions that were undone.
+    /// Returns how far below 0 a number counts as noise: if all numbers were off by that much, their mean would be off
+    /// by no more than its rounding to 16 bits. Filters, conversions and earlier lossy compressions leave such numbers
+    /// behind.
     fn noise(&self) -> f32 {
         let sum: f64 = self.numbers.iter().filter(|x| **x > 0.0).map(|x| f64::from(*x)).sum();
         (HALF * sum / self.numbers.len() as f64) as f32
     }
 
-    /// Makes linear numbers of sRGB.
+    /// Decodes sRGB numbers to linear ones.
     pub(super) fn decode_srgb(&mut self) {
         self.numbers.iter_mut().for_each(|x| *x = decode_srgb(f64::from(*x)) as f32);
     }
 
-    /// Makes linear Rec.709 of colors; what is to be said of those that lie outside.
+    /// Converts colors to linear Rec.709. Returns a warning about those that lie outside of it.
     ///
-    /// What is negative there becomes 0. It is rounding, and not told, where halves in the file round as much away.
+    /// Negative results become 0. They count as rounding errors, without a warning, if the rounding to halves in the
+    /// file could have caused them.
     pub(super) fn convert(&mut self, to_rec709: &Matrix) -> Option<String> {
         let rounding = to_rec709.map(|row| row.map(|x| HALF * x.abs()));
         let (mut first, mut count) = (0, 0);

@@ -1,4 +1,4 @@
-//! Closed meshes of clear bodies whose faces look inward, so that their inside is taken for the outside.
+//! Closed meshes of clear bodies whose faces point inward, so that their inside is taken for the outside.
 
 use super::place::Placed;
 use crate::math::{BranchKey, DVec3, Ray, Sampler};
@@ -7,15 +7,16 @@ use crate::scene::checks::met_from_outside;
 use crate::scene::text::and_more;
 use crate::shape::Shape;
 
-/// Rays that vote on a mesh: an odd number, so that one that grazes an edge does not decide.
+/// Rays that vote on a mesh: an odd number, so that one ray that grazes an edge does not decide.
 const RAYS: u32 = 5;
-/// Directions that are tried for one ray that meets the mesh.
+/// Directions that are tried until a ray hits the mesh.
 const TRIES: u32 = 16;
-/// Surfaces that a ray crosses at most.
+/// Maximum number of surfaces that a ray crosses.
 const MOST: usize = 1000;
 
-/// What is wrong with closed meshes of clear bodies whose faces look inward: each fills all that is outside of it, and
-/// light that meets it is lost. A bubble is none of them: it lies in a body of the same material, which its faces end.
+/// Returns a warning about closed meshes of clear bodies whose faces point inward. Such a body fills everything outside
+/// of the mesh, and light that hits it is lost. Bubbles are exempt: they lie in a body of the same material, which ends
+/// at their faces.
 pub(super) fn inside_out(placed: &Placed) -> Option<String> {
     let objects = &placed.objects;
     let is_mesh = |object: &Object| matches!(*object.shape, Shape::Mesh(_) | Shape::Instance(_));
@@ -44,7 +45,7 @@ fn looks_inward(objects: &[Object], number: usize) -> bool {
     2 * against > all
 }
 
-/// A ray that starts just behind the first surface of a shape that is met from outside.
+/// Returns a ray that starts just behind the first surface of a shape that is hit from outside.
 fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
     (0..TRIES).find_map(|attempt| {
         let [u, v, x, y] = Sampler::new(0, [number, attempt], 0).four_plain(BranchKey::CAMERA, 0);
@@ -54,8 +55,8 @@ fn from_inside(shape: &Shape, number: u32) -> Option<Ray> {
     })
 }
 
-/// How often the inside of a shape, by its normals, lies around the start of a ray: left more often than entered on the
-/// way out.
+/// Returns how many times the inside of a shape, by its normals, surrounds the start of a ray: how much more often the
+/// ray leaves the shape than it enters it.
 pub(super) fn bodies_around(shape: &Shape, ray: &Ray) -> i32 {
     let (mut ray, mut bodies) = (*ray, 0);
     for _ in 0..MOST {

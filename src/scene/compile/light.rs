@@ -1,4 +1,4 @@
-//! The lights that no surface gives.
+//! Lights that are not surfaces.
 
 use std::ops::RangeInclusive;
 
@@ -71,7 +71,7 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
     })
 }
 
-/// Adds lights to a scene, behind those that it has.
+/// Appends lights to those of a scene.
 pub(super) fn add_lights(scene: &mut Scene<Curve>, entries: Vec<Entry>) {
     for Entry { light, group, is_visible } in entries {
         let id = scene.lights.len();
@@ -82,12 +82,12 @@ pub(super) fn add_lights(scene: &mut Scene<Curve>, entries: Vec<Entry>) {
     }
 }
 
-/// The spectrum of a light that no surface gives.
+/// Reads the spectrum of a light that is not a surface.
 fn emission<'d>(context: &mut Context, value: Value<'d>) -> Option<Curve> {
     curve(context, &CurveText::read(value, Quantity::Emission)?, Quantity::Emission)
 }
 
-/// The spectrum of a light of a point.
+/// Reads the intensity of a point light or a spotlight.
 fn intensity<'d>(context: &mut Context, value: Value<'d>) -> Option<Curve> {
     let emission = emission(context, value)?;
     radiometry::intensity(context, value, emission)
@@ -102,14 +102,14 @@ fn point_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curv
     })
 }
 
-/// Keys of the entry of a light that is too small to be seen.
+/// Keys that belong beside the kind of a light that is too small to be seen.
 const OF_A_POINT: [&str; 2] = ["name", "group"];
-/// Keys of the entry of one that is seen.
+/// Keys that belong beside the kind of a light that can be seen.
 const OF_AN_INFINITE_LIGHT: [&str; 3] = ["name", "group", "visible_to_camera"];
-/// What the last of those is called elsewhere.
+/// Names of `visible_to_camera` in other programs.
 const OF_SIGHT: [&str; 2] = ["visible", "camera_visible"];
 
-/// Tells of keys that stand within the kind of a light, but belong to its entry.
+/// Reports keys that stand within the kind of a light but belong beside it.
 fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
     for &key in keys {
         light.stray(
@@ -120,7 +120,7 @@ fn of_the_entry(light: &mut Fields, kind: &str, keys: &[&'static str]) {
     }
 }
 
-/// Refuses keys of an infinite light that belong beside it.
+/// Reports keys that stand within an infinite light but belong beside it.
 fn of_an_infinite_light(light: &mut Fields, kind: &str) {
     of_the_entry(light, kind, &OF_AN_INFINITE_LIGHT);
     for key in OF_SIGHT {
@@ -129,13 +129,13 @@ fn of_an_infinite_light(light: &mut Fields, kind: &str) {
     }
 }
 
-/// About as wide as the sun appears, in radians.
+/// The apparent diameter of the sun in radians, approximately.
 const IN_RADIANS: RangeInclusive<f64> = 0.009..=0.0096;
 
 fn sun_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve>> {
     Fields::read(value, |light| {
         let toward = light.need("toward", direction);
-        // As wide as the sun appears.
+        // The apparent diameter of the sun.
         let angular_diameter = light.or("angular_diameter", 0.533, |value| {
             let across = value.within(0.0..=180.0, "a sun is 0 to 180 degrees across", None)?;
             if IN_RADIANS.contains(&across) {
@@ -228,8 +228,8 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
     })
 }
 
-/// `polarization = { sun = [0, 1, 1], degree = 0.7 }`: where the sun of a clear sky stands, and how far its light is
-/// polarized a quarter turn from there.
+/// Reads `polarization = { sun = [0, 1, 1], degree = 0.7 }`: the direction of the sun in a clear sky, and how far the
+/// sky's light is polarized a quarter turn from there.
 fn sky_polarization(value: Value) -> Option<SkyPolarization> {
     Fields::read(value, |sky| {
         let sun = sky.need("sun", direction);
@@ -241,7 +241,7 @@ fn sky_polarization(value: Value) -> Option<SkyPolarization> {
     })
 }
 
-/// The map of steps that only turn.
+/// Returns the map of a list of steps that must all be rotations.
 fn rotation(steps: &[Spanned<Step>]) -> Option<Transform> {
     match steps.iter().find(|step| !matches!(step.it, Step::Rotate(_))) {
         Some(step) => {

@@ -1,4 +1,4 @@
-//! Materials, each by itself.
+//! Materials, each read by itself.
 
 use std::collections::BTreeMap;
 
@@ -18,14 +18,14 @@ use crate::scene::text::{Choice, Fields, Value, exactly, shown};
 use crate::shape::Sides;
 use crate::spectrum::{Curve, Quantity};
 
-/// A material by itself: of one that is made of others it is known where they are named.
+/// A material read by itself. A mix or a mask still holds the values that name its parts.
 pub(super) enum MaterialDraft<'d, S> {
     Whole(Material<S>),
     Mix { parts: [Value<'d>; 2], amount: S },
     Mask { part: Value<'d>, opacity: S },
 }
 
-/// From 0, smooth, to 1; 0 if it is wrong, which is a mistake.
+/// Reads a roughness from 0, which is smooth, to 1. Returns 0 if it is wrong, which is recorded as a mistake.
 fn roughness(fields: &mut Fields) -> f64 {
     let what = "a roughness lies between 0, smooth, and 1";
     let read = |value: Value| match value.number()? {
@@ -38,10 +38,10 @@ fn roughness(fields: &mut Fields) -> f64 {
     fields.or("roughness", 0.0, read).unwrap_or_default()
 }
 
-/// What reads a kind of material, given its table as a whole and by its keys.
+/// The reader of a kind of material. It receives the table of the kind as a value and as fields.
 type MaterialReader = for<'d> fn(&mut Context, Value<'d>, &mut Fields<'d>) -> Option<MaterialDraft<'d, Asked<'d>>>;
 
-/// The kinds of materials, each documented where it is implemented, in `material`.
+/// The kinds of materials. Each is documented where it is implemented, in `material`.
 const MATERIAL: Choice<MaterialReader> = Choice {
     name: "a material",
     word: "kind of material",
@@ -90,7 +90,7 @@ const MATERIAL: Choice<MaterialReader> = Choice {
     ],
 };
 
-/// By how much light along the fast axis is ahead: in degrees, or by a length.
+/// Reads how far light along the fast axis is ahead: in degrees, or as a length.
 fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> {
     let (phase, path) = (fields.get("retardance"), fields.get("retardation_nm"));
     match (phase, path) {
@@ -125,16 +125,17 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
     }
 }
 
-/// The longest way in nm by which a wave is ahead: 1 mm.
+/// Largest path difference in nm: 1 mm.
 const MOST_AHEAD_NM: f64 = 1e6;
-/// The shortest, at which 3 parts in 10^9 of polarized light change: less is most likely in m.
+/// Smallest path difference in nm, at which 3 parts in 10^9 of polarized light change. A smaller number is most likely
+/// in m.
 const LEAST_AHEAD_NM: f64 = 0.01;
 
 fn conductor<'d>(_: &mut Context, value: Value<'d>, fields: &mut Fields<'d>) -> Option<MaterialDraft<'d, Asked<'d>>> {
     let (metal, n, k) = (fields.get("metal"), fields.get("n"), fields.get("k"));
     let (roughness, coating) = (Roughness::new(roughness(fields)), coating(fields));
     let [n, k] = match (metal, n, k) {
-        // A metal gives both.
+        // A metal gives both n and k.
         (Some(metal), None, None) => [Asked::There(name(metal)?); 2],
         (None, Some(n), Some(k)) => [n, k].map(Asked::There),
         _ if fields.has_unknown() => return None,
@@ -161,19 +162,19 @@ fn two_names(value: Value) -> Option<[Value; 2]> {
     exactly(value.list(name)?, |count| value.refuse(format!("a mix is made of 2 materials, not {count}")))
 }
 
-/// A text in quotes, where it stands.
+/// Reads a text in quotes, and returns its place.
 fn name(value: Value) -> Option<Value> {
     value.text().map(|_| value)
 }
 
-/// Every material by itself; those that are wrong are known but not there.
+/// All materials, each read by itself. A material with a mistake has an entry without a draft.
 pub(super) struct Drafts<'d> {
     pub(super) by_name: BTreeMap<&'d str, Option<MaterialDraft<'d, Curve>>>,
-    /// Whether there are others of which the name is not known.
+    /// Whether there are other materials whose names are not known.
     pub(super) nameless: bool,
 }
 
-/// The materials of a scene.
+/// Reads the materials of a scene.
 pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> {
     let mut drafts = Drafts { by_name: BTreeMap::new(), nameless: !value.node().is_table() };
     if value.node().is_array() {
@@ -203,8 +204,8 @@ pub(super) fn drafts<'d>(context: &mut Context, value: Value<'d>) -> Drafts<'d> 
     drafts
 }
 
-/// Lets surfaces that are as rough as one another share their tables, which take 10 ms to a second; `rough` has a coat
-/// of each roughness so far, by its bits.
+/// Lets materials of equal roughness share their tables, which take 10 ms to a second to compute. `rough` has a coat
+/// for each roughness so far, keyed by its bits.
 fn share_tables(rough: &mut BTreeMap<u64, Coat>, material: &mut Material<Curve>) {
     let mut coat = |value: f64| rough.entry(value.to_bits()).or_insert_with(|| Coat::new(value)).clone();
     match material {
@@ -216,7 +217,7 @@ fn share_tables(rough: &mut BTreeMap<u64, Coat>, material: &mut Material<Curve>)
     }
 }
 
-/// A material with the spectra that its keys mean.
+/// Resolves the spectra that the keys of a material give.
 fn resolved<'d>(context: &mut Context, asking: MaterialDraft<'d, Asked<'d>>) -> Option<MaterialDraft<'d, Curve>> {
     let mut right = true;
     let mut curve = |quantity, asked: &Asked<'d>| {

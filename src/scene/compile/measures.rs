@@ -1,4 +1,4 @@
-//! Points, directions and lengths that numbers can hold, and the units that numbers seem to be in.
+//! Range checks of points, directions and lengths, and guesses of the units that numbers were meant in.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -6,21 +6,21 @@ use std::ops::RangeInclusive;
 use crate::math::DVec3;
 use crate::scene::text::{Value, shown};
 
-/// Largest length and coordinate: products of a few of them stay far within f64 and f32.
+/// Largest length and coordinate. It is far within f32, and products of a few of them are far within f64.
 pub(super) const MAX_LENGTH: f64 = 1e30;
-/// Smallest size, for the same reason.
+/// Smallest size. It is far within f32, and products of a few of them are far within f64.
 pub(super) const MIN_LENGTH: f64 = 1e-30;
-/// An angle in degrees below which it may be one in radians.
+/// Angle in degrees below which radians may be meant.
 const NARROW: f64 = 1.0;
-/// What the numbers of points are called.
+/// The name of the numbers of a point in messages.
 pub(super) const COORDINATE: &str = "a coordinate";
 
-/// A point that is not too far away.
+/// Reads a point that is not too far away.
 pub(super) fn point(value: Value) -> Option<DVec3> {
     near(value, COORDINATE, value.numbers()?).map(DVec3::from)
 }
 
-/// Numbers that are coordinates or the like, each finite and not too large; `what` each is.
+/// Checks that coordinates or similar numbers are finite and not too large. `what` is the name of each in messages.
 pub(super) fn near<const N: usize>(value: Value, what: &str, numbers: [f64; N]) -> Option<[f64; N]> {
     match numbers.iter().position(|x| !is_near(*x)) {
         Some(axis) => value.entry(axis).refuse(far(what, numbers[axis])),
@@ -28,12 +28,12 @@ pub(super) fn near<const N: usize>(value: Value, what: &str, numbers: [f64; N]) 
     }
 }
 
-/// Whether a number is a coordinate: finite and not too large.
+/// Returns whether a number can be a coordinate: finite and not too large.
 pub(super) fn is_near(number: f64) -> bool {
     number.is_finite() && number.abs() <= MAX_LENGTH
 }
 
-/// What is wrong with a number that is none; `what` it should be.
+/// Returns what is wrong with a number that cannot be a coordinate. `what` is its name in the message.
 pub(super) fn far(what: &str, number: f64) -> String {
     match number.is_finite() {
         true => format!("{what} is at most {MAX_LENGTH:e}"),
@@ -41,7 +41,7 @@ pub(super) fn far(what: &str, number: f64) -> String {
     }
 }
 
-/// A vector of finite length above 0.
+/// Reads a vector of finite length above 0.
 pub(super) fn direction(value: Value) -> Option<DVec3> {
     let vector = point(value)?;
     match vector.try_normalize() {
@@ -50,12 +50,12 @@ pub(super) fn direction(value: Value) -> Option<DVec3> {
     }
 }
 
-/// A length above 0; `what` it is the length of.
+/// Reads a length above 0. `what` is its name in messages.
 pub(super) fn length(value: Value, what: &str) -> Option<f64> {
     long(value, what, value.number()?)
 }
 
-/// A number that is a length above 0.
+/// Checks that a number is a length above 0.
 pub(super) fn long(value: Value, what: &str, length: f64) -> Option<f64> {
     if (MIN_LENGTH..=MAX_LENGTH).contains(&length) {
         Some(length)
@@ -66,26 +66,26 @@ pub(super) fn long(value: Value, what: &str, length: f64) -> Option<f64> {
     }
 }
 
-/// What is added to a warning of an angle so narrow that radians may be meant; none of one that is not.
+/// Returns what to add to a warning about an angle so narrow that radians may be meant; none for a wider angle.
 pub(super) fn narrow(degrees: f64) -> Option<String> {
-    // Whoever meant radians did not mean less than a degree.
+    // Somebody who meant radians did not mean less than a degree.
     (degrees < NARROW).then(|| match degrees.to_degrees() {
         meant if meant < NARROW => String::new(),
         meant => format!("; if radians are meant, write {meant:.1}"),
     })
 }
 
-/// The unit that a wavelength or a width seems to be in, if it would be one of some that are right, in nm, in that.
+/// Returns the unit that a wavelength or a width seems to be in: one in which it would lie within `right_nm`.
 pub(super) fn unit_of_wavelength(given: f64, right_nm: RangeInclusive<f64>) -> Option<String> {
     let units = [("um", 1e3), ("Angstrom", 0.1), ("m", 1e9)].map(|(unit, nm)| (unit, given * nm));
     let (unit, nm) = units.into_iter().find(|(_, nm)| right_nm.contains(nm))?;
     Some(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm)))
 }
 
-/// What is said of a retardance in degrees that seems to be in waves or in radians.
+/// Returns a warning about a retardance in degrees that seems to be in waves or in radians.
 pub(super) fn small_retardance(degrees: f64) -> Option<String> {
     let is_part = |eighths: f64| (degrees.abs() - eighths * PI / 4.0).abs() < 2e-3 * degrees.abs();
-    // Waves may be any part of one; radians have no other mark than that they are parts of pi.
+    // Any fraction of a wave is plausible; radians are recognized only by being fractions of pi.
     let (unit, meant) = match degrees.abs() {
         _ if [1.0, 2.0, 4.0, 6.0, 8.0].into_iter().any(is_part) => ("radians", degrees.to_degrees().round()),
         0.01..1.0 => ("waves", 360.0 * degrees),
@@ -94,7 +94,7 @@ pub(super) fn small_retardance(degrees: f64) -> Option<String> {
     Some(too_small("retardance", &format!("{} degrees", shown(degrees)), unit, meant))
 }
 
-/// What is said of a retardation in nm that seems to be in um.
+/// Returns a warning about a retardation in nm that seems to be in um.
 pub(super) fn small_retardation(nm: f64) -> Option<String> {
     (0.05..2.0).contains(&nm.abs()).then(|| too_small("retardation", &format!("{} nm", shown(nm)), "um", 1e3 * nm))
 }

@@ -11,20 +11,20 @@ use crate::math::DVec3;
 use crate::scene::text::{Fields, Numbers, Rows, Spanned, Value, at};
 use crate::shape::{Attributes, Faces, Mesh, Shape, Vertices, read_mesh, vertex_normals};
 
-/// How the names of mesh files end.
+/// Extensions of mesh files.
 const MESHES: [&str; 4] = ["ply", "obj", "gltf", "glb"];
 
-/// What a mesh is made of.
+/// The data of a mesh.
 struct Parts {
     vertices: Vertices,
     faces: Vec<[u32; 3]>,
     attributes: Attributes,
 }
 
-/// The points at the corners of a face, 3 or more.
+/// The indices of the points at the corners of a face, 3 or more.
 type Face = SmallVec<[u32; 4]>;
 
-/// What the scene file says of the points of a mesh.
+/// The data of a mesh that the scene file itself contains.
 struct Inline<'d> {
     points: Option<Spanned<'d, Vec<DVec3>>>,
     faces: Option<Spanned<'d, Vec<Face>>>,
@@ -32,7 +32,7 @@ struct Inline<'d> {
     uv: Option<Spanned<'d, Vec<[f64; 2]>>>,
 }
 
-/// `mesh = { file = "cup.ply", smooth = true }`, or in place of the file `points`, `faces`, `normals` and `uv`
+/// Reads `mesh = { file = "cup.ply", smooth = true }`, or `points`, `faces`, `normals` and `uv` in place of the file.
 pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> Option<Written<'d>> {
     Fields::read(value, |mesh| {
         let file = mesh.maybe("file", at(Value::text));
@@ -44,7 +44,7 @@ pub(super) fn mesh<'d>(context: &mut Context, name: &str, value: Value<'d>) -> O
         let is_vague = mesh.has_unknown();
         let (file, smooth) = (file?, smooth?);
         let inline = Inline { points: points?, faces: faces?, normals: normals?, uv: uv? };
-        // Normals that the scene file writes out are meant to be seen, unless it says that they are not.
+        // Normals that the scene file contains are used, unless it says that the mesh is not smooth.
         let (flat, smooth) = (smooth == Some(false), smooth.unwrap_or(false));
         let written = |mesh: &Arc<Mesh>, file| Written { shape: Shape::Mesh(mesh.clone()), file };
         let mut parts = match (&file, &inline) {
@@ -103,7 +103,7 @@ fn coordinates(value: Value) -> Option<Vec<[f64; 2]>> {
     }
 }
 
-/// Rows of coordinates.
+/// Reads rows of coordinates.
 fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
     let numbers = match &rows.numbers {
         Numbers::Real(numbers) if rows.width == N => numbers,

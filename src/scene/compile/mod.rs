@@ -1,5 +1,5 @@
-//! From a scene's text to a world that can be rendered: what a scene may hold is written here and nowhere else, by the
-//! functions that read it. They look up all names and check all numbers, and go on after a mistake.
+//! Compiles a scene's text to a world that can be rendered. The functions that read a scene define what it may contain,
+//! here and nowhere else. They resolve all names, check all numbers, and continue after a mistake.
 
 mod asked;
 mod camera;
@@ -55,7 +55,7 @@ use crate::spectrum::Curve;
 /// The sections that a scene may have.
 pub(super) const SECTIONS: [&str; 6] = ["camera", "film", "render", "material", "object", "light"];
 
-/// The world that a document describes; none if it has a mistake, which the document keeps.
+/// Compiles the world that a document describes. Returns none if there is a mistake, which the document keeps.
 pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     let mut context = Context::new(&document.texts.whole);
     document.texts.rows.iter().for_each(|rows| rows.digest(|bytes| context.hash.update(bytes)));
@@ -71,23 +71,23 @@ pub(super) fn compile<'d>(document: &'d Document<'d>) -> Option<Scene<Curve>> {
     Some(scene)
 }
 
-/// The tables of a scene.
+/// Reads the sections of a scene.
 fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<Curve>> {
     let [camera, film, render, materials, objects, lights] = SECTIONS.map(|key| sections.get(key));
-    // What these say was put in its places before.
+    // Their values have already been put in their places.
     let _ = [SET, INCLUDE].map(|key| sections.get(key));
     needs_camera_and_film(sections);
     let (film, format) = film.and_then(section).and_then(film::film).unzip();
     context.white_luminance = format.as_ref().and_then(|format| format.white_luminance);
     let camera = camera.and_then(section).and_then(|camera| camera::camera(context, camera, film.as_ref()));
     let render = render.map_or(Some(RenderText::default()), |render| render::render(section(render)?));
-    // A length that is misspelt is not missing as well.
+    // If [render] has a mistake, the unit is not reported as missing as well.
     context.meters_per_unit = render.as_ref().map_or(Some(1.0), |render| render.meters_per_unit);
-    // Where a path may not bounce, light is found by sampling the lights alone.
+    // Where a path may not bounce, only light sampling finds light.
     let bounces = render.as_ref().and_then(|render| render.diffuse_bounces);
     context.few_bounces = bounces.is_some_and(|bounces| bounces <= 1);
     let drafts = materials.map(|materials| material::drafts(context, materials));
-    // Of a section that is misspelt, the names are not known.
+    // The names in a section that is misspelled are not known.
     let nameless = sections.is_misspelt("material");
     let drafts = drafts.unwrap_or_else(|| Drafts { by_name: BTreeMap::new(), nameless });
     let materials = parts::with_parts(&drafts);
@@ -133,7 +133,7 @@ fn scene<'d>(context: &mut Context, sections: &mut Fields<'d>) -> Option<Scene<C
     Some(scene)
 }
 
-/// Tells of sections that every scene has, and this one not even misspelt.
+/// Reports required sections that are missing, unless they are misspelled.
 fn needs_camera_and_film(sections: &mut Fields) {
     let needed = ["camera", "film"].into_iter();
     let missing = needed.filter(|key| sections.get(key).is_none() && !sections.is_misspelt(key));
@@ -144,7 +144,7 @@ fn needs_camera_and_film(sections: &mut Fields) {
     }
 }
 
-/// Without polarization there are no Stokes vectors.
+/// Refuses Stokes vectors without polarization.
 fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> Option<()> {
     if !format.has_stokes() || render.polarization != PolarizationText::Off {
         return Some(());
@@ -153,7 +153,7 @@ fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> O
     sections.refuse("Stokes vectors are asked for, and polarization is off", Some(help))
 }
 
-/// Three bands have no wavelengths that a dye could absorb.
+/// Refuses dyes with the model of three bands, which has no wavelengths that a dye could absorb.
 fn can_fluoresce(sections: &Fields, materials: &[NamedMaterial<Curve>], render: &RenderText) -> Option<()> {
     let dyed = materials.iter().find(|named| !named.material.dyes().is_empty());
     let Some(NamedMaterial { name, .. }) = dyed.filter(|_| render.model == ModelText::Rgb) else { return Some(()) };
@@ -161,7 +161,7 @@ fn can_fluoresce(sections: &Fields, materials: &[NamedMaterial<Curve>], render: 
     sections.refuse(message, Some("leave `model` out of [render], or write { bands = 16 }"))
 }
 
-/// A section that is no list.
+/// Refuses a section that is a list.
 fn section(value: Value) -> Option<Value> {
     match value.node() {
         DeValue::Array(_) => {
@@ -172,7 +172,7 @@ fn section(value: Value) -> Option<Value> {
     }
 }
 
-/// The entries of a section that is a list of tables, those that are right.
+/// Reads the entries of a section that is a list of tables, and returns those without mistakes.
 fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>) -> Vec<T> {
     if let DeValue::Table(_) = value.node() {
         let key = value.key();
@@ -183,7 +183,7 @@ fn entries<'d, T>(value: Value<'d>, mut read: impl FnMut(Value<'d>) -> Option<T>
     entries.into_iter().flatten().flatten().collect()
 }
 
-/// Warns of objects that have one name.
+/// Warns about objects of the same name.
 fn namesakes(context: &mut Context, objects: &[ObjectDraft]) {
     let mut counts = BTreeMap::<&str, usize>::new();
     objects.iter().for_each(|object| *counts.entry(&object.name).or_default() += 1);
@@ -193,9 +193,9 @@ fn namesakes(context: &mut Context, objects: &[ObjectDraft]) {
     }
 }
 
-/// Warns of materials that no object has.
+/// Warns about materials that no object uses.
 fn unused(context: &mut Context, placed: &Placed, drafts: &Drafts) {
-    // Scenes may have many materials: most are looked up by name, and not compared with each.
+    // Scenes may have many materials, so most are looked up by name rather than compared with each one.
     let used: BTreeSet<&str> = placed.materials.iter().map(|used| used.name.as_str()).collect();
     for name in drafts.by_name.keys().filter(|name| !used.contains(*name)) {
         if !placed.materials.iter().any(|used| used.material.is_made_of(name)) {

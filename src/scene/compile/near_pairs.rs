@@ -1,17 +1,19 @@
-//! Objects whose boxes meet.
+//! Pairs of objects whose boxes meet.
 
 use crate::math::Bounds;
 
-/// Surfaces nearer than this part of a body's size lie in one place: far above rounding, far below anything meant.
+/// Surfaces nearer than this fraction of a body's size count as coinciding: far above rounding errors, far below
+/// anything intended.
 pub(super) const NEAR: f64 = 1e-9;
-/// Most pairs that are found; of a scene with more, the others are not.
+/// Maximum number of pairs that are found. Further pairs are ignored.
 pub(super) const MOST_PAIRS: usize = 20_000;
-/// Cells of the grid that an object covers at most; a larger one is compared with each.
+/// Maximum number of grid cells that an object covers. A larger object is compared with all others.
 const MOST_CELLS: usize = 16;
 
-/// Pairs whose boxes meet, the first one such as counts: of objects in the order in which they begin along the longest
-/// side of the scene, each is compared with those that have not ended (Cohen et al. 1995, *I-COLLIDE*, sweep and
-/// prune), as far as they cover a cell of a grid across that side that it covers too. What has no box is in no pair.
+/// Finds pairs of objects whose boxes meet, the first of which is marked in `counting`. Objects are visited in the
+/// order in which they begin along the longest side of the scene. Each is compared with those that have not ended yet
+/// (Cohen et al. 1995, *I-COLLIDE*, sweep and prune) and that share a cell with it in a grid across that side. Objects
+/// without a box are in no pair.
 pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(usize, usize)> {
     if !counting.contains(&true) {
         return Vec::new();
@@ -21,7 +23,7 @@ pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(us
     let to = |boxed: &Boxed| boxed.bounds.max[grid.along] + reach(&boxed.bounds);
     let mut order: Vec<Boxed> = (0..boxes.len()).filter_map(|object| Boxed::of(boxes, object)).collect();
     order.sort_by(|a, b| from(a).total_cmp(&from(b)));
-    // Most objects of most scenes do not count, and are compared only with the few that do.
+    // Most objects of most scenes are not marked, and are compared only with the few that are.
     let (mut open, mut open_that_count) = (Open::new(&grid), Open::new(&grid));
     let (mut pairs, mut near) = (Vec::new(), Vec::new());
     for (place, boxed) in order.iter().enumerate() {
@@ -43,7 +45,7 @@ pub(super) fn near_pairs(boxes: &[Option<Bounds>], counting: &[bool]) -> Vec<(us
     pairs
 }
 
-/// An object that has a box.
+/// An object with its box.
 struct Boxed {
     object: usize,
     bounds: Bounds,
@@ -55,29 +57,30 @@ impl Boxed {
     }
 }
 
-/// Two objects, the first one such as counts, if there is one and their boxes meet.
+/// Returns two objects as a pair, the first of which is marked in `counting`, if one is and their boxes meet.
 fn pair(counting: &[bool], one: &Boxed, other: &Boxed) -> Option<(usize, usize)> {
     let (low, high) = if one.object < other.object { (one, other) } else { (other, one) };
     let (first, second) = if counting[low.object] { (low, high) } else { (high, low) };
     (counting[first.object] && may_touch(&first.bounds, &second.bounds)).then_some((first.object, second.object))
 }
 
-/// How far apart surfaces of a body and another may lie in one place.
+/// Returns the distance within which the surfaces of a body and another object count as coinciding.
 fn reach(of: &Bounds) -> f64 {
     of.size().max_element() * NEAR
 }
 
-/// Whether a body's box and another's meet.
+/// Returns whether the boxes of a body and another object meet.
 fn may_touch(a: &Bounds, b: &Bounds) -> bool {
     let reach = reach(a);
     (a.min - reach).cmple(b.max).all() && (b.min - reach).cmple(a.max).all()
 }
 
-/// Cells across the longest side of a scene: as many each way as there would be along it of a cell for each object.
+/// A grid of cells across the longest side of a scene. It has as many cells each way as a cubic grid with one cell for
+/// each object.
 struct Grid {
     along: usize,
     across: [usize; 2],
-    /// Where it begins, and how many cells there are in a length.
+    /// Where the grid begins, and the number of cells per unit of length.
     from: [f64; 2],
     per_length: [f64; 2],
     cells: usize,
@@ -94,33 +97,33 @@ impl Grid {
         Self { along, across, from: across.map(|axis| around.min[axis]), per_length, cells: cells as usize }
     }
 
-    /// The first and the last cell that an object covers each way.
+    /// Returns the first and the last cell that an object covers each way.
     fn covered(&self, of: &Bounds) -> [[usize; 2]; 2] {
         let (reach, last) = (reach(of), self.cells.saturating_sub(1));
         [0, 1].map(|way| {
             let axis = self.across[way];
-            // Numbers beyond the ends, and those that are none, go into the cells there.
+            // Numbers beyond the ends go into the cells there, and NaN into the first.
             let cell = |at: f64| (((at - self.from[way]) * self.per_length[way]) as usize).min(last);
             [cell(of.min[axis] - reach), cell(of.max[axis] + reach)]
         })
     }
 
-    /// The numbers of the cells that an object covers.
+    /// Returns the indices of the cells that an object covers.
     fn cells(&self, of: &Bounds) -> impl Iterator<Item = usize> {
         let (cells, [[left, right], [low, high]]) = (self.cells, self.covered(of));
         (low..=high).flat_map(move |row| (left..=right).map(move |column| row * cells + column))
     }
 
-    /// Whether an object covers few cells.
+    /// Returns whether an object covers few cells.
     fn is_small(&self, of: &Bounds) -> bool {
         self.covered(of).map(|[first, last]| last - first + 1).iter().product::<usize>() <= MOST_CELLS
     }
 }
 
-/// Objects that have begun, by their places in the order, and as far as it is known have not ended.
+/// Objects that have begun and are not known to have ended, by their positions in the order.
 struct Open {
     by_cell: Vec<Vec<usize>>,
-    /// Boxes that cover many cells.
+    /// Objects that cover many cells.
     large: Vec<usize>,
 }
 
@@ -136,7 +139,7 @@ impl Open {
         }
     }
 
-    /// Those that may meet an object, in their order, without those that have ended.
+    /// Finds the open objects that may meet an object, in their order. Removes those that have ended.
     fn find(&mut self, grid: &Grid, of: &Bounds, is_open: impl Fn(usize) -> bool, found: &mut Vec<usize>) {
         found.clear();
         let mut take = |places: &mut Vec<usize>| {
@@ -163,7 +166,7 @@ mod tests {
     fn all_pairs_are_found_whatever_the_sizes() {
         for sides in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(0.2, 5.0, 1.0), DVec3::new(0.0, 0.0, 3.0)] {
             let random = |number, of| DVec3::from_slice(&Sampler::new(0, [0, of], number).four(BranchKey::CAMERA, 0));
-            // Small ones, large ones, and some that have no end.
+            // Small ones, large ones, and some without bounds.
             let size = |number: u32| [0.02, 0.05, 0.5][number as usize % 3];
             let boxed = |number: u32| {
                 (number % 40 != 7).then(|| around(random(number, 0) * sides, random(number, 1) * size(number)))
@@ -181,7 +184,7 @@ mod tests {
         }
     }
 
-    /// A million beads were each compared with ten thousand others.
+    /// Previously, each of a million beads was compared with ten thousand others.
     #[test]
     fn beads_in_a_lattice_are_compared_with_their_neighbors_alone() {
         let places =

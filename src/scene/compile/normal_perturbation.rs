@@ -1,7 +1,7 @@
-//! Images that bend the normals of objects.
+//! Images that perturb the normals of objects.
 //!
-//! They belong to the object and not to its material: a depth is a length on it, one material serves flat and dented
-//! things, and of a mix or a mask it is clear which normal counts.
+//! They belong to the object and not to its material: a depth is a length on the object, one material serves flat and
+//! dented things, and it is clear which normal a mix or a mask uses.
 
 use std::sync::Arc;
 
@@ -18,14 +18,14 @@ use crate::spectrum::{Encoding, Placement, TexelFilter, Texture, Wrap};
 /// Largest factor on the slopes of a normal map.
 const MOST_STRENGTH: f64 = 1e3;
 
-/// What bends the normals of an object, before it is known where the image lies.
+/// The image that perturbs the normals of an object, before it is known where the image lies.
 pub(super) struct ReliefText<'d> {
     place: Value<'d>,
     texture: Texture,
     kind: PerturbationKind,
 }
 
-/// What bends the normals of an object, if anything does; none if that is wrong.
+/// Reads the image that perturbs the normals of an object, if there is one. Returns none if it is wrong.
 pub(super) fn relief<'d>(context: &mut Context, object: &mut Fields<'d>) -> Option<Option<ReliefText<'d>>> {
     match (object.get("normal_map"), object.get("bump_map")) {
         (None, None) => Some(None),
@@ -39,8 +39,8 @@ pub(super) fn relief<'d>(context: &mut Context, object: &mut Fields<'d>) -> Opti
 /// normal_map = { image = "wall_normal.png", repeat = 2, strength = 1 }
 /// ```
 ///
-/// Directions: red along u, green along v, blue out of the surface, one half being none. The strength is a factor on
-/// red and green.
+/// Directions: red along u, green along v, blue out of the surface. One half means 0. The strength is a factor on red
+/// and green.
 fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));
@@ -69,8 +69,8 @@ fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<
 /// bump_map = { image = "height.png", repeat = 2, depth = 0.02 }
 /// ```
 ///
-/// Heights, of one channel or the mean of all three. The depth is the height of white over black in scene units; below
-/// 0 white lies deeper.
+/// Heights, from one channel or the mean of all three. The depth is the height of white above black in scene units; if
+/// it is negative, white is deeper.
 fn bump_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d>> {
     Fields::read(place, |map| {
         let file = map.need("image", at(Value::text));
@@ -86,7 +86,7 @@ fn bump_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<'d
     })
 }
 
-/// Where an image of numbers lies that are no colors.
+/// Reads the placement of an image whose numbers are not colors.
 fn placement(map: &mut Fields, what: &str) -> Option<Placement> {
     let repeat = map.or("repeat", [1.0; 2], repeat);
     let wrap = map.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
@@ -102,7 +102,7 @@ fn placement(map: &mut Fields, what: &str) -> Option<Placement> {
 }
 
 impl ReliefText<'_> {
-    /// On an object, if its points lie somewhere in images.
+    /// Puts the image on an object, if the object has texture coordinates.
     pub(super) fn on(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<NormalPerturbation>> {
         let Some(coordinates) = coordinates.cloned() else {
             let message = "this mesh has no texture coordinates, by which the image would lie on it";

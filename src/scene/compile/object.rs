@@ -1,4 +1,4 @@
-//! Objects, each by itself.
+//! Objects, each read by itself.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -31,12 +31,12 @@ pub(super) struct ObjectDraft<'d> {
     pub(super) name: String,
     pub(super) material: &'d str,
     pub(super) shape: Spanned<'d, Written<'d>>,
-    /// What is done with the shape, and where that stands.
+    /// The transform of the shape, and its place in the text.
     pub(super) map: Spanned<'d, Transform>,
-    /// What is done, in place of that, with each of many such shapes; one shape if absent.
+    /// The transforms of the instances of the shape, `map` included; one shape if absent.
     pub(super) instances: Option<Vec<Spanned<'d, Transform>>>,
     pub(super) relief: Option<ReliefText<'d>>,
-    /// The group of lights that it belongs to.
+    /// The light group that it belongs to.
     pub(super) group: Option<&'d str>,
     pub(super) visibility: Visibility,
 }
@@ -44,13 +44,13 @@ pub(super) struct ObjectDraft<'d> {
 /// The names by which objects find their materials.
 pub(super) struct Names<'m, 'd> {
     pub(super) materials: &'m Materials<'d>,
-    /// Whether there are materials of which the name is not known.
+    /// Whether there are materials whose names are not known.
     pub(super) nameless: bool,
-    /// Materials that are not there: of each it is told where it is named first.
+    /// Names of materials that do not exist. Each is reported where it is first used.
     pub(super) unknown: BTreeSet<&'d str>,
 }
 
-/// What an object says; `number` is its position in the list.
+/// Reads an object. `number` is its position in the list.
 pub(super) fn object<'d>(
     context: &mut Context,
     names: &mut Names<'_, 'd>,
@@ -107,11 +107,12 @@ pub(super) fn object<'d>(
     })
 }
 
-/// Degrees between a face and its normals beyond which an edge is sharp: more than those of an icosahedron, and fewer
-/// than those of a box.
+/// Angle in degrees between a face and its normals above which an edge is sharp: larger than that of an icosahedron,
+/// and smaller than that of a box.
 const SHARP: f64 = 40.0;
 
-/// What is wrong with a mesh as the surface of a clear body; its normals may be means of those of its faces.
+/// Returns what is wrong with a mesh as the surface of a clear body. `is_averaged` says that its normals are averages
+/// of those of its faces.
 fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
     let mut found = Vec::new();
     if !mesh.is_closed() {
@@ -132,7 +133,7 @@ fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
     found
 }
 
-/// What the camera sees of an object.
+/// Reads what the camera sees of an object.
 fn visibility(object: &mut Fields) -> Option<Visibility> {
     let visible = object.or("visible_to_camera", true, Value::yes_or_no);
     let mut kind = |key| object.maybe(key, at(Value::yes_or_no)).map(|value| value.filter(|value| value.it));
@@ -151,12 +152,12 @@ fn visibility(object: &mut Fields) -> Option<Visibility> {
     }
 }
 
-/// The name of an object or a light.
+/// Reads the name of an object or a light.
 pub(super) fn name(value: Value<'_>) -> Option<&str> {
     not_empty(value, "a name has a letter or more", "leave `name` out where there is none")
 }
 
-/// The name of a group of lights.
+/// Reads the name of a group of lights.
 pub(super) fn group(value: Value<'_>) -> Option<&str> {
     not_empty(value, "a group of lights has a name", "such as group = \"key\"")
 }
@@ -167,14 +168,14 @@ fn not_empty<'d>(value: Value<'d>, message: &str, help: &str) -> Option<&'d str>
 }
 
 impl<'m, 'd> Names<'m, 'd> {
-    /// Which materials there are for an object that has none, if any.
+    /// Returns which materials an object that has none could use, if there are any.
     fn help(&self, object: Option<&str>) -> Option<String> {
         let known = self.materials.keys().copied();
         let (first, object) = (known.clone().next()?, object.unwrap_or("it"));
         Some(format!("give {object} one, as in material = {first:?}; {}", defined(known)))
     }
 
-    /// The material of a name.
+    /// Looks up the material of a name.
     fn find(&mut self, value: Value<'d>) -> Option<&'m Material<Curve>> {
         let name = value.text()?;
         if let Some(material) = self.materials.get(name) {
@@ -187,7 +188,7 @@ impl<'m, 'd> Names<'m, 'd> {
     }
 }
 
-/// The maps of instances, behind that of the whole.
+/// Reads the transforms of instances, each applied after that of the whole object.
 fn maps(value: Value, first: Transform) -> Option<Vec<Spanned<Transform>>> {
     let maps = value.list(at(|value| map_of(&steps(value)?, first)))?;
     match maps.is_empty() {

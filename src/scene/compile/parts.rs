@@ -1,4 +1,4 @@
-//! Materials that are made of others: the names of these looked up.
+//! Materials that are made of others, whose names are resolved here.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,31 +8,31 @@ use crate::material::{Mask, Material, Mix, Part};
 use crate::scene::text::{Value, and_more};
 use crate::spectrum::Curve;
 
-/// Materials by name; those that are wrong are known but not there.
+/// Materials by name. A material with a mistake has an entry without a value.
 pub(super) type Materials<'d> = BTreeMap<&'d str, Option<Material<Curve>>>;
 
 /// A search for the materials that others are made of.
 struct Search<'s, 'd> {
     drafts: &'s BTreeMap<&'d str, Option<MaterialDraft<'d, Curve>>>,
-    /// Those that are made of the one that is looked for, the outermost first.
+    /// The materials that the current one is a part of, the outermost first.
     within: Vec<&'d str>,
-    /// Materials made of themselves, of which the mistake is kept.
+    /// Materials made of themselves, for which the mistake is recorded.
     circular: BTreeSet<&'d str>,
-    /// Materials that the outermost one is made of so far, each as often as it is named.
+    /// Number of parts of the outermost material so far, each counted as often as it is named.
     parts: usize,
-    /// Whether it was told that a material is made of too many.
+    /// Whether it has been reported that a material is made of too many.
     too_large: bool,
 }
 
-/// Most materials that one is made of, and how deep they may lie in one another: surfaces take each apart where they
-/// are met, and twice the same part is two.
+/// Maximum number of materials that one is made of, and their maximum depth in one another. Surfaces evaluate each part
+/// where they are hit, so a part that is named twice counts twice.
 const MOST_PARTS: usize = 1000;
 const DEEPEST: usize = 64;
 
-/// Materials that are named where there are very many.
+/// Maximum number of materials that a message names.
 const MOST_SHOWN: usize = 100;
 
-/// Every material with those it is made of.
+/// Returns every material with its parts.
 pub(super) fn with_parts<'d>(drafts: &Drafts<'d>) -> Materials<'d> {
     let (within, circular) = (Vec::new(), BTreeSet::new());
     let mut search = Search { drafts: &drafts.by_name, within, circular, parts: 0, too_large: false };
@@ -44,7 +44,7 @@ pub(super) fn with_parts<'d>(drafts: &Drafts<'d>) -> Materials<'d> {
 }
 
 impl<'d> Search<'_, 'd> {
-    /// The material of a name with those it is made of.
+    /// Returns the material of a name with its parts.
     fn whole(&mut self, name: &'d str) -> Option<Material<Curve>> {
         let draft = self.drafts.get(name)?.as_ref().filter(|_| !self.circular.contains(name))?;
         self.within.push(name);
@@ -64,7 +64,7 @@ impl<'d> Search<'_, 'd> {
         whole
     }
 
-    /// A part of a material with what it is made of.
+    /// Returns a part of a material with its own parts.
     fn part(&mut self, kind: &str, place: Value<'d>) -> Option<Part<Material<Curve>>> {
         let name = place.text()?;
         let Some((known, draft)) = self.drafts.get_key_value(name) else {
@@ -103,7 +103,7 @@ impl<'d> Search<'_, 'd> {
         }
     }
 
-    /// Tells once that a material is made of too many: those that are made of it are as well.
+    /// Reports only once that a material is made of too many, since those that contain it are too.
     fn refuse_size<T>(&mut self, place: Value<'d>) -> Option<T> {
         let is_told = std::mem::replace(&mut self.too_large, true);
         let whole = self.within.first().copied().unwrap_or_default();
@@ -116,7 +116,7 @@ impl<'d> Search<'_, 'd> {
     }
 }
 
-/// Tells that there is no material of a name.
+/// Reports that there is no material of a name.
 pub(super) fn unknown_material<'n, T>(
     place: Value,
     name: &str,
@@ -134,7 +134,7 @@ pub(super) fn unknown_material<'n, T>(
     place.advise(message, help)
 }
 
-/// The materials of a scene, in words.
+/// Lists the materials of a scene in words.
 pub(super) fn defined<'n>(mut known: impl ExactSizeIterator<Item = &'n str>) -> String {
     let shown = known.by_ref().take(MOST_SHOWN).collect::<Vec<_>>().join(", ");
     format!("the scene defines {}", and_more(&shown, known.len()))

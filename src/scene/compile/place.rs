@@ -1,4 +1,4 @@
-//! Objects in their places, after all of them were read.
+//! Objects in their places, once all of them have been read.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -17,28 +17,28 @@ use crate::spectrum::Curve;
 #[derive(Default)]
 pub(super) struct Placed<'d> {
     pub(super) objects: Vec<Object>,
-    /// Where the shape of each stands.
+    /// Where the shape of each is written.
     pub(super) shapes: Vec<Value<'d>>,
-    /// Their materials, in the order in which objects use them first.
+    /// Their materials, in the order in which objects first use them.
     pub(super) materials: Vec<NamedMaterial<Curve>>,
 }
 
 impl Placed<'_> {
-    /// The material of an object, with its name.
+    /// Returns the material of an object, with its name.
     pub(super) fn material(&self, object: &Object) -> &NamedMaterial<Curve> {
         &self.materials[object.material as usize]
     }
 
-    /// Whether an object is a clear body, or a part of its surface.
+    /// Returns whether an object is a clear body, or a part of the surface of one.
     pub(super) fn is_clear(&self, object: &Object) -> bool {
         self.material(object).material.medium().is_some()
     }
 }
 
-/// All objects that are right where they are.
+/// Places all objects without mistakes.
 pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>) -> Placed<'d> {
     let (mut placed, mut numbers) = (Placed::default(), BTreeMap::<&str, u32>::new());
-    // How often each mesh file is placed.
+    // Number of times that each mesh file is placed.
     let mut places = HashMap::<&str, usize>::new();
     for draft in &drafts {
         let count = draft.instances.as_ref().map_or(1, Vec::len);
@@ -77,16 +77,16 @@ pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>
     placed
 }
 
-/// Whether the axis of a material favors no direction on a flat shape, as it is along its normal.
+/// Returns whether the axis of a material favors no direction on a flat shape, because it is along its normal.
 fn lies_across(material: &Material<Curve>, shape: &Shape) -> bool {
     let axis = material.axis().and_then(DVec3::try_normalize);
     axis.zip(shape.flat_normal()).is_some_and(|(axis, normal)| axis.cross(normal).length() < ALONG)
 }
 
-/// Sine of an angle that is left of 0 after a few rotations.
+/// Sine of the angle that rounding in a few rotations can leave in place of 0.
 const ALONG: f64 = 1e-9;
 
-/// The object, or each of its instances; `is_shared` is a mesh that stands in other places as well.
+/// Returns the object, or each of its instances. `is_shared` says that its mesh stands in other places as well.
 fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
     let ObjectDraft {
         name,

@@ -1,7 +1,8 @@
-//! Light in units, of scenes whose film is absolute.
+//! Light in physical units, for scenes whose film is absolute.
 //!
-//! A number is a luminance in cd/m^2, of an intensity in cd, of an irradiance in lx: as many times white light of 1.
-//! Measured spectra and lines are radiances in W / (m^2 sr nm) and W / (m^2 sr), intensities and irradiances alike.
+//! A number is a luminance in cd/m^2, an intensity in cd or an irradiance in lx. It stands for that many times white
+//! light of 1. Measured spectra and lines are radiances in W / (m^2 sr nm) and W / (m^2 sr), or intensities and
+//! irradiances in the corresponding units.
 
 use super::context::Context;
 use super::curve_text::CurveText;
@@ -9,7 +10,8 @@ use crate::scene::text::Value;
 use crate::spectrum::visible::{EFFICACY, luminous};
 use crate::spectrum::{Curve, CurveKind};
 
-/// The light of a curve on a film whose white has the luminance that the scene says; the same if it says none.
+/// Converts the light of a curve to a film whose white has the luminance that the scene gives. Without one, the curve
+/// stays as it is.
 pub(super) fn on_film(context: &Context, text: &CurveText, curve: Curve) -> Option<Curve> {
     let Some(white) = context.white_luminance else { return Some(curve) };
     let unit = match curve.kind {
@@ -18,14 +20,14 @@ pub(super) fn on_film(context: &Context, text: &CurveText, curve: Curve) -> Opti
             let help = "add its `luminance`: of a radiance in cd/m2, of an intensity in cd, of an irradiance in lx";
             return text.value.advise(message, help);
         }
-        // A flat spectrum of 1 is of luminance 1 otherwise.
+        // A flat spectrum of 1 otherwise has luminance 1.
         CurveKind::Samples(_) | CurveKind::Lines(_) if curve.luminance.is_none() => EFFICACY * luminous(),
         _ => 1.0,
     };
     Some(brighter(curve, unit / white))
 }
 
-/// An intensity in cd or W / (sr nm), for distances in scene units.
+/// Converts an intensity in cd or W / (sr nm) for distances in scene units.
 pub(super) fn intensity(context: &Context, place: Value, intensity: Curve) -> Option<Curve> {
     match (context.white_luminance, context.meters_per_unit) {
         (None, _) => Some(intensity),

@@ -1,4 +1,4 @@
-//! How the image is made.
+//! How the image is rendered.
 
 use toml::de::DeValue;
 
@@ -6,12 +6,12 @@ use crate::error::nearest;
 use crate::scene::text::{Fields, Value};
 use crate::scene::{AutoText, ModelText, PolarizationText, RenderText, duration};
 
-/// The models that have a name.
+/// The models that are given by name.
 const MODELS: [(&str, ModelText); 3] = [("auto", ModelText::Auto), ("rgb", ModelText::Rgb), ("hero", ModelText::Hero)];
 /// The numbers of wavelengths that a model may have.
 const BANDS: [u32; 4] = [8, 12, 16, 32];
 
-/// What a scene says of it, as [`RenderText`] shows.
+/// Reads how the image is rendered, in the form that [`RenderText`] shows.
 pub(super) fn render(value: Value) -> Option<RenderText> {
     Fields::read(value, |render| {
         let model = render.or("model", ModelText::Auto, model);

@@ -1,4 +1,4 @@
-//! From a shape as written to a shape that rays can meet.
+//! From a shape as written to a shape that rays can hit.
 
 use super::context::Context;
 use super::measures::{MAX_LENGTH, MIN_LENGTH, direction, length, long, point};
@@ -8,13 +8,13 @@ use crate::math::{DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at, exactly};
 use crate::shape::{Cube, Disc, Plane, Quad, Shape, Sphere, Triangle};
 
-/// Smallest size relative to the coordinates: some thousand roundings.
+/// Smallest size relative to the coordinates: several thousand rounding errors.
 const RESOLVED: f64 = 1e-12;
 
-/// What reads a kind of shape: of the object that has a name.
+/// The reader of a kind of shape. It also receives the name of the object.
 type ShapeReader = for<'d> fn(&mut Context, &str, Value<'d>) -> Option<Written<'d>>;
 
-/// The shapes, each documented where it is implemented, in `shape`.
+/// The shapes. Each is documented where it is implemented, in `shape`.
 pub(super) const SHAPE: Choice<ShapeReader> = Choice {
     name: "a shape",
     word: "shape",
@@ -99,7 +99,7 @@ fn quad(value: Value) -> Option<Shape> {
     })
 }
 
-/// A cube has a size, or three.
+/// Reads a cube, which has one size or three.
 fn cube(value: Value) -> Option<Shape> {
     Fields::read(value, |cube| {
         let center = cube.need("center", point);
@@ -111,8 +111,8 @@ fn cube(value: Value) -> Option<Shape> {
     })
 }
 
-/// That numbers hold the size and the place of a shape that a map has placed, given before and after that; `whole` is
-/// where it stands.
+/// Checks that floating-point numbers can hold the size and the place of a shape. `shape` and `placed` are the shape
+/// before and after the map; `whole` is where the shape is written.
 pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole: Value) -> Option<()> {
     let Some(bounds) = placed.bounds() else { return Some(()) };
     let (far, wide) = (bounds.min.abs().max(bounds.max.abs()).max_element(), bounds.size());
@@ -134,7 +134,7 @@ pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole
     Some(())
 }
 
-/// The least distance between two faces of a cube of three edges after a map.
+/// Returns the least distance between two opposite faces of a box with these edges after a map.
 fn thickness(edges: [DVec3; 3], map: &Transform) -> f64 {
     let [a, b, c] = edges.map(|edge| map.vector(edge));
     let height = |edge: DVec3, u: DVec3, v: DVec3| edge.dot(u.normalize().cross(v.normalize()).normalize()).abs();

@@ -1,4 +1,4 @@
-//! Surfaces that shine.
+//! Surfaces that emit light.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::scene::{Object, Scene};
 use crate::shape::{Coordinates, Shape, Sides, TexturedShape};
 use crate::spectrum::{Curve, CurveKind};
 
-/// Gives every object whose material emits its light.
+/// Gives a light to every object whose material emits.
 pub(super) fn surfaces_that_shine(scene: &mut Scene<Curve>) {
     let (mut maps, mut known) = (Maps::default(), KnownParts::default());
     for number in 0..scene.objects.len() {
@@ -35,7 +35,7 @@ pub(super) fn surfaces_that_shine(scene: &mut Scene<Curve>) {
     }
 }
 
-/// The maps of lamps that show images. Those on which the same image lies alike share one.
+/// The emission maps of lamps that show images. Lamps on which the same image lies in the same way share one.
 #[derive(Default)]
 struct Maps {
     known: Vec<Known>,

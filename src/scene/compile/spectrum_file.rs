@@ -3,7 +3,7 @@
 /// A row of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
-    /// The number of its line, from 1.
+    /// Its line number, counted from 1.
     pub(super) line: usize,
     /// (wavelength in nm, value).
     pub(super) pair: [f64; 2],
@@ -12,21 +12,21 @@ pub(super) struct Row {
 /// What is wrong with a table.
 #[derive(Debug, PartialEq)]
 pub(super) struct TableFault {
-    /// What follows the name of the file.
+    /// The part of the message that follows the name of the file.
     pub(super) message: String,
     pub(super) help: Option<String>,
-    /// Whether there is no such column.
+    /// Whether the requested column does not exist.
     pub(super) is_column: bool,
 }
 
-/// The rows of a column of a text file, counted from 1; columns stand apart by commas, semicolons, tabs or blanks.
-/// Lines that are empty or begin with # are passed over, and so is a first line of titles.
+/// Reads the rows of a column, counted from 1, of a text file. Columns are separated by commas, semicolons, tabs or
+/// spaces. Lines that are empty or begin with # are skipped, and so is a first line of titles.
 ///
 /// # Errors
 /// The line and what is wrong with it.
 pub(super) fn read_columns(text: &str, column: usize) -> Result<Vec<Row>, TableFault> {
     let (mut rows, mut titles) = (Vec::new(), true);
-    // A carriage return alone ends a line as well.
+    // A single carriage return ends a line as well.
     let lines = text.trim_start_matches('\u{feff}').lines().flat_map(|line| line.split('\r'));
     for (number, line) in lines.enumerate() {
         let line = line.trim();
@@ -66,7 +66,8 @@ fn no_number(line: usize, cell: &str, first: bool) -> TableFault {
     TableFault { message, help: help.map(str::to_owned), is_column: false }
 }
 
-/// Blanks separate cells only where nothing else does. A comma within a word of several is one of a number.
+/// Splits a line into cells. Spaces separate cells only where nothing else does. In a line of several words, a comma
+/// inside a word belongs to a number.
 fn cells(line: &str) -> Vec<&str> {
     let has_cells = |word: &str| word.starts_with(',') || word.ends_with(',');
     let is_decimal = line.split_whitespace().nth(1).is_some() && !line.split_whitespace().any(has_cells);
@@ -77,7 +78,8 @@ fn cells(line: &str) -> Vec<&str> {
     }
 }
 
-/// Cells may stand in quotes: RFC 4180, section 2. Half of one that holds a separator is none.
+/// Removes the quotes around a cell: RFC 4180, section 2. Half of a quoted cell that contains a separator keeps its
+/// quote.
 fn unquoted(cell: &str) -> &str {
     cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).map_or(cell, str::trim)
 }

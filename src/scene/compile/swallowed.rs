@@ -1,4 +1,4 @@
-//! Clear bodies of which nothing is seen, as another is there in their place.
+//! Clear bodies that are invisible because another body takes their place.
 
 use std::cmp::Ordering;
 
@@ -10,13 +10,14 @@ use crate::scene::text::and_more;
 use crate::scene::{Object, Visibility};
 use crate::shape::{Shape, SurfacePoint};
 
-/// Points of a body that all have to lie in the other.
+/// Points of a body that must all lie in the other one.
 const POINTS: u32 = 64;
-/// Most clear bodies that are compared with one another.
+/// Maximum number of clear bodies that are compared with one another.
 const MOST: usize = 2048;
 
-/// What is wrong with each body that lies within another, of the same priority with a material that objects use later,
-/// or of a higher one. A mesh of a higher one may have a cavity, which a body fills that reaches into the walls.
+/// Returns a warning about bodies that lie within another one of higher priority, or of the same priority with a
+/// material that is first used later. Meshes of higher priority are exempt: they may have a cavity, filled by a body
+/// that reaches into the walls.
 pub(super) fn swallowed(placed: &Placed) -> Option<String> {
     let priority = |object: &Object| Some(placed.material(object).material.medium()?.priority);
     let clear = placed.objects.iter().filter_map(|object| Some((object, priority(object)?)));
@@ -44,7 +45,7 @@ pub(super) fn swallowed(placed: &Placed) -> Option<String> {
     ))
 }
 
-/// Whether all of a bounded body lies in another closed one.
+/// Returns whether all of a bounded body lies in another closed one.
 fn lies_within(body: &Shape, other: &Shape) -> bool {
     let Some(bounds) = body.bounds() else { return false };
     let is_in_box = other.bounds().is_none_or(|box_| {
@@ -61,7 +62,7 @@ fn lies_within(body: &Shape, other: &Shape) -> bool {
         met_from_outside(body, DVec3::new(x, y, z), [u, v])
     });
     let points: Vec<(SurfacePoint, DVec3)> = points.collect();
-    // One of a plane leads out of what is behind it.
+    // A ray along a plane's normal leads out of what is behind the plane.
     let out = |direction| other.flat_normal().unwrap_or(direction);
     let is_inside = |(point, way): &(SurfacePoint, DVec3)| {
         bodies_around(other, &Ray { origin: point.position, direction: out(*way) }) > 0

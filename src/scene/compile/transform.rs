@@ -4,15 +4,15 @@ use super::measures::{direction, near, point};
 use crate::math::{DMat3, DVec3, Transform};
 use crate::scene::text::{Choice, Fields, Spanned, Value, at};
 
-/// One step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or
-/// `{ matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, by which columns are multiplied.
+/// A step: `{ scale = 2 }`, `{ rotate = { axis = [0, 1, 0], degrees = 30 } }`, `{ translate = [0, 1, 0] }`, or
+/// `{ matrix = [[2, 0, 0, 0], [0, 2, 0, 1], [0, 0, 2, 0], [0, 0, 0, 1]] }`, which multiplies column vectors.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
     /// A factor for each axis.
     Scale(DVec3),
-    /// A turn.
+    /// A rotation.
     Rotate(Transform),
-    /// A shift.
+    /// A translation.
     Translate(DVec3),
     /// Any of these, one after another.
     Matrix(Transform),
@@ -42,7 +42,7 @@ const STEP: Choice<for<'d> fn(Value<'d>) -> Option<Step>> = Choice {
     ],
 };
 
-/// Four rows of four numbers, of which the last says nothing.
+/// Reads four rows of four numbers. The last row must be 0, 0, 0, 1.
 fn matrix(value: Value) -> Option<Transform> {
     let help = "write four rows of four numbers, the last of them [0, 0, 0, 1]";
     let row = |row: Value| near(row, "an entry of a matrix", row.as_list("a row of a matrix", help).numbers()?);
@@ -61,7 +61,7 @@ fn matrix(value: Value) -> Option<Transform> {
     }
 }
 
-/// The steps of a list.
+/// Reads a list of steps.
 pub(super) fn steps(value: Value) -> Option<Vec<Spanned<Step>>> {
     value.list(at(|step| {
         let (read, kind) = STEP.of(step)?;
@@ -69,7 +69,7 @@ pub(super) fn steps(value: Value) -> Option<Vec<Spanned<Step>>> {
     }))
 }
 
-/// The map that steps make, one after another, behind a first one.
+/// Returns the map of the steps, one after another, applied after a first map.
 pub(super) fn map_of(steps: &[Spanned<Step>], first: Transform) -> Option<Transform> {
     steps.iter().try_fold(first, |map, Spanned { place, it: step }| {
         let next = match *step {

@@ -5,7 +5,7 @@ use crate::shape::Shape;
 /// A shape before any transform.
 pub(super) struct Written<'d> {
     pub(super) shape: Shape,
-    /// The file that it is read from.
+    /// The file that it was read from.
     pub(super) file: Option<&'d str>,
 }
 

@@ -1,11 +1,11 @@
-//! What a photo says of how its camera was turned (JEITA 2023, *Exif 3.0*, section 4.6.5).
+//! The orientation of a photo's camera (JEITA 2023, *Exif 3.0*, section 4.6.5).
 
-/// Whether a photo is upright only when it is turned or mirrored.
+/// Returns whether a photo has to be turned or mirrored to be upright.
 pub(super) fn is_turned(exif: &[u8]) -> bool {
     orientation(exif).is_some_and(|orientation| (2..=8).contains(&orientation))
 }
 
-/// By its tag in the first directory: TIFF 6.0, section 2.
+/// Returns the orientation from its tag in the first directory: TIFF 6.0, section 2.
 fn orientation(exif: &[u8]) -> Option<u16> {
     const ORIENTATION: u16 = 0x112;
     const SHORT: u16 = 3;

@@ -10,13 +10,13 @@ use super::texels::{Floats, Unreadable, fits};
 use crate::film::{claims_fit, exr_primaries, exr_text};
 use crate::spectrum::{Matrix, matrix_of_file};
 
-/// Reads the colors or the grays of an OpenEXR file, and alpha if asked; where there is none, it is 1.
+/// Reads the colors or the gray of an OpenEXR file, and alpha if requested. An alpha that is missing is 1.
 ///
-/// The image is the display window. It is black and transparent where the data window does not reach, and what lies
-/// beyond it is left out.
+/// The image is the display window. It is black and transparent where the data window does not reach, and data outside
+/// of it is dropped.
 ///
 /// # Errors
-/// If it is none, is damaged, claims a size that it cannot have, or has no channels that make an image.
+/// If the file is not an OpenEXR file, is damaged, claims an impossible size, or has no channels that make an image.
 pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unreadable> {
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     let fit = |size: Vec2<usize>, channels: usize| {
@@ -35,7 +35,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
         has_alpha: alpha,
         is_lossy: is_lossy(&header, &chosen),
         to_rec709: to_rec709(&header),
-        // Black, and transparent.
+        // Black and transparent.
         numbers: vec![0.0; channels * size.width() * size.height()],
     };
     let chunks = reader
@@ -48,7 +48,7 @@ pub(in crate::scene) fn decode(bytes: &[u8], alpha: bool) -> Result<Floats, Unre
     Ok(floats)
 }
 
-/// What other programs may read is told apart from what is no OpenEXR file.
+/// Separates files that other programs may be able to read from files that are not OpenEXR.
 fn unreadable(error: exr::error::Error) -> Unreadable {
     match error {
         exr::error::Error::NotSupported(what) if what.contains("subsampling") => Unreadable::Sparse,
@@ -58,7 +58,8 @@ fn unreadable(error: exr::error::Error) -> Unreadable {
     }
 }
 
-/// Whether the numbers were made to look alike rather than kept. PXR24 only rounds them, and turns no sign.
+/// Returns whether a compression preserves the look of an image rather than its numbers. PXR24 does not count: it only
+/// rounds numbers and never changes their sign.
 fn is_lossy(header: &Header, chosen: &Chosen) -> bool {
     let is_half = |channel: &usize| header.channels.list[*channel].sample_type == SampleType::F16;
     match header.compression {
@@ -68,7 +69,7 @@ fn is_lossy(header: &Header, chosen: &Chosen) -> bool {
     }
 }
 
-/// The matrix from the colors of a part to linear Rec.709, or why it is not known.
+/// Returns the matrix from the colors of a part to linear Rec.709, or why it is not known.
 fn to_rec709(header: &Header) -> Result<Matrix, String> {
     let own = header.own_attributes.other.iter().chain(&header.shared_attributes.other);
     let id = own.into_iter().find_map(|(key, value)| match value {
@@ -78,7 +79,7 @@ fn to_rec709(header: &Header) -> Result<Matrix, String> {
     matrix_of_file(id.as_deref(), header.shared_attributes.chromaticities.map(exr_primaries))
 }
 
-/// Keeps those numbers of a block that are chosen, where they lie in the display window.
+/// Stores the chosen numbers of a block at their places in the display window.
 fn keep(floats: &mut Floats, block: &UncompressedBlock, header: &Header, chosen: &Chosen) {
     let (data, display) = (header.own_attributes.layer_position, header.shared_attributes.display_window.position);
     let shift = [i64::from(data.x()) - i64::from(display.x()), i64::from(data.y()) - i64::from(display.y())];

@@ -5,27 +5,27 @@ use exr::meta::header::Header;
 use super::texels::Unreadable;
 use crate::film::exr_text;
 
-/// How a layer calls red, green, blue and alpha.
+/// Names of red, green, blue and alpha within a layer.
 const LETTERS: [[&str; 4]; 2] = [["R", "G", "B", "A"], ["r", "g", "b", "a"]];
-/// Most names of channels that a message holds.
+/// Maximum number of channel names in a message.
 const MOST_NAMES: usize = 12;
 
 /// The channels that are read.
 pub(super) struct Chosen {
-    /// The part of the file that has them.
+    /// The part of the file that contains them.
     pub(super) part: usize,
-    /// Of each number of a texel its channel's place among those of the part; none of an alpha that is 1 everywhere.
+    /// For each number of a texel, the index of its channel in the part; none for an alpha that is 1 everywhere.
     pub(super) numbers: Vec<Option<usize>>,
 }
 
 impl Chosen {
-    /// Red, green and blue, or a gray, with alpha behind them if asked.
+    /// Chooses red, green and blue, or a gray, followed by alpha if requested.
     ///
-    /// Colors without a layer come first, then those of the first layer that has them. Without colors anywhere, the
-    /// luminance Y is a gray, and so is a channel that is alone.
+    /// Colors without a layer are preferred, then those of the first layer that has them. If there are no colors
+    /// anywhere, the luminance Y is used as a gray, or else the only channel.
     ///
     /// # Errors
-    /// If there are neither.
+    /// If there is neither a color nor a gray.
     pub(super) fn of(headers: &[Header], alpha: bool) -> Result<Self, Unreadable> {
         let flat = headers.iter().enumerate().filter(|(_, header)| !header.deep);
         let parts: Vec<NumberPart> = flat.map(|(number, header)| NumberPart::of(number, header)).collect();
@@ -49,20 +49,20 @@ impl Chosen {
         Ok(Self { part: part.number, numbers })
     }
 
-    /// Numbers of a texel.
+    /// Returns the number of channels of a texel.
     pub(super) fn channels(&self) -> usize {
         self.numbers.len()
     }
 }
 
-/// A part that has one number of each kind for a pixel.
+/// A part with one number per pixel in each channel.
 struct NumberPart {
     number: usize,
-    /// Of its channels, in their order.
+    /// The names of its channels, in their order.
     names: Vec<String>,
 }
 
-/// Places of channels in a part.
+/// Indices of channels in a part.
 struct Channels {
     colors: Vec<usize>,
     alpha: Option<usize>,
@@ -88,7 +88,7 @@ impl NumberPart {
         })
     }
 
-    /// Y where it is no coordinate, and no chroma goes with it.
+    /// Returns Y, if it is not a coordinate and no chroma belongs to it.
     fn luminance(&self) -> Option<Channels> {
         let is_another = ["X", "RY", "BY"].iter().any(|letters| self.find("", letters).is_some());
         let luminance = self.find("", "Y").filter(|_| !is_another)?;
@@ -96,7 +96,7 @@ impl NumberPart {
     }
 }
 
-/// The channel of a name as a gray, with the alpha of its layer.
+/// Returns the channel of a name as a gray, with the alpha of its layer.
 fn gray<'p>(parts: &'p [NumberPart], name: &String) -> Option<(&'p NumberPart, Channels)> {
     let part = parts.iter().find(|part| part.names.contains(name))?;
     let alpha = ["A", "a"].into_iter().find_map(|letter| part.find(layer_of(name), letter));
@@ -120,7 +120,7 @@ fn is_alpha(name: &str) -> bool {
     matches!(letter_of(name), "A" | "a")
 }
 
-/// `N.X, N.Y, N.Z`.
+/// Lists names as `N.X, N.Y, N.Z`.
 fn listed<'n>(names: impl Iterator<Item = &'n String>) -> String {
     let mut names: Vec<&str> = names.map(String::as_str).collect();
     if names.len() > MOST_NAMES {

@@ -7,10 +7,10 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 use super::texels::{Steps, Unreadable, Whole, fits};
 use super::{exif, icc};
 
-/// Reads a JPEG: gray stays gray, all other colors become red, green and blue.
+/// Reads a JPEG. Gray stays gray; all other colors become red, green and blue.
 ///
 /// # Errors
-/// If it is none, is damaged, or claims a size that it cannot have.
+/// If the file is not a JPEG, is damaged, or claims an impossible size.
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     let any = DecoderOptions::default().set_strict_mode(false).set_max_width(usize::MAX).set_max_height(usize::MAX);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), any);
@@ -32,16 +32,16 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     Ok(Whole { width, channels, not_srgb, is_turned, steps: Steps::Bytes(numbers) })
 }
 
-/// Whether the markers of a file (ITU-T T.81, B.1.1) lead to the end of its image. What lies behind may be anything.
+/// Returns whether the markers of a file (ITU-T T.81, B.1.1) lead to the end of its image. Anything may follow that.
 ///
-/// The decoder makes gray of all that is missing. Its strict mode tells, but also refuses files of cameras with stray
-/// bytes between segments.
+/// The decoder fills missing data with gray. Its strict mode would report that, but it also refuses files of cameras
+/// with stray bytes between segments.
 fn is_complete(bytes: &[u8]) -> bool {
     const END: u8 = 0xd9;
-    // No segments follow these: the start of the image, restarts within a scan, and a private marker.
+    // These markers have no segment: the start of the image, restarts within a scan, and a private marker.
     let stands_alone = |marker: u8| matches!(marker, 0x01 | 0xd0..=0xd8);
     let mut rest = bytes;
-    // What is no segment, above all the data of scans, holds no marker: a 0 follows each of its bytes 255.
+    // Data outside of segments, above all that of scans, contains no marker: each of its bytes 255 is followed by a 0.
     while let Some(at) = rest.windows(2).position(|pair| pair[0] == 0xff && !matches!(pair[1], 0 | 0xff)) {
         let marker = rest[at + 1];
         if marker == END {

@@ -1,4 +1,4 @@
-//! The files of images that a scene names: bytes in, the numbers of their texels out, as they stand in the file.
+//! Decoders of the image files that a scene names. They return the numbers of the texels as the file has them.
 
 mod exif;
 mod exr;

@@ -7,10 +7,10 @@ use super::{exif, icc};
 use crate::film::MOST_TEXELS;
 use crate::spectrum::{ColorSpace, Primaries};
 
-/// Reads a PNG (ISO/IEC 15948): palettes, transparent colors and less than 8 bits become numbers of 8 bits.
+/// Reads a PNG (ISO/IEC 15948). Palettes, transparent colors and depths below 8 bits are expanded to numbers of 8 bits.
 ///
 /// # Errors
-/// If it is none, is damaged, or claims a size that it cannot have.
+/// If the file is not a PNG, is damaged, or claims an impossible size.
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 12 * MOST_TEXELS });
     decoder.set_ignore_text_chunk(true);
@@ -31,7 +31,7 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Whole, Unreadable> {
     Ok(Whole { width, channels: color.samples(), not_srgb, is_turned, steps })
 }
 
-/// What the chunks of a file say of its colors, the strongest first, if that is not sRGB.
+/// Returns what a file says about its colors, if they are not sRGB. The chunk that takes precedence decides.
 fn not_srgb(info: &Info) -> Option<String> {
     if let Some(points) = info.coding_independent_code_points {
         let said = [points.color_primaries, points.transfer_function];
@@ -55,6 +55,6 @@ fn not_srgb(info: &Info) -> Option<String> {
     gamma.map(|gamma| format!("a gamma of {gamma} (gAMA)")).or(primaries)
 }
 
-/// Color primaries and transfer function of sRGB, by the numbers of ITU-T H.273, and of Rec.709, which displays show
-/// alike.
+/// Color primaries and transfer functions of sRGB, and of Rec.709, which displays show in the same way. The numbers are
+/// those of ITU-T H.273.
 const SRGB_POINTS: [[u8; 2]; 2] = [[1, 13], [1, 1]];

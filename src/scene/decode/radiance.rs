@@ -1,28 +1,28 @@
-//! Radiance pictures (.hdr): four bytes of a texel, of red, green, blue and the exponent that they share.
+//! Radiance pictures (.hdr): four bytes per texel, for red, green, blue and their common exponent.
 //!
 //! G. Ward, "Real Pixels", Graphics Gems II (1991); "Radiance File Formats", Lawrence Berkeley National Laboratory.
 
 use super::texels::{Floats, Unreadable, fits};
 use crate::spectrum::{Matrix, Primaries, matrix_of_file};
 
-/// How files begin: those of Radiance, and those of other programs.
+/// Signatures of files from Radiance itself, and from other programs.
 const SIGNATURES: [&[u8]; 2] = [b"#?RADIANCE", b"#?RGBE"];
 const FORMAT: &str = "32-bit_rle_rgbe";
-/// Texels of a row that can be packed in the newer way.
+/// Row lengths, in texels, that the newer packing supports.
 const PACKED: std::ops::Range<usize> = 8..1 << 15;
 
-/// Reads a picture of RGBE, packed in the newer way, the older one or not at all. What was multiplied to the light is
-/// taken out again.
+/// Reads an RGBE picture in the newer packing, the older one or none. Divides out the factors that the light was
+/// multiplied by.
 ///
 /// # Errors
-/// If it is none, is damaged, or claims a size that it cannot have.
+/// If the file is not such a picture, is damaged, or claims an impossible size.
 pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
     let rest = SIGNATURES.iter().find_map(|signature| bytes.strip_prefix(*signature)).ok_or(Unreadable::Signature)?;
     let mut reader = RadianceReader { rest, row: 0 };
     let Header { size: [width, height], factors, to_rec709 } = reader.header()?;
     let length = 12_u64.saturating_mul(width as u64).saturating_mul(height as u64);
     fits(width, height, length, bytes)?;
-    // Colors are whole multiples of 2^(exponent - 136); an exponent of 0 is black.
+    // Colors are integer multiples of 2^(exponent - 136); an exponent of 0 is black.
     let unit = |exponent: usize| if exponent == 0 { 0.0 } else { libm::ldexp(1.0, exponent as i32 - 136) };
     let units: [f64; 256] = std::array::from_fn(unit);
     let mut texels = vec![[0; 4]; width];
@@ -38,17 +38,17 @@ pub(in crate::scene) fn decode(bytes: &[u8]) -> Result<Floats, Unreadable> {
     Ok(Floats { width, channels: 3, has_alpha: false, is_lossy: false, to_rec709, numbers })
 }
 
-/// What stands before the texels.
+/// What precedes the texels.
 struct Header {
     /// Width and height.
     size: [usize; 2],
-    /// What red, green and blue of the light were multiplied by.
+    /// Factors that the red, green and blue light was multiplied by.
     factors: [f64; 3],
-    /// From its primaries to linear Rec.709, or why it is not known.
+    /// The matrix from its primaries to linear Rec.709, or why it is not known.
     to_rec709: Result<Matrix, String>,
 }
 
-/// What is not read yet, and the row that is.
+/// The bytes that are still to be read, and the current row.
 struct RadianceReader<'b> {
     rest: &'b [u8],
     row: usize,
@@ -69,8 +69,8 @@ impl RadianceReader<'_> {
         Ok(line)
     }
 
-    /// The header, to its end, which is the size. Each program that changes a picture adds its factors to those that
-    /// are there: all have been applied.
+    /// Reads the header up to the size, which ends it. Each program that changes a picture appends its factors, so all
+    /// of them have been applied.
     fn header(&mut self) -> Result<Header, Unreadable> {
         self.line()?;
         let (mut factors, mut to_rec709) = ([1.0; 3], matrix_of_file(None, None));
@@ -119,7 +119,7 @@ impl RadianceReader<'_> {
         }
     }
 
-    /// The newer way: the bytes of one channel, runs of one byte among them.
+    /// Reads one channel of a row in the newer packing: bytes, and runs of one byte among them.
     fn fill_channel(&mut self, texels: &mut [[u8; 4]], channel: usize) -> Result<(), Unreadable> {
         let mut rest = texels;
         while !rest.is_empty() {
@@ -137,8 +137,8 @@ impl RadianceReader<'_> {
         Ok(())
     }
 
-    /// The older way: texels one by one, and runs of the last one, each written as a texel of three ones and a count.
-    /// Runs that follow each other are the digits of one length to base 256, the lowest first.
+    /// Reads a row in the older packing: single texels, and runs of the last texel, each written as a texel of three
+    /// ones and a count. Consecutive runs are the digits of one length to base 256, the lowest first.
     fn fill_texels(&mut self, texels: &mut [[u8; 4]]) -> Result<(), Unreadable> {
         let (mut x, mut shift) = (0, 0);
         while x < texels.len() {
@@ -159,7 +159,7 @@ impl RadianceReader<'_> {
     }
 }
 
-/// x and y of red, green, blue and white.
+/// Parses x and y of red, green, blue and white.
 fn primaries(words: &str) -> Option<Primaries> {
     let numbers = every_number(words)?;
     let [red, green, blue, white] = numbers.as_chunks().0.try_into().ok()?;
@@ -170,7 +170,7 @@ fn every_number(words: &str) -> Option<Vec<f64>> {
     words.split_whitespace().map(|word| word.parse().ok()).collect()
 }
 
-/// One number above 0 for all colors, or one for each.
+/// Parses one number above 0 for all colors, or one for each.
 fn numbers(words: &str, is_one: bool) -> Option<[f64; 3]> {
     let numbers = match every_number(words)?[..] {
         [all] if is_one => [all; 3],
@@ -180,7 +180,7 @@ fn numbers(words: &str, is_one: bool) -> Option<[f64; 3]> {
     numbers.iter().all(|number| *number > 0.0).then_some(numbers)
 }
 
-/// As much of a line as a message can hold.
+/// Returns the part of a line that fits into a message.
 fn beginning(line: &str) -> String {
     line.chars().take(40).collect()
 }

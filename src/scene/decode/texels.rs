@@ -1,41 +1,43 @@
-//! What files of images hold, and why they cannot be read.
+//! The contents of image files, and the reasons why one cannot be read.
 
 use crate::film;
 use crate::spectrum::Matrix;
 
-/// Whole numbers, texel by texel, rows from the top: gray, or red, green and blue, and maybe alpha behind them.
+/// An image of whole numbers, in rows from the top. Each texel is a gray, or red, green and blue, optionally followed
+/// by alpha.
 pub(in crate::scene) struct Whole {
     pub(in crate::scene) width: usize,
-    /// Numbers of a texel, 1 to 4.
+    /// Numbers per texel, 1 to 4.
     pub(in crate::scene) channels: usize,
-    /// What the file says of its colors that is not sRGB.
+    /// What the file says about its colors, if they are not sRGB.
     pub(in crate::scene) not_srgb: Option<String>,
-    /// Whether the file says that it is upright only when it is turned or mirrored.
+    /// Whether the file says that it has to be turned or mirrored to be upright.
     pub(in crate::scene) is_turned: bool,
     pub(in crate::scene) steps: Steps,
 }
 
-/// Numbers of 8 or 16 bits, the greatest of which means 1.
+/// Numbers of 8 or 16 bits. The largest one means 1.
 pub(in crate::scene) enum Steps {
     Bytes(Vec<u8>),
     Words(Vec<u16>),
 }
 
 impl Whole {
-    /// Whether the last number of a texel is alpha.
+    /// Returns whether the last number of a texel is alpha.
     pub(in crate::scene) fn has_alpha(&self) -> bool {
         self.channels.is_multiple_of(2)
     }
 }
 
-/// Red, green and blue of each texel, or a gray, and maybe alpha behind them, rows from the top.
+/// An image of floating-point numbers, in rows from the top. Each texel is red, green and blue, or a gray, optionally
+/// followed by alpha.
 pub(in crate::scene) struct Floats {
     pub(in crate::scene) width: usize,
-    /// Numbers of a texel, 1 to 4.
+    /// Numbers per texel, 1 to 4.
     pub(in crate::scene) channels: usize,
     /// Whether the last number of a texel is alpha.
     pub(in crate::scene) has_alpha: bool,
-    /// Whether a compression has changed numbers.
+    /// Whether a lossy compression has changed the numbers.
     pub(in crate::scene) is_lossy: bool,
     /// The matrix from its colors to linear Rec.709, or why it is not known.
     pub(in crate::scene) to_rec709: Result<Matrix, String>,
@@ -43,7 +45,7 @@ pub(in crate::scene) struct Floats {
 }
 
 impl Floats {
-    /// Sets a number of a texel, if there is that texel.
+    /// Sets a number of a texel, if that texel exists.
     pub(super) fn put(&mut self, x: usize, y: usize, number: usize, value: f32) {
         let at = self.channels * (y * self.width + x) + number;
         if x < self.width && at < self.numbers.len() {
@@ -69,7 +71,7 @@ pub(in crate::scene) enum Unreadable {
     Compression,
     #[error("it is a deep image, which has many values to a pixel")]
     Deep,
-    /// No red, green and blue, but these channels.
+    /// There are no red, green and blue, only these channels.
     #[error("it has the channels {0}")]
     Channels(String),
     #[error("some of its channels do not have a number for each pixel")]
@@ -89,7 +91,7 @@ pub(in crate::scene) enum Unreadable {
 }
 
 impl Unreadable {
-    /// How to save an image that is whole, but of a form that is not read; none of another.
+    /// Returns how to save an intact image in a form that can be read; none for other errors.
     pub(in crate::scene) fn remedy(&self) -> Option<&'static str> {
         match self {
             Self::Large(..) => Some("make it smaller"),
@@ -103,7 +105,7 @@ impl Unreadable {
     }
 }
 
-/// Refuses images without texels, with too many, and sizes whose `bytes` the file cannot hold.
+/// Refuses images with no texels or too many, and sizes that take more `bytes` than the file can hold.
 pub(super) fn fits(width: usize, height: usize, bytes: u64, file: &[u8]) -> Result<(), Unreadable> {
     if let Some(said) = film::too_large(width, height, film::MOST_TEXELS) {
         return Err(Unreadable::Large(said));

@@ -10,7 +10,7 @@ use super::mistake::Mistake;
 use super::texts::Texts;
 use super::tree::Node;
 
-/// The texts of a scene, what they say as TOML, and what is wrong with that so far.
+/// The texts of a scene, their content as TOML, and the mistakes found so far.
 pub(in crate::scene) struct Document<'d> {
     pub(in crate::scene) texts: &'d Texts,
     pub(in crate::scene) root: &'d DeTable<'d>,
@@ -22,31 +22,31 @@ impl<'d> Document<'d> {
         Self { texts, root, mistakes: RefCell::default() }
     }
 
-    /// Keeps a mistake. Reading continues, so that all are reported together.
+    /// Records a mistake. Reading continues, so that all mistakes are reported together.
     pub(in crate::scene) fn tell(&self, span: Range<usize>, message: impl Into<String>, help: Option<String>) {
-        // Names in a scene may hold anything, even the end of a line.
+        // Names in a scene may contain anything, even a line break.
         let one_line = |text: String| text.replace(char::is_control, " ");
         let mistake = Mistake { span, message: one_line(message.into()), help: help.map(one_line) };
         self.mistakes.borrow_mut().push(mistake);
     }
 
-    /// How many mistakes there are so far.
+    /// Returns the number of mistakes so far.
     pub(in crate::scene) fn told(&self) -> usize {
         self.mistakes.borrow().len()
     }
 
-    /// Where the last mistake stands.
+    /// Returns the place of the last mistake.
     pub(super) fn last(&self) -> Option<Range<usize>> {
         self.mistakes.borrow().last().map(|mistake| mistake.span.clone())
     }
 
-    /// All mistakes, in the order in which they were found.
+    /// Returns all mistakes, in the order in which they were found.
     pub(in crate::scene) fn mistakes(&self) -> Vec<Mistake> {
         self.mistakes.borrow().clone()
     }
 
-    /// The keys and positions that lead to keys and values, as in `object[3].shape.sphere.radius`; empty where there
-    /// are none.
+    /// Returns the paths of the keys and values at these places, as in `object[3].shape.sphere.radius`; empty where
+    /// there are none.
     pub(in crate::scene) fn paths(&self, places: impl Iterator<Item = Range<usize>>) -> HashMap<Range<usize>, String> {
         let mut paths: HashMap<_, _> = places.map(|span| (span, String::new())).collect();
         if !paths.is_empty() {
@@ -76,7 +76,7 @@ fn look_at(value: &Node, path: &str, paths: &mut HashMap<Range<usize>, String>) 
     }
 }
 
-/// Keeps the first path of a place that is asked for.
+/// Records the first path to a place that is looked for.
 fn note(span: Range<usize>, path: &str, paths: &mut HashMap<Range<usize>, String>) {
     paths.entry(span).and_modify(|found| found.push_str(if found.is_empty() { path } else { "" }));
 }

@@ -1,4 +1,4 @@
-//! What is called otherwise in other programs, and what to write here.
+//! Names in other programs, and what to write here instead.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::named_file::{IMAGES, TABLES};
 use crate::error::ends_in;
 use crate::scene::web_color::{of_bytes, of_srgb, web_color};
 
-/// What is called by other words in other renderers, and these words; of several that are known, the first is meant.
+/// Names here, each with its names in other renderers. If several of the names here are known, the first is meant.
 const ELSEWHERE: [(&str, &[&str]); 55] = [
     ("index", &["ior", "eta", "int_ior"]),
     ("reflectance", &["albedo", "color", "base_color", "reflection", "reflectivity"]),
@@ -67,10 +67,10 @@ const ELSEWHERE: [(&str, &[&str]); 55] = [
     ("environment", &["envmap", "infinite", "sky", "skylight", "dome", "hdri", "ambient", "background"]),
 ];
 
-/// Words of other renderers that no one word here stands for, as the head of the table says.
+/// Words of other renderers for which there is no single word here, as the head of the table explains.
 const IN_OTHER_WORDS: &str = include_str!("in_other_words.txt");
 
-/// What the table says of a word beside keys for which `is_beside` holds.
+/// Returns what the table says about a word beside keys for which `is_beside` holds.
 fn instead(word: &str, is_beside: impl Fn(&str) -> bool) -> Option<&'static str> {
     IN_OTHER_WORDS.lines().find_map(|line| {
         let (words, rest) = line.split_once(" | ")?;
@@ -80,22 +80,23 @@ fn instead(word: &str, is_beside: impl Fn(&str) -> bool) -> Option<&'static str>
     })
 }
 
-/// What a word of other renderers is called here.
+/// Returns the names here for a word of other renderers.
 pub(super) fn called_here(word: &str) -> impl Iterator<Item = &'static str> {
     ELSEWHERE.iter().filter(move |(_, words)| words.contains(&word)).map(|(here, _)| *here)
 }
 
-/// Kinds of materials, each with a key of its own: what stands beside it and is a word of others is told as within it.
+/// Kinds of materials, each with a key of its own. A word of other renderers beside a kind is explained as if it stood
+/// inside.
 const OF_KINDS: [(&str, &str); 4] =
     [("diffuse", "fluorescence"), ("mirror", "reflectance"), ("conductor", "metal"), ("dielectric", "priority")];
 
-/// Where a key belongs that stands beside a kind of material, if not into that.
+/// Returns where a key belongs that stands beside a kind of material, if it does not belong inside.
 pub(super) fn outside_of_material(kind: &str, word: &str) -> Option<&'static str> {
     let own = OF_KINDS.iter().find(|(known, _)| *known == kind).map(|(_, own)| *own);
     instead(word, |key| key == "*" || Some(key) == own)
 }
 
-/// Sections whose keys are looked for in others: a key that this one alone has, and those that are mistaken.
+/// Sections whose keys people write elsewhere: a key that only this section has, and the keys that are misplaced.
 const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
     ("camera", "look_at", &["position", "up", "vertical_fov", "lens", "projection", "shift", "polarizer", "near"]),
     (
@@ -110,12 +111,12 @@ const MISTAKEN_SECTIONS: [(&str, &str, &[&str]); 3] = [
     ),
 ];
 
-/// Keys of spectra that may be an image, and those of lights.
+/// Keys of spectra that may be an image, and keys of lights.
 const OF_IMAGES: [&str; 2] = ["reflectance", "radiance"];
 const OF_LIGHTS: [&str; 3] = ["radiance", "irradiance", "intensity"];
 const SPECTRA: [&str; 4] = ["reflectance", "radiance", "irradiance", "intensity"];
 
-/// What to do where no known name is meant by a word, but it is known what is.
+/// Returns what to do about a word that stands for no known name, if it is clear what it means.
 pub(super) fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
     let of_spectrum = || {
         let word = match word {
@@ -136,7 +137,8 @@ pub(super) fn in_other_words(word: &str, known: &[&str]) -> Option<String> {
     help.or_else(of_spectrum).or_else(|| in_another_section(word, known))
 }
 
-/// Where a key belongs that one section has, and another, or the file outside of all of them, does not know.
+/// Returns the section that a key belongs in, if another section, or the file outside of all sections, does not know
+/// it.
 fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
     let is_mistakable =
         MISTAKEN_SECTIONS.iter().any(|(section, own, _)| known.contains(own) || known.contains(section));
@@ -146,17 +148,17 @@ fn in_another_section(word: &str, known: &[&str]) -> Option<String> {
     Some(format!("write {here} in [{section}]"))
 }
 
-/// How to write what a key of other programs says by its value.
+/// Returns how to write a key of other programs that is recognized by its value.
 pub(super) fn value_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
     let of_file = || file_elsewhere(word, value.as_str()?, known);
     color_elsewhere(word, value, known).or_else(of_file).or_else(|| entry_elsewhere(word, value, known))
 }
 
-/// Entries of lists, one of their keys, and keys of which such an entry has one.
+/// Lists of entries, each with one of the keys of an entry, and with keys of which an entry has exactly one.
 const ENTRIES: [(&str, &str, &[&str]); 2] =
     [("object", "instances", &["shape"]), ("light", "environment", &["environment", "point", "spot", "sun"])];
 
-/// How to write an object or a light that stands as a table of its name, as materials do.
+/// Returns how to write an object or a light that is written as a table under its name, as materials are.
 fn entry_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
     let table = value.as_table()?;
     let is_meant = |(_, own, keys): &&(&str, &str, &[&str])| {
@@ -166,7 +168,7 @@ fn entry_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String
     Some(format!("write [[{entry}]], and name = \"{word}\" below it"))
 }
 
-/// How to write the file of an image or a table of which a spectrum is made.
+/// Returns how to write the file of an image or of a table that a spectrum is made of.
 fn file_elsewhere(word: &str, file: &str, known: &[&str]) -> Option<String> {
     let is_file = matches!(word, "file" | "filename" | "path" | "image" | "texture" | "map");
     let kinds: [(&str, &[&str], &[&str]); 2] = [("image", IMAGES, &OF_IMAGES), ("file", TABLES, &SPECTRA)];
@@ -178,7 +180,7 @@ fn file_elsewhere(word: &str, file: &str, known: &[&str]) -> Option<String> {
     }
 }
 
-/// How to write a color whose key says that it is sRGB, or is otherwise one of other programs.
+/// Returns how to write a color whose key says that it is sRGB, or is a key of other programs.
 fn color_elsewhere(word: &str, value: &DeValue, known: &[&str]) -> Option<String> {
     let word = word.to_lowercase();
     if !known.contains(&"rgb") || !COLORS.contains(&&*word) {

@@ -1,4 +1,4 @@
-//! A table of a scene's text, key by key.
+//! A table of a scene's text, read key by key.
 
 use std::ops::Range;
 
@@ -11,29 +11,29 @@ use super::suggest::{TABLE, meant, suggested_key, suggestion};
 use super::value::Value;
 use crate::error::nearest;
 
-/// A table that is being read: the keys that are asked for are those that it may have.
+/// A table that is being read. It may have exactly the keys that its reader requests.
 pub(in crate::scene) struct Fields<'d> {
     document: &'d Document<'d>,
     table: &'d DeTable<'d>,
     span: Range<usize>,
     known: Vec<&'static str>,
-    /// Those of them that make no sense in this place, and are not hinted at.
+    /// Known keys that make no sense in this place, and are not suggested.
     unfit: Vec<&'static str>,
-    /// Keys that are needed and not there, and what to do.
+    /// Required keys that are missing, and what to do.
     missing: Vec<(&'static str, Option<String>)>,
-    /// Keys of which something else was told than that they are not known.
+    /// Keys that have been reported, but not as unknown ones.
     told: Vec<&'static str>,
 }
 
 impl<'d> Fields<'d> {
-    /// What a table says, if it has all the keys that it needs and no others. `read` asks for every key that there may
-    /// be before it gives up over one.
+    /// Reads a table. Returns none unless it has all the keys that it needs and no others. `read` must request every
+    /// possible key before it gives up over one.
     pub(in crate::scene) fn read<T>(value: Value<'d>, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         let Some(table) = value.node().as_table() else { return value.wanted(TABLE) };
         Self::of(value.document, table, value.span(), read)
     }
 
-    /// What a document says.
+    /// Reads a document.
     pub(in crate::scene) fn of_document<T>(
         document: &'d Document<'d>,
         read: impl FnOnce(&mut Self) -> Option<T>,
@@ -54,7 +54,7 @@ impl<'d> Fields<'d> {
         read.filter(|_| are_right)
     }
 
-    /// Whether there are no keys but those that were asked for, and all that are needed; tells of the others.
+    /// Returns whether the table has only keys that were requested, and all that it needs. Reports the others.
     fn are_right(&self) -> bool {
         let (unknown, known) = (self.unknown(), self.hints());
         for (span, word) in &unknown {
@@ -72,7 +72,7 @@ impl<'d> Fields<'d> {
             };
             self.document.tell(span.clone(), message, Some(help));
         }
-        // What a key without sense should have been may be what is missing.
+        // A key that makes no sense may stand for the one that is missing.
         let is_obscure = !self.told.is_empty() || unknown.iter().any(|(_, word)| meant(word, word, &known).is_none());
         for (key, help) in self.missing.iter().filter(|(key, _)| !is_obscure && !self.is_misspelt(key)) {
             self.document.tell(self.span.clone(), format!("`{key}` is missing"), help.clone());
@@ -80,13 +80,13 @@ impl<'d> Fields<'d> {
         unknown.is_empty() && self.missing.is_empty() && self.told.is_empty()
     }
 
-    /// Whether a key that is not known is most likely this one, which is not missing then.
+    /// Returns whether an unknown key is most likely a misspelling of this one, which is then not missing.
     pub(in crate::scene) fn is_misspelt(&self, key: &str) -> bool {
         let known = self.hints();
         self.unknown().iter().any(|(_, word)| meant(word, word, &known) == Some(key))
     }
 
-    /// The keys that may be meant by another one.
+    /// Returns the keys that may be suggested in place of another one.
     fn hints(&self) -> Vec<&'static str> {
         self.known.iter().copied().filter(|key| !self.unfit.contains(key)).collect()
     }
@@ -96,12 +96,12 @@ impl<'d> Fields<'d> {
         keys.filter(|(_, key)| !self.known.contains(key) && !self.told.contains(key)).collect()
     }
 
-    /// Whether there are keys that nothing has read so far.
+    /// Returns whether there are keys that nothing has requested so far.
     pub(in crate::scene) fn has_unknown(&self) -> bool {
         !self.told.is_empty() || !self.unknown().is_empty()
     }
 
-    /// The value of a key that there may be.
+    /// Returns the value of an optional key.
     pub(in crate::scene) fn get(&mut self, key: &'static str) -> Option<Value<'d>> {
         if !self.known.contains(&key) {
             self.known.push(key);
@@ -109,7 +109,7 @@ impl<'d> Fields<'d> {
         self.table.get_key_value(key).map(|(key, node)| Value::new(self.document, key, node))
     }
 
-    /// What a key that there may be says; none if it is wrong.
+    /// Reads an optional key. Returns none if it is wrong.
     pub(in crate::scene) fn maybe<T>(
         &mut self,
         key: &'static str,
@@ -118,7 +118,7 @@ impl<'d> Fields<'d> {
         self.get(key).map_or(Some(None), |value| read(value).map(Some))
     }
 
-    /// What a key says, or what it would say if it were there; none if it is wrong.
+    /// Reads an optional key with a default. Returns none if it is wrong.
     pub(in crate::scene) fn or<T>(
         &mut self,
         key: &'static str,
@@ -128,7 +128,7 @@ impl<'d> Fields<'d> {
         self.get(key).map_or(Some(default), read)
     }
 
-    /// What a key says that is needed.
+    /// Reads a required key.
     pub(in crate::scene) fn need<T>(
         &mut self,
         key: &'static str,
@@ -140,24 +140,24 @@ impl<'d> Fields<'d> {
         }
     }
 
-    /// Tells, unless it is misspelt, that a key is missing, which not every such table needs.
+    /// Reports that a key is missing, unless it is misspelled. For keys that only some tables of a kind need.
     pub(in crate::scene) fn lack<T>(&mut self, key: &'static str, help: Option<&str>) -> Option<T> {
         self.missing.push((key, help.map(str::to_owned)));
         None
     }
 
-    /// Tells of the whole table that it is wrong.
+    /// Reports that the whole table is wrong.
     pub(in crate::scene) fn refuse<T>(&self, message: impl Into<String>, help: Option<&str>) -> Option<T> {
         self.document.tell(self.span.clone(), message, help.map(str::to_owned));
         None
     }
 
-    /// Lets keys not be hinted at which make no sense in this place.
+    /// Excludes keys that make no sense in this place from suggestions.
     pub(in crate::scene) fn do_not_hint_at(&mut self, keys: impl Iterator<Item = &'static str>) {
         self.unfit.extend(keys);
     }
 
-    /// Tells of a key, if it is there, that it belongs elsewhere.
+    /// Reports that a key, if it is there, belongs elsewhere.
     pub(in crate::scene) fn stray(&mut self, key: &'static str, message: impl Into<String>, help: String) {
         if let Some((found, _)) = self.table.get_key_value(key) {
             self.document.tell(found.span(), message, Some(help));
@@ -166,29 +166,29 @@ impl<'d> Fields<'d> {
     }
 }
 
-/// A table with one key, its kind.
+/// A table with a single key, which is its kind.
 pub(in crate::scene) struct Choice<R: 'static> {
-    /// Such as "a shape".
+    /// Its name with an article, such as "a shape".
     pub(in crate::scene) name: &'static str,
-    /// Such as "shape".
+    /// Its name, such as "shape".
     pub(in crate::scene) word: &'static str,
     pub(in crate::scene) example: &'static str,
-    /// What to do with a second kind.
+    /// What to do about a second kind.
     pub(in crate::scene) apart: &'static str,
-    /// Keys that belong beside it and not into it.
+    /// Keys that belong beside the table and not into it.
     pub(in crate::scene) beside: &'static [&'static str],
-    /// The kinds, each with what reads it.
+    /// The kinds, and their readers.
     pub(in crate::scene) kinds: &'static [(&'static str, R)],
 }
 
 impl<R: Copy> Choice<R> {
-    /// The kind that a value has: what reads it, and its value.
+    /// Returns the reader of a value's kind, and the value of that kind.
     pub(in crate::scene) fn of<'d>(&self, value: Value<'d>) -> Option<(R, Value<'d>)> {
         let kind = self.kind(value)?;
         Some((self.reader(kind)?, kind))
     }
 
-    /// What reads a kind, if it is known.
+    /// Returns the reader of a kind, if it is known.
     pub(in crate::scene) fn reader(&self, kind: Value) -> Option<R> {
         let word = kind.key();
         let known = self.kinds.iter().find(|(known, _)| *known == word).map(|(_, reader)| *reader);
@@ -202,13 +202,13 @@ impl<R: Copy> Choice<R> {
         self.kinds.iter().any(|(known, _)| *known == word)
     }
 
-    /// The kind that a key such as `type` names.
+    /// Returns the kind that a key such as `type` names.
     fn tagged<'d>(&self, tag: Value<'d>) -> Option<&'d str> {
         let named = || tag.node().as_str().filter(|word| self.knows(word));
         matches!(tag.key(), "type" | "kind").then(named).flatten()
     }
 
-    /// Whether a key belongs beside it, which is told.
+    /// Returns whether a key belongs beside the table, and reports it if so.
     fn is_beside(&self, stray: Value) -> bool {
         let is_beside = self.beside.contains(&stray.key());
         if is_beside {
@@ -218,7 +218,7 @@ impl<R: Copy> Choice<R> {
         is_beside
     }
 
-    /// Whether a key that resembles no kind stands beside one, which is told: it may belong into that.
+    /// Returns whether a key beside a kind resembles no kind, and reports it if so: it may belong inside the kind.
     fn is_part_of(&self, kind: &str, stray: Value) -> bool {
         let word = stray.key();
         let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
@@ -232,7 +232,7 @@ impl<R: Copy> Choice<R> {
         is_part
     }
 
-    /// The value of the first key of a table, known or not; tells of a second one.
+    /// Returns the value of the first key of a table, known or not. Reports a second one.
     pub(in crate::scene) fn kind<'d>(&self, value: Value<'d>) -> Option<Value<'d>> {
         let example = || format!("such as {}", self.example);
         let Some(table) = value.node().as_table() else {

@@ -1,4 +1,4 @@
-//! Files that a scene includes: what they say stands in the scene as if it were written there.
+//! Files that a scene includes. Their content counts as if it were written in the scene.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,31 +12,31 @@ use super::tree::{Node, parsed, word};
 use super::utf8::utf8;
 use crate::scene::foreign::foreign;
 
-/// The key of the names of such files.
+/// The key that lists such files.
 pub(in crate::scene) const INCLUDE: &str = "include";
-/// Most bytes of a scene, as of a file that it includes. A device may never end.
+/// Maximum number of bytes of a scene, and of a file that it includes. A device may never end.
 pub(in crate::scene) const MOST_BYTES: u64 = 1 << 30;
 const SCENE: FileKind =
     FileKind { nameless: "a file to include needs a name", most_bytes: MOST_BYTES, endings: &["toml"] };
-/// Most files within one another: far fewer than would exhaust the stack.
+/// Maximum depth of files within one another: far less than would exhaust the stack.
 const DEEPEST: usize = 64;
 
-/// The texts of a scene, and what is wrong with them so far.
+/// The texts of a scene, and the mistakes found in them so far.
 #[derive(Default)]
 pub(in crate::scene) struct Included {
     pub(in crate::scene) texts: Texts,
-    /// Where each file stands among them.
+    /// The place of each file in the texts.
     pub(in crate::scene) parts: Vec<Range<usize>>,
     pub(in crate::scene) mistakes: Vec<Mistake>,
-    /// All files, none by two names.
+    /// All files, each under one name only.
     pub(in crate::scene) files: Vec<PathBuf>,
-    /// Those of them that are being read, the outermost first.
+    /// The files that are being read, the outermost first.
     within: Vec<PathBuf>,
 }
 
 impl Included {
-    /// A text with those of all files that it includes, each once, in the order in which they are named first. A text
-    /// that is no file has a path all the same, where the names of files begin.
+    /// Collects a text and those of all files that it includes, each once, in the order in which they are first named.
+    /// A text that is not a file still has a path, which the names of files are relative to.
     pub(in crate::scene) fn of(path: &Path, text: &str, is_file: bool) -> Self {
         let file: Vec<PathBuf> = is_file.then(|| real(path)).into_iter().collect();
         let mut found = Self { files: file.clone(), within: file, ..Self::default() };
@@ -48,7 +48,7 @@ impl Included {
         let folder = path.parent().unwrap_or(Path::new(""));
         let span = self.texts.add(path, folder, text);
         self.parts.push(span.clone());
-        // Most texts include nothing, and are read only once. A key may be written with escapes.
+        // Most texts include nothing, and are parsed only once. A key may be written with escapes.
         if text.contains(INCLUDE) || text.contains('\\') {
             match parsed(text, span.start) {
                 Ok(table) => table.get(INCLUDE).into_iter().for_each(|names| self.add_all(names, folder)),
@@ -104,12 +104,12 @@ impl Included {
     }
 }
 
-/// The one name of a file, without links.
+/// Returns the canonical name of a file, without links.
 fn real(path: &Path) -> PathBuf {
     std::fs::canonicalize(path).unwrap_or(path.to_owned())
 }
 
-/// What all files say together: lists one behind the other, and the keys of tables side by side.
+/// Merges the content of all files: joins their lists, and combines the keys of their tables.
 pub(in crate::scene) fn merged<'d>(texts: &'d Texts, files: &[Range<usize>]) -> Result<DeTable<'d>, Vec<Mistake>> {
     let (mut whole, mut mistakes) = (DeTable::new(), Vec::new());
     for part in files {

@@ -1,6 +1,6 @@
-//! The text of a scene as values that know where they stand, and the messages about those that are wrong.
+//! The text of a scene, as values with their places in it, and the messages about values that are wrong.
 //!
-//! What a scene may hold is written once, in `compile`: by the functions that read it.
+//! The functions of `compile` that read a scene define what it may contain, and nothing else does.
 
 mod document;
 mod elsewhere;

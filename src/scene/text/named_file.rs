@@ -5,16 +5,16 @@ use std::path::Path;
 
 use crate::error::nearest_file;
 
-/// How the names of images end, and those of tables.
+/// Extensions of image files, and of tables.
 pub(in crate::scene) const IMAGES: &[&str] = &["png", "jpg", "jpeg", "exr", "hdr"];
 pub(in crate::scene) const TABLES: &[&str] = &["csv", "txt", "tsv", "dat"];
 
 /// A kind of file that a scene names.
 pub(in crate::scene) struct FileKind {
-    /// What is told where its name is empty.
+    /// The message about an empty name.
     pub(in crate::scene) nameless: &'static str,
     pub(in crate::scene) most_bytes: u64,
-    /// How its name may end; in any way if there are none.
+    /// Extensions that its name may have; any if there are none.
     pub(in crate::scene) endings: &'static [&'static str],
 }
 
@@ -31,7 +31,7 @@ impl Fault {
     }
 }
 
-/// The bytes of a file whose name begins at a folder.
+/// Reads a file whose name is relative to a folder.
 pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<Vec<u8>, Fault> {
     let refuse = |message: String| Err(Fault { message, help: None });
     let path = folder.join(file);
@@ -39,7 +39,7 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
         Ok(found) if found.is_file() && found.len() > kind.most_bytes => {
             return refuse(format!("{file} has {} bytes, more than {}", found.len(), kind.most_bytes));
         }
-        // A device never ends.
+        // Reading a device may never end.
         Ok(found) if !found.is_file() && !found.is_dir() => return refuse(format!("{file} is no file but a device")),
         _ => {}
     }
@@ -54,7 +54,7 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
     }
 }
 
-/// The mistake of naming a file that is not there, with the nearest name that has one of the endings.
+/// Returns the mistake of naming a file that does not exist, with the nearest name that has one of the extensions.
 pub(super) fn missing(folder: &Path, file: &str, endings: &[&str]) -> Fault {
     let near = nearest_file(&folder.join(file), endings);
     let near = near.and_then(|near| near.file_name().map(|name| Path::new(file).with_file_name(name)));

@@ -1,11 +1,12 @@
-/// Rows of numbers that a program gives beside the text of a scene, where text would be slow: a million points.
+/// Rows of numbers that a program passes beside the text of a scene, where a text would be slow, as for a million
+/// points.
 ///
-/// They stand for the `points`, `faces`, `normals` or `uv` of a mesh whose value is their [`mark`](Self::mark).
+/// They are the `points`, `faces`, `normals` or `uv` of a mesh, whose value is then their [`mark`](Self::mark).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rows {
-    /// Numbers in a row, 1 or more.
+    /// Numbers per row, 1 or more.
     pub width: usize,
-    /// All rows, one behind the other.
+    /// All rows, one after another.
     pub numbers: Numbers,
 }
 
@@ -14,25 +15,25 @@ pub struct Rows {
 pub enum Numbers {
     /// Coordinates.
     Real(Vec<f64>),
-    /// Numbers of points.
+    /// Indices of points.
     Whole(Vec<u32>),
 }
 
-/// What no text of a person begins with.
+/// A prefix that no text written by a person has.
 const MARK: &str = "\0rows ";
 
 impl Rows {
-    /// The text that stands for the rows of a position.
+    /// Returns the text that stands for the rows at a position.
     pub fn mark(position: usize) -> String {
         format!("{MARK}{position}")
     }
 
-    /// The position of the rows that a text stands for, if it does.
+    /// Returns the position of the rows that a text stands for, if it does.
     pub(super) fn marked(text: &str) -> Option<usize> {
         text.strip_prefix(MARK)?.parse().ok()
     }
 
-    /// Calls `add` with the bytes of all that they are.
+    /// Passes all bytes of the rows to `add`.
     pub(in crate::scene) fn digest(&self, mut add: impl FnMut(&[u8])) {
         add(&self.width.to_le_bytes());
         match &self.numbers {

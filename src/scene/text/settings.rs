@@ -1,4 +1,4 @@
-//! Values that replace those of a scene: `film.width=320`, as on a command line.
+//! Values that replace those of a scene, such as `film.width=320` on a command line.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -13,13 +13,14 @@ use super::tree::{Key, Node, parsed, word};
 use super::variables::{FRAME, SET};
 use crate::error::nearest;
 
-/// A key as a path of words, and its value.
+/// The path of a key, and its value.
 struct Setting<'d> {
     path: Vec<Key<'d>>,
     value: Node<'d>,
 }
 
-/// Puts the value of `text`, which starts at a place of the whole, in its place in a scene that has such sections.
+/// Puts the value of a setting in its place in a scene with these sections. The setting starts at a place of the joined
+/// texts.
 pub(in crate::scene) fn set<'d>(
     root: &mut DeTable<'d>,
     text: &'d str,
@@ -80,7 +81,7 @@ fn no_variable(name: &Key, known: &[&str], sections: &[&str]) -> Mistake {
     Mistake { span: name.span(), message: format!("there is no variable `{word}`"), help: Some(help) }
 }
 
-/// Reads `KEY=VALUE`. A value that is not TOML is a text as it stands.
+/// Parses `KEY=VALUE`. A value that is not TOML is taken as a text.
 fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
     let whole = start..start + text.len();
     let refuse = |message: &str| {
@@ -92,7 +93,7 @@ fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
         return refuse("a setting is a key, `=` and a value");
     }
     let key = format!("{}=0", &text[..equals]);
-    // What is parsed with its value: of words with spaces, the last alone.
+    // Where the part begins that is parsed with its value: of words with spaces, only the last one is.
     let (path, tail): (Option<Vec<Key>>, _) = match (parsed(&key, start), spaced(&text[..equals], start)) {
         (Ok(table), _) => (path(&table).map(|path| path.into_iter().map(owned).collect()), 0),
         (Err(_), Some(path)) => {
@@ -127,8 +128,8 @@ fn owned<'k>(key: &Key) -> Key<'k> {
     Spanned::new(key.span(), word(key).to_string().into())
 }
 
-/// The words of a path in which names have spaces, or other characters that TOML wants quotes for: they end at a dot.
-/// None if there are quotes, or the last word, which is a key, wants them.
+/// Splits a path at its dots, if names in it have spaces or other characters that TOML wants quotes for. Returns none
+/// if there are quotes, or if the last word, which is a key, needs them.
 fn spaced<'k>(path: &str, start: usize) -> Option<Vec<Key<'k>>> {
     let (mut keys, mut next) = (Vec::new(), start);
     for part in path.split('.') {
@@ -144,7 +145,7 @@ fn spaced<'k>(path: &str, start: usize) -> Option<Vec<Key<'k>>> {
     (last && keys.iter().all(is_plain)).then_some(keys)
 }
 
-/// Where a key ends that may be quoted.
+/// Returns the position of the `=` that ends a key, which may be quoted.
 fn equals(text: &str) -> Option<usize> {
     let (mut quote, mut is_escaped) = (None, false);
     text.char_indices().find_map(|(at, letter)| {
@@ -160,14 +161,15 @@ fn equals(text: &str) -> Option<usize> {
     })
 }
 
-/// Lists, tables and quoted texts are, and what is a number but for its form.
+/// Returns whether a value is meant as TOML: a list, a table, a quoted text, or a number that is not in the form of
+/// TOML.
 fn is_meant_as_toml(value: &str) -> bool {
     let is_number = value.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first))
         && value.parse::<f64>().is_ok();
     value.starts_with(['[', '{', '"', '\'']) || is_number
 }
 
-/// The keys, each the only one of its table, that lead to a number.
+/// Returns the keys that lead to a number, if each is the only one of its table.
 fn path<'t, 'd>(table: &'t DeTable<'d>) -> Option<Vec<&'t Key<'d>>> {
     let (mut path, mut table) = (Vec::new(), table);
     loop {
@@ -180,7 +182,7 @@ fn path<'t, 'd>(table: &'t DeTable<'d>) -> Option<Vec<&'t Key<'d>>> {
     }
 }
 
-/// The value at the end of such a path, if there is nothing beside it.
+/// Returns the value at the end of a path, if there is nothing beside it.
 fn valued<'d>(table: &mut DeTable<'d>, path: &[Key]) -> Option<Node<'d>> {
     let (key, rest) = path.split_first()?;
     let mut value = Some(table.remove(word(key))?).filter(|_| table.is_empty())?;
@@ -194,7 +196,7 @@ fn valued<'d>(table: &mut DeTable<'d>, path: &[Key]) -> Option<Node<'d>> {
 fn put<'d>(table: &mut DeTable<'d>, path: &[Key<'d>], value: Node<'d>) -> Result<(), Mistake> {
     let Some((key, rest)) = path.split_first() else { return Ok(()) };
     if rest.is_empty() {
-        // With its key: what is wrong with it is wrong here.
+        // The key is replaced as well, so that a mistake in the value is reported here.
         table.remove(word(key));
         table.insert(key.clone(), value);
         return Ok(());
@@ -223,7 +225,7 @@ fn put_into<'d>(node: &mut Node<'d>, key: &Key, path: &[Key<'d>], value: Node<'d
     }
 }
 
-/// Which entry of a list has this name or number; numbers count from 1.
+/// Returns the index of the entry of a list that has this name or number. Numbers count from 1.
 fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
     let word: &str = word(key);
     let names = entries.iter().map(|entry| entry.get_ref().as_table()?.get("name")?.get_ref().as_str());

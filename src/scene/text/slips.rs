@@ -1,15 +1,15 @@
-//! Slips of the pen that the reader of TOML notices late, or says in its own words.
+//! Slips that the TOML parser notices late, or reports in its own words.
 
 use std::ops::Range;
 
 use super::mistake::Mistake;
 use crate::scene::web_color::web_color;
 
-/// What is surely wrong in or above the line where the reader stopped, by what it said there.
+/// Returns what is certainly wrong in or above the line where the parser stopped, by what it said there.
 pub(super) fn slip(text: &str, span: &Range<usize>, said: &str) -> Option<Mistake> {
     let place = span.start;
     let stop = text.get(..place)?;
-    // What lies over several lines in three quotes is not looked into.
+    // Texts in triple quotes, which may span several lines, are not examined.
     if stop.contains("\"\"\"") || stop.contains("'''") {
         return None;
     }
@@ -26,8 +26,8 @@ pub(super) fn slip(text: &str, span: &Range<usize>, said: &str) -> Option<Mistak
         })
 }
 
-/// A line without its comment, in which texts in quotes are dots of as many bytes, and where a double quote stands
-/// that none closes.
+/// Returns a line without its comment, in which quoted texts are replaced by as many dots as they have bytes, and the
+/// position of a double quote that is never closed.
 fn without_texts(line: &str) -> (String, Option<usize>) {
     let (mut bare, mut rest) = (String::new(), line);
     while let Some(at) = rest.find(['"', '\'', '#']) {
@@ -49,7 +49,7 @@ fn without_texts(line: &str) -> (String, Option<usize>) {
     (bare + rest, None)
 }
 
-/// The length of a text in double quotes, with which `from` begins.
+/// Returns the length of the text in double quotes with which `from` begins.
 fn closing(from: &str) -> Option<usize> {
     let mut is_escaped = false;
     let end = from.bytes().skip(1).position(|byte| {
@@ -60,7 +60,7 @@ fn closing(from: &str) -> Option<usize> {
     end.map(|end| end + 2)
 }
 
-/// A color of the web without quotes, which begins a comment: its key has no value.
+/// Finds a web color without quotes, which begins a comment, so that its key has no value.
 fn color_as_comment(text: &str) -> Option<Mistake> {
     let mut start = 0;
     for line in text.split_inclusive('\n') {
@@ -81,8 +81,8 @@ fn color_as_comment(text: &str) -> Option<Mistake> {
     None
 }
 
-/// A text that only one quote stands beside, in the line that starts at a place, or in the one above if there is
-/// nothing before `place`.
+/// Finds a text with a single quote mark at one of its ends, in the line that starts at `start`, or in the one above if
+/// there is nothing before `place`.
 fn open_quote(text: &str, start: usize, place: usize) -> Option<Mistake> {
     let is_above = text[start..place].trim().is_empty();
     let end = if is_above {
@@ -107,7 +107,7 @@ fn open_quote(text: &str, start: usize, place: usize) -> Option<Mistake> {
     is_word.then(|| Mistake { span, message: "the opening quote is missing".into(), help })
 }
 
-/// A space that is none in TOML, as pages and word processors have them.
+/// Finds a space that TOML does not allow, as web pages and word processors produce it.
 fn strange_space(line: &str, start: usize) -> Option<Mistake> {
     let (line, start) = line.strip_prefix('\u{feff}').filter(|_| start == 0).map_or((line, start), |line| (line, 3));
     let bare = without_texts(line).0;
@@ -118,7 +118,7 @@ fn strange_space(line: &str, start: usize) -> Option<Mistake> {
     Some(Mistake { span, message, help: Some("write a plain space, or nothing".into()) })
 }
 
-/// A heading with a space in the name of its material, or before it; the line starts at a place.
+/// Finds a heading with a space in the name of its material, or before it. The line begins at `start`.
 fn heading_of_words(line: &str, start: usize) -> Option<Mistake> {
     let bare = without_texts(line).0;
     let inner = bare.trim().strip_prefix('[')?.strip_suffix(']')?.trim();
@@ -140,7 +140,7 @@ fn is_bare(name: &str) -> bool {
     name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c))
 }
 
-/// How to write a heading that stands in a line without its brackets, or with others.
+/// Returns how to write a heading that stands in a line without its brackets, or with others.
 pub(super) fn heading(line: &str) -> Option<String> {
     let line = line.trim();
     let word = line.trim_matches(|c: char| c.is_whitespace() || "[](){}<>:".contains(c));
@@ -153,7 +153,7 @@ pub(super) fn heading(line: &str) -> Option<String> {
     }
 }
 
-/// How to write numbers that stand behind the last `=` before a place of a line without the brackets of a list.
+/// Returns how to write numbers without the brackets of a list. They follow the last `=` before a place of a line.
 pub(super) fn loose_list(line: &str, place: usize) -> Option<String> {
     let before = line.get(..place)?;
     let value = before.rfind('=').or_else(|| line.find('=').filter(|at| *at == place))? + 1;
@@ -165,7 +165,8 @@ pub(super) fn loose_list(line: &str, place: usize) -> Option<String> {
     is_list.then(|| format!("a list stands in brackets: [{}]", numbers.join(", ")))
 }
 
-/// A key inside the brackets of a list, before the `=` at a place: the list is not closed, or its entry is a table.
+/// Explains a key inside the brackets of a list, before the `=` at a place: the list is not closed, or its entry is a
+/// table.
 fn key_in_list(text: &str, place: usize) -> Option<Mistake> {
     let before = text.get(..place)?.trim_end();
     let key = before.rsplit([' ', '\t', '\n', ',', '[', '{']).next().filter(|key| !key.is_empty())?;
@@ -180,7 +181,7 @@ fn key_in_list(text: &str, place: usize) -> Option<Mistake> {
     Some(Mistake { span: at..before.len(), message: "a list holds no keys".into(), help })
 }
 
-/// A section that should be one of a list, above the line that begins the list as it should.
+/// Finds a section that should be an entry of a list, above the line that begins the list correctly.
 fn of_one(key: &str, before: &str, line: &str) -> Option<Mistake> {
     if !line.starts_with("[[") || !matches!(key, "object" | "light") {
         return None;

@@ -1,4 +1,4 @@
-//! What an author may have meant.
+//! Suggestions of what an author may have meant.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::scene::share;
 use crate::scene::web_color::web_color;
 use crate::spectrum::ColorSpace;
 
-/// The known name that was meant by the value or key `word`, or all of them; `key` is the key of a value.
+/// Returns the known name that the value or key `word` may mean, or else all of them. `key` is the key of a value.
 pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
     let layer = || (key == "layers").then(|| layer_elsewhere(word)).flatten().map(str::to_owned);
     if let Some(help) = layer().or_else(|| in_other_words(word, known)) {
@@ -25,13 +25,13 @@ pub(super) fn suggestion(key: &str, word: &str, known: &[&str]) -> String {
     }
 }
 
-/// What other programs call the brightness of a light beside its color.
+/// Names that other programs give to the brightness of a light, which stands beside its color.
 const BRIGHTNESS: [&str; 5] = ["intensity", "strength", "power", "brightness", "multiplier"];
 
-/// What to write for a key that a table does not know: the one that was meant, or what to do where that stands beside
-/// it already.
+/// Returns what to write for a key that a table does not know: the key that was meant, or what to do if that key is
+/// there already.
 pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> String {
-    // A misspelt key, and one that has an answer of its own, is told what it is told anywhere.
+    // A misspelled key, and one with an answer of its own, gets the same answer everywhere.
     let is_told = nearest(word, known.iter().copied()).is_some() || in_other_words(word, known).is_some();
     let free: Vec<&str> = known.iter().copied().filter(|&key| !beside.contains_key(key)).collect();
     let is_another = is_told || meant(word, word, &free).is_some();
@@ -42,18 +42,18 @@ pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> Str
     }
 }
 
-/// The known name that was meant by the value or key `word`, if any is near.
+/// Returns the known name that the value or key `word` may mean, if any is near.
 pub(super) fn meant<'a>(key: &str, word: &str, known: &[&'a str]) -> Option<&'a str> {
     let lower = word.to_lowercase();
     let is_part = |name: &str| name.to_lowercase().starts_with(&lower) || name.split('_').any(|part| part == word);
     let part_of = || known.iter().copied().find(|name| is_part(name));
     let elsewhere = || called_here(word).find(|here| known.contains(here));
     let space = || (key == "color_space").then(|| ColorSpace::called(word)).flatten().map(ColorSpace::interop_id);
-    // `tile` is a word of others for `repeat`, though one letter makes it `file`.
+    // `tile` is a word of other programs for `repeat`, although it differs from `file` by a single letter.
     elsewhere().or_else(|| nearest(word, known.iter().copied())).or_else(part_of).or_else(space)
 }
 
-/// Tables of which people write the one value that matters most, and its key.
+/// Tables for which people write only the value that matters most, and the key of that value.
 const SHORT: [(&str, &str); 9] = [
     ("diffuse", "reflectance"),
     ("plastic", "reflectance"),
@@ -66,7 +66,7 @@ const SHORT: [(&str, &str); 9] = [
     ("point", "position"),
 ];
 
-/// How to write a table in place of which its one value stands.
+/// Returns how to write a table, if only its main value stands in its place.
 fn in_short(key: &str, value: &DeValue, written: &str) -> Option<String> {
     let (_, inner) = SHORT.iter().find(|short| short.0 == key)?;
     let is_color = matches!(*inner, "reflectance" | "radiance");
@@ -88,7 +88,7 @@ fn is_number(value: &DeValue) -> bool {
     matches!(value, DeValue::Integer(_) | DeValue::Float(_))
 }
 
-/// How to write a point or a direction that is a text.
+/// Returns how to write a point or a direction that is given as a text.
 fn vector(key: &str, text: &str) -> Option<String> {
     let axes = [("x", "1, 0, 0"), ("y", "0, 1, 0"), ("z", "0, 0, 1")];
     let axis = axes.iter().find(|(name, _)| matches!(key, "up" | "normal" | "axis" | "toward") && text == *name);
@@ -97,10 +97,10 @@ fn vector(key: &str, text: &str) -> Option<String> {
     axis.map(|(_, list)| format!("write [{list}]")).or_else(|| is_list.then(|| format!("write [{}]", parts.join(", "))))
 }
 
-/// What is wanted where keys are read.
+/// What is expected where keys are read.
 pub(super) const TABLE: &str = "a table, { .. }";
 
-/// How to write what a value of the wrong type seems to mean.
+/// Returns how to write what a value of the wrong type seems to mean.
 pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) -> Option<String> {
     let number = wanted == "a number" || wanted.starts_with("a whole number") || wanted.starts_with("at most");
     match value {
@@ -210,12 +210,12 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
     }
 }
 
-/// How to write one number in place of three.
+/// Returns how to write one number in place of three.
 fn without_braces(written: &str) -> String {
     format!("one number for all three stands without braces: {written}")
 }
 
-/// How to write what a list seems to mean that stands in place of a spectrum.
+/// Returns how to write what a list in place of a spectrum seems to mean.
 fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
     let are_numbers =
         |list: &DeArray, count: usize| list.len() == count && list.iter().all(|entry| is_number(entry.get_ref()));
@@ -227,7 +227,7 @@ fn spectrum_of(entries: &DeArray, written: &str) -> Option<String> {
         .then(|| "write { samples = [[wavelength in nm, value], ..] } for a spectrum".into())
 }
 
-/// How to write a list that has so many numbers if commas in them are points.
+/// Returns how to write a list that has `count` numbers if commas within them are decimal points.
 pub(super) fn with_points(written: &str, count: usize) -> Option<String> {
     let inner = written.strip_prefix('[')?.strip_suffix(']')?;
     let parts: Vec<&str> = inner.split([' ', '\t', ';']).map(|part| part.trim_matches(',')).collect();

@@ -1,4 +1,4 @@
-//! Text that is not TOML, in the words of people who write scenes.
+//! Explanations of text that is not TOML, in the words of people who write scenes.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::mistake::Mistake;
 use super::slips::{heading, loose_list, slip};
 use crate::error::nearest;
 
-/// What the error of reading a text as TOML means.
+/// Explains the error of reading a text as TOML.
 pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake {
     let span = error.span().unwrap_or(0..0);
     let said = error.message().lines().next().unwrap_or("this is not TOML");
@@ -40,7 +40,7 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "invalid mantissa" => ("a number starts with a digit, as in 0.5".into(), None),
         "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
         "unexpected leading zero" => ("a number starts with no needless 0".into(), None),
-        // Of a value without quotes the reader goes by the first letter.
+        // For a value without quotes, the parser goes by the first letter.
         "invalid float" | "invalid integer number" | "invalid boolean" if is_word(written) => word(written),
         "invalid float" | "invalid integer number" => ("this is no number".into(), None),
         "missing assignment between key-value pairs" => {
@@ -76,12 +76,12 @@ fn without_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
     Mistake { span, message: "a key is followed by `=` and its value".into(), help: help.map(str::to_owned) }
 }
 
-/// The line whose start stands before a place, and with whose end the rest begins.
+/// Returns the whole line that `line` begins and `rest` continues.
 fn whole_line(line: &str, rest: &str) -> String {
     format!("{line}{}", rest.lines().next().unwrap_or_default())
 }
 
-/// What to do where a key is not followed by its `=`.
+/// Returns what to do where a key is not followed by its `=`.
 fn before_sign(line: &str, rest: &str) -> Option<String> {
     if rest.trim_start().starts_with(':') || line.trim_end().ends_with(':') {
         return Some("write `=` instead of `:`".into());
@@ -91,7 +91,7 @@ fn before_sign(line: &str, rest: &str) -> Option<String> {
     of_heading.or_else(|| loose_list(&whole, line.len()))
 }
 
-/// What is said of a key with letters that TOML wants in quotes.
+/// Explains a key with letters that TOML only allows in quotes.
 fn unquoted_key(said: &str, line: &str, rest: &str) -> (String, Option<String>) {
     let is_end = |c: char| c.is_whitespace() || ".,=:[](){}<>\"'#".contains(c);
     let first = line.rsplit(is_end).next().unwrap_or_default();
@@ -102,13 +102,13 @@ fn unquoted_key(said: &str, line: &str, rest: &str) -> (String, Option<String>) 
     }
 }
 
-/// The reader notices only at the next word, which may stand lines below.
+/// Reports a bracket that is not closed. The parser notices it only at the next word, which may be lines below.
 fn unclosed(before: &str, bracket: char) -> Mistake {
     let end = before.trim_end().len();
     Mistake { span: end..end, message: format!("a comma or the closing `{bracket}` is missing here"), help: None }
 }
 
-/// A table in braces has a key without a value, or a number with a comma in it.
+/// Explains a table in braces in which a key has no value, or a number contains a comma.
 fn of_inline_table(before: &str, rest: &str) -> Mistake {
     let before = before.trim_end();
     let line = before.rsplit('\n').next().unwrap_or_default();
@@ -127,13 +127,13 @@ fn of_inline_table(before: &str, rest: &str) -> Mistake {
     Mistake { span: start..before.len().min(start + 1), message: message.into(), help: list.or(help) }
 }
 
-/// Whether letters stand for no number that is spelt in some way.
+/// Returns whether letters form a word that is not a spelling of a number.
 fn is_word(written: &str) -> bool {
     let is_number = ["inf", "infinity", "nan"].contains(&&*written.to_lowercase());
     written.starts_with(char::is_alphabetic) && !is_number
 }
 
-/// A word without quotes: a truth in other words, or a text.
+/// Explains a word without quotes: a word for true or false, or a text.
 fn word(written: &str) -> (String, Option<String>) {
     let truth = match &*written.to_lowercase() {
         "true" | "yes" | "on" => "true",
@@ -169,13 +169,13 @@ fn unquoted(written: &str) -> (String, Option<String>) {
     }
 }
 
-/// The number behind a minus that is not the one of a keyboard.
+/// Returns the number after a minus sign that is not the one on a keyboard.
 fn after_minus(written: &str) -> Option<&str> {
     let number = written.strip_prefix(['\u{2212}', '\u{2013}', '\u{2014}'])?;
     number.parse::<f64>().is_ok().then_some(number)
 }
 
-/// Whether a calculation begins as one of a pocket calculator.
+/// Returns whether a text begins with a function of a pocket calculator.
 fn is_call(written: &str) -> bool {
     let name = written.split_once('(').map(|(name, _)| name.trim());
     name.is_some_and(|name| ["sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "radians", "degrees"].contains(&name))
@@ -217,7 +217,8 @@ fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     (format!("`{key}` is given twice"), help)
 }
 
-/// The line that gives a key first, which `line` begins to give again: a section, or a key of the same section.
+/// Returns the line that first gives a key that `line` gives again: the line of a section, or of a key in the same
+/// section.
 fn first_line(key: &str, before: &str, line: &str) -> Option<usize> {
     let lines: Vec<&str> = before.lines().map(str::trim).collect();
     let above = lines.get(..before.matches('\n').count())?;

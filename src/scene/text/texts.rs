@@ -1,4 +1,4 @@
-//! The texts of a scene, as one.
+//! The texts of a scene, joined into one.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -9,20 +9,20 @@ use super::mistake::Mistake;
 use super::rows::Rows;
 use crate::error::{Diagnostic, Lines};
 
-/// The texts that a scene is made of: its file, the files that it includes and what replaces their values. They stand
-/// one behind the other, so that a place in any of them is a range of bytes of the whole.
+/// The texts that a scene is made of: its file, the files that it includes and the settings that replace its values.
+/// They follow one another, so that a place in any of them is a range of bytes of the whole.
 #[derive(Default)]
 pub(in crate::scene) struct Texts {
-    /// All of them, one behind the other.
+    /// All texts, one after another.
     pub(in crate::scene) whole: String,
     parts: Vec<TextPart>,
-    /// How places are named in messages.
+    /// How messages name places.
     pub(in crate::scene) told_by: LocatedBy,
-    /// What a program has given beside them.
+    /// Rows of numbers that a program has given beside the texts.
     pub(in crate::scene) rows: Vec<Rows>,
 }
 
-/// How a place is named in messages.
+/// How messages name a place.
 #[derive(Clone, Copy, Default)]
 pub(in crate::scene) enum LocatedBy {
     #[default]
@@ -32,20 +32,20 @@ pub(in crate::scene) enum LocatedBy {
 }
 
 struct TextPart {
-    /// As it is called in messages.
+    /// Its name in messages.
     path: PathBuf,
-    /// Where the names of its files begin.
+    /// The folder that the names of its files are relative to.
     folder: PathBuf,
     span: Range<usize>,
-    /// A copy that all its mistakes share.
+    /// A copy of the text that all its mistakes share.
     alone: OnceLock<Arc<str>>,
 }
 
 impl Texts {
-    /// Adds a text, and returns where it stands.
+    /// Adds a text, and returns its place.
     pub(in crate::scene) fn add(&mut self, path: &Path, folder: &Path, text: &str) -> Range<usize> {
         if !self.parts.is_empty() {
-            // TOML has no such character: the end of a text is not the start of the next one.
+            // TOML does not allow this character, so the end of a text is not the start of the next one.
             self.whole.push('\0');
         }
         let start = self.whole.len();
@@ -60,7 +60,7 @@ impl Texts {
         span
     }
 
-    /// Adds lines, if there are any, as one text, and returns where each stands.
+    /// Adds lines, if there are any, as one text, and returns the place of each.
     pub(in crate::scene) fn add_lines(&mut self, path: &Path, folder: &Path, lines: &[String]) -> Vec<Range<usize>> {
         if lines.is_empty() {
             return Vec::new();
@@ -74,12 +74,12 @@ impl Texts {
         lines.iter().map(place).collect()
     }
 
-    /// Whether a place stands in the first of them.
+    /// Returns whether a place is in the first text.
     pub(in crate::scene) fn is_in_first(&self, place: usize) -> bool {
         self.parts.first().is_some_and(|part| place <= part.span.end)
     }
 
-    /// Where the names of files begin that stand at a place.
+    /// Returns the folder that the names of files at a place are relative to.
     pub(in crate::scene) fn folder(&self, place: usize) -> &Path {
         self.part(place).map_or(Path::new(""), |part| &part.folder)
     }
@@ -88,7 +88,7 @@ impl Texts {
         self.parts.iter().rfind(|part| part.span.start <= place)
     }
 
-    /// A place as people name it, such as `at scene.toml:3:7`; what a program has written is no file.
+    /// Returns a place as people name it, such as `at scene.toml:3:7`. A text that a program has written is not a file.
     pub(in crate::scene) fn placed(&self, span: Range<usize>) -> String {
         match self.told_by {
             LocatedBy::Key if self.is_in_first(span.start) => "in the scene itself".into(),
@@ -96,7 +96,7 @@ impl Texts {
         }
     }
 
-    /// A place as people name it, such as `scene.toml:3:7`.
+    /// Returns a place as people name it, such as `scene.toml:3:7`.
     pub(in crate::scene) fn named(&self, span: Range<usize>) -> String {
         self.named_by(&mut Lines::default(), span)
     }
@@ -107,7 +107,7 @@ impl Texts {
         format!("{}:{line}:{column}", found.file.display())
     }
 
-    /// The same of many places, in time that grows with their number and the text.
+    /// Returns the names of many places, in time that grows with their number plus the length of the text.
     pub(in crate::scene) fn named_all(
         &self,
         places: impl Iterator<Item = Range<usize>>,
@@ -118,7 +118,7 @@ impl Texts {
         places.into_iter().map(|span| (span.clone(), self.named_by(&mut lines, span))).collect()
     }
 
-    /// A mistake with its file.
+    /// Returns a mistake with its file.
     pub(in crate::scene) fn diagnostic(&self, mistake: Mistake, key: Option<String>) -> Diagnostic {
         let Mistake { span, message, help } = mistake;
         let Some(part) = self.part(span.start) else {

@@ -1,4 +1,4 @@
-//! What a text says as TOML, with its places in the whole of the texts.
+//! The content of a text as TOML, with places in the joined texts.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ pub(super) fn word<'k>(key: &'k Key) -> &'k str {
     key.get_ref()
 }
 
-/// What a text says that starts at a place of the whole.
+/// Parses a text that starts at a place of the joined texts.
 pub(in crate::scene) fn parsed(text: &str, start: usize) -> Result<DeTable<'_>, Mistake> {
     match DeTable::parse(text) {
         Ok(table) if start == 0 => Ok(table.into_inner()),

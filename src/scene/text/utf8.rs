@@ -2,8 +2,8 @@
 
 use super::named_file::Fault;
 
-/// The text that bytes are in UTF-8, without a byte order mark, which would count as a column. `shown` is what they are
-/// called in messages, `help` says what is wanted in place of something that is no text at all.
+/// Decodes text in UTF-8, and removes a byte order mark, which would count as a column. `shown` is the name of the
+/// bytes in messages. `help` says what is expected in place of something that is no text at all.
 pub(in crate::scene) fn utf8(bytes: Vec<u8>, shown: &str, help: &str) -> Result<String, Fault> {
     let bytes = match String::from_utf8(bytes) {
         Ok(text) if text.starts_with('\u{feff}') => return Ok(text['\u{feff}'.len_utf8()..].to_owned()),

@@ -1,4 +1,4 @@
-//! A value of a scene's text, read as what is wanted of it; if it is something else, that is a mistake.
+//! Values of a scene's text, read as the type that is expected. A value of another type is a mistake.
 
 use std::ops::{Bound, Range, RangeBounds, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -11,15 +11,15 @@ use super::rows::Rows;
 use super::suggest::{remedy, suggestion, with_points};
 use super::tree::{Key, Node};
 
-/// A value, where it stands.
+/// A value, with its place in the text.
 #[derive(Clone, Copy)]
 pub(in crate::scene) struct Value<'d> {
     pub(super) document: &'d Document<'d>,
-    /// The key whose value it is, or in whose list it is an entry.
+    /// The key whose value it is, or whose list it is an entry of.
     key: &'d Key<'d>,
     is_entry: bool,
     node: &'d Node<'d>,
-    /// What it is called as a list of numbers, and how to write it.
+    /// Its name in messages if it should be a list of numbers, and how to write it.
     list: Option<(&'static str, &'static str)>,
 }
 
@@ -28,7 +28,7 @@ impl<'d> Value<'d> {
         Self { document, key, is_entry: false, node, list: None }
     }
 
-    /// The key whose value it is, or in whose list it is an entry.
+    /// Returns the key whose value it is, or whose list it is an entry of.
     pub(in crate::scene) fn key(self) -> &'d str {
         self.key.get_ref()
     }
@@ -45,28 +45,28 @@ impl<'d> Value<'d> {
         self.node.get_ref()
     }
 
-    /// The entry of that number, if it is a list; else the value itself.
+    /// Returns the entry of that number if the value is a list, or else the value itself.
     pub(in crate::scene) fn entry(self, number: usize) -> Self {
         let entry = self.node().as_array().and_then(|entries| entries.get(number));
         entry.map_or(self, |node| Self { is_entry: true, node, list: None, ..self })
     }
 
-    /// Which of two stands further down.
+    /// Returns the one of two values that stands further down.
     pub(in crate::scene) fn later(self, other: Self) -> Self {
         if other.key.span().start > self.key.span().start { other } else { self }
     }
 
-    /// The same, called something as a list of numbers, with the way to write it.
+    /// Returns the value with a name for messages about it as a list of numbers, and with how to write it.
     pub(in crate::scene) fn as_list(self, name: &'static str, help: &'static str) -> Self {
         Self { list: Some((name, help)), ..self }
     }
 
-    /// Tells that it is wrong.
+    /// Reports that it is wrong.
     pub(in crate::scene) fn refuse<T>(self, message: impl Into<String>) -> Option<T> {
         self.tell(message, None)
     }
 
-    /// Tells that it is wrong, and what to do.
+    /// Reports that it is wrong, and what to do.
     pub(in crate::scene) fn advise<T>(self, message: impl Into<String>, help: impl Into<String>) -> Option<T> {
         self.tell(message, Some(help.into()))
     }
@@ -76,38 +76,38 @@ impl<'d> Value<'d> {
         None
     }
 
-    /// Where the names of its files begin.
+    /// Returns the folder that the names of its files are relative to.
     fn folder(self) -> &'d Path {
         self.document.texts.folder(self.span().start)
     }
 
-    /// Where the file of this name lies.
+    /// Returns the path of the file of this name.
     pub(in crate::scene) fn path(self, name: &str) -> PathBuf {
         self.folder().join(name)
     }
 
-    /// The bytes of the file of this name.
+    /// Reads the file of this name.
     pub(in crate::scene) fn file(self, name: &str, kind: &FileKind) -> Option<Vec<u8>> {
         self.told(read_named(self.folder(), name, kind))
     }
 
-    /// What was checked or read of a file, if it is right; tells what is wrong with that if it is not.
+    /// Returns the result of a check or of reading a file, or reports what is wrong.
     pub(in crate::scene) fn told<T>(self, checked: Result<T, impl Into<Fault>>) -> Option<T> {
         checked.map_err(Into::into).map_or_else(|Fault { message, help }| self.tell(message, help), Some)
     }
 
-    /// Tells that there is no file of this name, which ends in one of some ways.
+    /// Reports that there is no file of this name, which should have one of these extensions.
     pub(in crate::scene) fn missing<T>(self, name: &str, endings: &[&str]) -> Option<T> {
         self.told(Err(missing(self.folder(), name, endings)))
     }
 
-    /// Tells that its key is wrong.
+    /// Reports that its key is wrong.
     pub(in crate::scene) fn refuse_key<T>(self, message: impl Into<String>, help: Option<String>) -> Option<T> {
         self.document.tell(self.key.span(), message, help);
         None
     }
 
-    /// Tells what is wanted in its place.
+    /// Reports what is expected in its place.
     pub(in crate::scene) fn wanted<T>(self, wanted: &str) -> Option<T> {
         let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
         let found = match self.node() {
@@ -141,7 +141,7 @@ impl<'d> Value<'d> {
         }
     }
 
-    /// A number of a range; `what` says of another one what it should be.
+    /// Reads a number within a range. `what` says in the message what the number should be.
     pub(in crate::scene) fn within(self, range: impl RangeBounds<f64>, what: &str, help: Option<&str>) -> Option<f64> {
         match self.number()? {
             number if range.contains(&number) => Some(number),
@@ -149,7 +149,7 @@ impl<'d> Value<'d> {
         }
     }
 
-    /// A whole number of a range. One that ends where a type does is told by its start.
+    /// Reads a whole number within a range. If the range ends where a type does, the message names only its start.
     pub(in crate::scene) fn whole<T: TryFrom<i128>>(self, range: RangeInclusive<u64>) -> Option<T> {
         let (least, most) = range.into_inner();
         let is_open = most >= u64::from(u32::MAX);
@@ -172,7 +172,7 @@ impl<'d> Value<'d> {
         self.whole(0..=u32::MAX.into())
     }
 
-    /// A whole number, below 0 as well.
+    /// Reads a whole number, which may be negative.
     pub(in crate::scene) fn integer(self) -> Option<i32> {
         let Some(integer) = self.node().as_integer() else { return self.wanted("a whole number") };
         let within = parsed(integer).and_then(|whole| i32::try_from(whole).ok());
@@ -187,7 +187,7 @@ impl<'d> Value<'d> {
         self.node().as_bool().or_else(|| self.wanted("true or false"))
     }
 
-    /// What a word stands for.
+    /// Returns what a word stands for.
     pub(in crate::scene) fn word<T: Copy>(self, words: &[(&'static str, T)]) -> Option<T> {
         let Some(word) = self.node().as_str() else {
             if words.len() > MOST_WORDS {
@@ -202,37 +202,37 @@ impl<'d> Value<'d> {
         })
     }
 
-    /// Whether so much is wrong already that it is no longer said what may have been meant by a name: that takes a look
-    /// at all names that there are.
+    /// Returns whether there are already so many mistakes that further ones get no suggestion of a name, which would
+    /// take a look at all known names.
     pub(in crate::scene) fn is_one_of_many(self) -> bool {
         self.document.told() >= MANY
     }
 
-    /// Tells that it is no such word.
+    /// Reports that it is none of the known words.
     pub(in crate::scene) fn unknown<T>(self, word: &str, known: &[&str]) -> Option<T> {
         self.advise(format!("`{}` cannot be \"{word}\"", self.key()), suggestion(self.key(), word, known))
     }
 
-    /// The values of a table's keys.
+    /// Returns the values of a table's keys.
     pub(in crate::scene) fn table(self) -> Option<Vec<Self>> {
         let Some(table) = self.node().as_table() else { return self.wanted("a table") };
         Some(table.iter().map(|(key, node)| Self::new(self.document, key, node)).collect())
     }
 
-    /// The entries of a list, if it is one.
+    /// Returns the entries of a list, if it is one.
     fn entries(self) -> Option<impl ExactSizeIterator<Item = Self>> {
         let entries = self.node().as_array()?;
         Some(entries.iter().map(move |node| Self { is_entry: true, node, list: None, ..self }))
     }
 
-    /// What all entries of a list say, if nothing is wrong with any.
+    /// Reads all entries of a list. Returns none if any of them is wrong. Stops at a wrong one that is not a table.
     pub(in crate::scene) fn list<T>(self, mut read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
         let Some(entries) = self.entries() else { return self.wanted("a list") };
         let (count, mut all) = (entries.len(), Vec::with_capacity(entries.len()));
         for entry in entries {
             let told = self.document.told();
             all.extend(read(entry));
-            // What is wrong with one entry that is no table is mostly wrong with all.
+            // A mistake in one entry that is not a table is mostly in all of them.
             let is_wrong = self.document.told() > told && self.document.last() == Some(entry.span());
             if is_wrong && !entry.node().is_table() {
                 return None;
@@ -241,20 +241,20 @@ impl<'d> Value<'d> {
         Some(all).filter(|all| all.len() == count)
     }
 
-    /// What all entries of a list say, if nothing is wrong with any: each wrong one is told.
+    /// Reads all entries of a list, and reports each one that is wrong. Returns none if any is.
     pub(in crate::scene) fn each<T>(self, read: impl FnMut(Self) -> Option<T>) -> Option<Vec<T>> {
         let Some(entries) = self.entries() else { return self.wanted("a list") };
         let all: Vec<Option<T>> = entries.map(read).collect();
         all.into_iter().collect()
     }
 
-    /// The rows of numbers that a program has given for it, if it has.
+    /// Returns the rows of numbers that a program has given for it, if there are any.
     pub(in crate::scene) fn rows(self) -> Option<&'d Rows> {
         let position = self.node().as_str().and_then(Rows::marked)?;
         self.document.texts.rows.get(position)
     }
 
-    /// What the entries of a list of a given length say.
+    /// Reads the entries of a list of a given length.
     pub(in crate::scene) fn array<T, const N: usize>(self, read: impl FnMut(Self) -> Option<T>) -> Option<[T; N]> {
         match self.entries().map(|entries| entries.len()) {
             None => self.wanted(&format!("a list of {N} numbers")),
@@ -274,7 +274,7 @@ impl<'d> Value<'d> {
         self.array(Self::number)
     }
 
-    /// A number for all axes, or a list of one for each, as `form` shows.
+    /// Reads a number for all axes, or a list with one for each. `form` shows such a list in messages.
     pub(in crate::scene) fn one_or<const N: usize>(self, form: &str) -> Option<[f64; N]> {
         match self.node() {
             DeValue::Integer(_) | DeValue::Float(_) => self.number().map(|number| [number; N]),
@@ -284,21 +284,21 @@ impl<'d> Value<'d> {
     }
 }
 
-/// What a value says, and where.
+/// The content of a value, and its place.
 #[derive(Clone, Copy)]
 pub(in crate::scene) struct Spanned<'d, T> {
     pub(in crate::scene) place: Value<'d>,
     pub(in crate::scene) it: T,
 }
 
-/// Reads a value as something, and keeps where it stands.
+/// Wraps a reader so that it also returns the place of the value.
 pub(in crate::scene) fn at<'d, T>(
     mut read: impl FnMut(Value<'d>) -> Option<T>,
 ) -> impl FnMut(Value<'d>) -> Option<Spanned<'d, T>> {
     move |place| read(place).map(|it| Spanned { place, it })
 }
 
-/// All of a list that has as many as it should; `other` tells of one that has another number of them.
+/// Returns a list as an array if it has the right length. Otherwise, `other` reports its length.
 pub(in crate::scene) fn exactly<T, const N: usize>(
     all: Vec<T>,
     other: impl FnOnce(usize) -> Option<[T; N]>,
@@ -307,18 +307,18 @@ pub(in crate::scene) fn exactly<T, const N: usize>(
     all.try_into().map_or_else(|_| other(count), Some)
 }
 
-/// The numbers above 0 to a greatest one.
+/// Returns the range of the numbers above 0, up to a maximum.
 pub(in crate::scene) fn above_0_to(most: f64) -> (Bound<f64>, Bound<f64>) {
     (Bound::Excluded(0.0), Bound::Included(most))
 }
 
-/// Mistakes in a scene that a person reads one by one.
+/// Number of mistakes in a scene that a person still reads one by one.
 pub(super) const MANY: usize = 100;
 
-/// Up to this many known words are all listed in a mistake.
+/// Maximum number of known words that are all listed in a mistake.
 const MOST_WORDS: usize = 10;
 
-/// Words as `a, b or c`.
+/// Lists words as `a, b or c`.
 fn one_of(words: &[String]) -> String {
     match words {
         [] => String::new(),
@@ -327,7 +327,7 @@ fn one_of(words: &[String]) -> String {
     }
 }
 
-/// An integer, if it is one of at most 128 bits.
+/// Parses an integer of at most 128 bits.
 fn parsed(integer: &DeInteger) -> Option<i128> {
     i128::from_str_radix(integer.as_str(), integer.radix()).ok()
 }

@@ -11,7 +11,7 @@ use crate::error::nearest;
 
 /// The section of the variables.
 pub(in crate::scene) const SET: &str = "set";
-/// The variable that the number of a frame sets.
+/// The variable that the frame number sets.
 pub(super) const FRAME: &str = "frame";
 
 /// The variables of a scene.
@@ -19,14 +19,14 @@ pub(super) const FRAME: &str = "frame";
 struct Variables<'d> {
     /// Values without mistakes, by name.
     values: BTreeMap<String, Node<'d>>,
-    /// All names, also of values with mistakes.
+    /// All names, including those of values with mistakes.
     known: BTreeSet<String>,
     used: BTreeSet<String>,
     mistakes: Vec<Mistake>,
 }
 
-/// Takes the variables out of a scene and puts their values where they are meant. Returns the names of those that are
-/// not used. What is wrong with a value is told where it stands among the variables.
+/// Removes the variables from a scene and inserts their values where they are used. Returns the names of those that are
+/// not used. A mistake in a value is reported where the variable is defined.
 pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Vec<String>, Vec<Mistake>> {
     let mut variables = Variables::default();
     if let Some((key, given)) = root.remove_entry(SET) {
@@ -43,7 +43,7 @@ pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Ve
     if !variables.mistakes.is_empty() {
         return Err(variables.mistakes);
     }
-    // Frames are numbered in the names of files as well.
+    // The frame number is also used in the names of files.
     let is_unused = |name: &String| !variables.used.contains(name) && name != FRAME;
     Ok(variables.known.into_iter().filter(is_unused).collect())
 }
@@ -113,7 +113,7 @@ impl<'d> Variables<'d> {
     }
 }
 
-/// The name of the variable that a text stands for.
+/// Returns the name of the variable that a text stands for.
 fn variable(text: &str) -> Option<&str> {
     text.strip_prefix('$').filter(|name| is_name(name))
 }
@@ -123,7 +123,7 @@ fn is_name(name: &str) -> bool {
     name.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_') && name.chars().all(may_follow)
 }
 
-/// A text in a value that stands for a variable.
+/// Returns a text within a value that stands for a variable.
 fn used_in<'v>(value: &'v Node) -> Option<&'v str> {
     match value.get_ref() {
         DeValue::String(text) => Some(&**text).filter(|text| variable(text).is_some()),

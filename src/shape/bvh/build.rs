@@ -1,4 +1,5 @@
-//! Builds the tree: split into clusters from above, each cluster by obvhs, then eight children to a node.
+//! Builds the tree. Items are split top-down into clusters, obvhs builds each cluster, and the result is collapsed to
+//! nodes with eight children.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -12,36 +13,37 @@ use super::slabs::{Child, WIDTH};
 use super::stack::STACK;
 use crate::math::{DVec3, mix};
 
-/// Most items of a cluster: building one takes some 200 bytes for each of its items.
+/// Maximum number of items in a cluster. Building a cluster takes some 200 bytes per item.
 const CLUSTER: usize = 1 << 17;
-/// Slices along an axis between which items are split into clusters.
+/// Number of slices along an axis, between which items are split into clusters.
 const SLICES: usize = 32;
-/// Depth below which items are split into clusters by halves.
+/// Depth beyond which items are split into clusters by halves.
 const DEEP: u32 = 24;
-/// Levels of nodes that the stack of a walk is enough for: each leaves all but one of its children on it.
+/// Maximum number of levels for which the stack of a walk suffices. Each level leaves all but one of its children on
+/// the stack.
 const MAX_LEVELS: usize = (STACK - 1) / (WIDTH - 1);
-/// What visiting an inner node costs, in tests of an item.
+/// Cost of visiting an inner node, in tests of an item.
 const NODE_COST: f32 = 3.0;
 
-/// Up to what share of its longest side a box is made larger, over 2^24, and the longest side that counts at least:
-/// boxes are in a unit cube, in steps of 2^-24.
+/// Largest share of its longest side by which a box is enlarged, divided by 2^24, and the smallest value that counts as
+/// its longest side. Boxes are scaled to a cube of about unit size, and their coordinates have steps of about 2^-24.
 const UNEVEN: f32 = 1.0 / (1_u64 << 30) as f32;
 const LEAST_SIZE: f32 = 1.0 / (1 << 16) as f32;
 
-/// A tree in the making.
+/// A tree under construction.
 pub struct Builder<'a> {
     boxes: &'a [Outer],
     /// The item of each box.
     pub(super) owners: &'a [u32],
     pub(super) group: usize,
-    /// Boxes, reordered in place.
+    /// Indices of the boxes, reordered in place.
     pub(super) order: Vec<u32>,
     pub(super) nodes: Vec<Node>,
     pub(super) items: Vec<u32>,
 }
 
 impl<'a> Builder<'a> {
-    /// The root, the nodes and the items of a tree, leaves filled up to whole groups.
+    /// Builds a tree and returns its root, its nodes and its items. Leaves are filled up to whole groups.
     pub fn build(boxes: &'a [Outer], owners: &'a [u32], group: usize) -> (Option<Child>, Vec<Node>, Vec<u32>) {
         if boxes.is_empty() {
             return (None, Vec::new(), Vec::new());
@@ -66,18 +68,18 @@ impl<'a> Builder<'a> {
         self.order[range].iter().fold(Outer::EMPTY, |all, &item| all.union(self.boxes[item as usize]))
     }
 
-    /// A tree whose upper part splits the items into clusters where that costs the fewest tests.
+    /// Builds a tree whose upper part splits the items into clusters where that costs the fewest tests.
     fn clusters(&mut self) -> Child {
         let split = |built: &mut Self, range, depth| if depth < DEEP { built.split(range) } else { built.halve(range) };
         self.tree(CLUSTER, split, Self::by_surface_area)
     }
 
-    /// A tree whose depth is the logarithm of the number of items, whatever the boxes.
+    /// Builds a tree whose depth is the logarithm of the number of items, whatever the boxes.
     fn by_halves(&mut self) -> Child {
         self.tree(self.group, |built, range, _| built.halve(range), |_, _, _, _| ())
     }
 
-    /// A tree that is split from above into leaves of at most `most` items, each of which `finish` completes.
+    /// Builds a tree by splitting top-down into leaves of at most `most` items, each of which `finish` completes.
     fn tree(
         &mut self,
         most: usize,
@@ -104,9 +106,10 @@ impl<'a> Builder<'a> {
         self.collapse(&pairs)
     }
 
-    /// Reorders a range so that the first of two groups comes first, and tells how many it has.
+    /// Splits a range into two groups and reorders it so that the first group comes first. Returns the size of the
+    /// first group.
     ///
-    /// The split is where the surfaces of both groups, times their numbers of items, are least: Wald 2007, *On fast
+    /// The split minimizes the surface area times the number of items, summed over both groups: Wald 2007, *On fast
     /// Construction of SAH-based Bounding Volume Hierarchies*.
     fn split(&mut self, range: Range<usize>) -> usize {
         let mut centers = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
@@ -158,7 +161,8 @@ impl<'a> Builder<'a> {
         low
     }
 
-    /// Reorders a range so that half the items come first, along the axis where their middles spread most.
+    /// Splits and reorders a range in halves, along the axis where the centers of the items spread most. Returns the
+    /// size of the first half.
     fn halve(&mut self, range: Range<usize>) -> usize {
         let boxes = self.boxes;
         let items = &mut self.order[range];
@@ -188,7 +192,7 @@ impl<'a> Builder<'a> {
         for (place, &index) in self.order[range.clone()].iter_mut().zip(&tree.primitive_indices) {
             *place = items[index as usize];
         }
-        // Behind its root, the cluster's nodes follow those that are there.
+        // The cluster's root replaces the leaf. Its other nodes are appended to the existing ones.
         let shift = pairs.len() - 1;
         let mut nodes = tree.nodes.iter().map(|node| match node.prim_count {
             0 => Pair::two(shift + node.first_index as usize),
@@ -198,11 +202,12 @@ impl<'a> Builder<'a> {
         pairs.extend(nodes);
     }
 
-    /// The boxes of a range, scaled to the unit cube and made a little uneven.
+    /// Returns the boxes of a range, scaled to a cube of about unit size and made slightly uneven.
     ///
     /// The scale is a power of two, so that a scene of any size gets the same tree and no area over- or underflows. The
-    /// tree merges pairs that are nearest to each other. In a row of equal distances that is one pair alone, then the
-    /// next, which takes the square of the time; so hardly any two distances are equal.
+    /// tree builder merges pairs of boxes that are nearest to each other. In a row with equal distances this is a
+    /// single pair, then the next one, which takes quadratic time. So the boxes are changed until hardly any two
+    /// distances are equal.
     fn scaled(&self, range: Range<usize>) -> Vec<Scaled> {
         let all = self.around(range.clone());
         let low = DVec3::from(all.min.map(f64::from));

@@ -1,13 +1,14 @@
-//! From a binary tree to nodes of eight.
+//! Collapses a binary tree to nodes with eight children.
 
 use super::build::Builder;
 use super::node::{Node, Pair};
 use super::slabs::{Child, NO_ITEM, WIDTH};
 
 impl Builder<'_> {
-    /// Turns a binary tree into nodes of eight: the children of the largest child take its place until there are eight.
+    /// Turns a binary tree into nodes with eight children: replaces the largest child by its own children until there
+    /// are eight.
     ///
-    /// What is below one node lies side by side, for it is often looked at together.
+    /// The children of a node are stored side by side, because they are often visited together.
     pub fn collapse(&mut self, pairs: &[Pair]) -> Child {
         if pairs[0].count > 0 {
             return self.leaf(&pairs[0]);
@@ -51,7 +52,7 @@ impl Builder<'_> {
         Child::leaf(first / self.group, (full - first) / self.group)
     }
 
-    /// Nodes on the longest way from the root to a leaf.
+    /// Returns the number of nodes on the longest path from the root to a leaf.
     pub fn levels(&self, root: Child) -> usize {
         let (mut deepest, mut open) = (0, vec![(root, 0)]);
         while let Some((child, level)) = open.pop() {

@@ -6,7 +6,7 @@ use super::slabs::{Child, Slabs, WIDTH};
 use super::vectors::{Keys, Vectors};
 use crate::math::Bounds;
 
-/// Eight boxes side by side, four cache lines; absent children have boxes that no ray meets.
+/// Eight boxes side by side, in four cache lines. Absent children have boxes that no ray meets.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub struct Node {
@@ -15,7 +15,7 @@ pub struct Node {
     pub children: [Child; WIDTH],
 }
 
-/// A box in 32 bits that contains one in 64.
+/// A box in 32-bit numbers that contains a box in 64-bit numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outer {
     pub min: [f32; 3],
@@ -36,12 +36,12 @@ impl Outer {
         }
     }
 
-    /// Twice the middle along an axis, in 64 bits so that it does not overflow.
+    /// Returns twice the center along an axis, in 64 bits so that it does not overflow.
     pub fn middle(&self, axis: usize) -> f64 {
         f64::from(self.min[axis]) + f64::from(self.max[axis])
     }
 
-    /// Half the surface.
+    /// Returns half the surface area.
     pub fn half_area(&self) -> f64 {
         let [x, y, z] = std::array::from_fn(|axis| f64::from(self.max[axis]) - f64::from(self.min[axis]));
         x * y + y * z + z * x
@@ -60,14 +60,14 @@ impl Node {
         self.children[slot] = child;
     }
 
-    /// Present children.
+    /// Returns the children that are present.
     pub fn present(&self) -> impl Iterator<Item = Child> + '_ {
         (0..WIDTH).filter(|&slot| self.min[0][slot] <= self.max[0][slot]).map(|slot| self.children[slot])
     }
 
-    /// A bit for each child whose box the ray may enter before `reach`, and the keys of all children.
+    /// Returns a bit for each child whose box the ray may enter before `reach`, and the keys of all children.
     ///
-    /// Comparisons ignore the NaN of 0 * infinity, which a ray within a side's plane produces.
+    /// Comparisons ignore the NaN of 0 * infinity, which occurs for a ray within the plane of a side.
     #[inline(always)]
     pub fn enter(&self, vectors: impl Vectors, slabs: &Slabs, reach: f32) -> (u32, Keys) {
         let side = |axis: usize, max: bool| if max { &self.max[axis] } else { &self.min[axis] };
@@ -78,13 +78,13 @@ impl Node {
     }
 }
 
-/// The largest f32 that is not above x.
+/// Returns the largest f32 that is not above x.
 fn round_down(x: f64) -> f32 {
     let rounded = x as f32;
     if f64::from(rounded) > x { rounded.next_down() } else { rounded }
 }
 
-/// The smallest f32 that is not below x.
+/// Returns the smallest f32 that is not below x.
 fn round_up(x: f64) -> f32 {
     -round_down(-x)
 }
@@ -93,9 +93,9 @@ fn round_up(x: f64) -> f32 {
 #[derive(Clone, Copy)]
 pub struct Pair {
     pub outer: Outer,
-    /// First of two neighboring nodes, or of a range of `Builder::order`.
+    /// Index of the first of two neighboring nodes, or the start of a range of `Builder::order`.
     pub first: u32,
-    /// Number of items of a leaf, 0 for an inner node.
+    /// Number of items in a leaf, 0 for an inner node.
     pub count: u32,
 }
 

@@ -1,11 +1,11 @@
-//! A ray prepared for boxes, and what boxes lead to.
+//! A ray prepared for box tests, and the children that boxes stand for.
 
 use crate::math::Ray;
 
-/// Children of a node.
+/// Number of children of a node.
 pub const WIDTH: usize = 8;
 
-/// A child: an inner node by its index, or a leaf by its first group of items and the number of its groups.
+/// A child of a node: the index of an inner node, or a leaf as its first group of items and the number of its groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Child(pub u32);
@@ -13,21 +13,21 @@ pub struct Child(pub u32);
 impl Child {
     const LEAF: u32 = 1 << 31;
     const FIRST_BITS: u32 = 28;
-    /// Most groups of a leaf.
+    /// Maximum number of groups in a leaf.
     pub const MAX_GROUPS: usize = 8;
 
-    /// The inner node of this index.
+    /// Creates the inner node with this index.
     pub fn inner(index: usize) -> Self {
         Self(index as u32)
     }
 
-    /// The leaf of some groups.
+    /// Creates the leaf of some groups.
     pub fn leaf(first: usize, groups: usize) -> Self {
         assert!((1..=Self::MAX_GROUPS).contains(&groups) && first < 1 << Self::FIRST_BITS);
         Self(Self::LEAF | (groups as u32 - 1) << Self::FIRST_BITS | first as u32)
     }
 
-    /// First group and number of groups of a leaf, or the index of an inner node.
+    /// Returns the first group and the number of groups of a leaf, or as an error the index of an inner node.
     #[inline(always)]
     pub fn open(self) -> Result<(usize, usize), usize> {
         if self.0 & Self::LEAF == 0 {
@@ -38,16 +38,16 @@ impl Child {
     }
 }
 
-/// Stands for no item, where a group is not full.
+/// Stands for no item, in groups that are not full.
 pub const NO_ITEM: u32 = u32::MAX;
 
-/// A ray in 32 bits, prepared so that no rounding makes it miss a box.
+/// A ray in 32-bit numbers, prepared so that no rounding makes it miss a box.
 ///
-/// The distance to a plane b is (b - o) / d. For sides where the ray enters, o is rounded onward along the ray, and for
-/// sides where it leaves, backward: then b - o is too small there and too large here. Its rounding, that of 1 / d and
-/// that of the product are relative; three of u on each side and one of the factor are less than the 12 u by which the
-/// far distance is enlarged (Ize 2013, *Robust BVH Ray Traversal*). Where 1 / d overflows, it is the largest number for
-/// entering and infinite for leaving, which is again on the safe side.
+/// The distance to a plane b is (b - o) / d. For the sides where the ray enters, o is rounded forward along the ray.
+/// For the sides where it leaves, o is rounded backward. So b - o is too small at entry and too large at exit. The
+/// roundings of b - o, of 1 / d and of the product are relative. Three of u on each side and one of the factor are less
+/// than the 12 u by which the far distance is enlarged (Ize 2013, *Robust BVH Ray Traversal*). If 1 / d overflows, it
+/// becomes the largest number at entry and infinite at exit, which is conservative too.
 pub struct Slabs {
     pub backward: [bool; 3],
     pub entry: [f32; 3],
@@ -59,14 +59,14 @@ pub struct Slabs {
 /// 1 + 12 u.
 const WIDEN: f32 = 1.0 + 6.0 * f32::EPSILON;
 
-/// The number, or the largest there is: from a place that is not finite, the box of an absent child, at infinity, would
-/// be entered.
+/// Returns the number, limited to the finite range. With an origin that is not finite, the ray would enter the box of
+/// an absent child, which is at infinity.
 #[inline(always)]
 fn finite(number: f32) -> f32 {
     if number.abs() <= f32::MAX { number } else { f32::MAX.copysign(number) }
 }
 
-/// The largest 32-bit distance at which a box may begin that holds something at t or nearer.
+/// Returns the largest 32-bit distance at which a box may begin that contains something at t or nearer.
 #[inline(always)]
 pub fn reach(t: f64) -> f32 {
     // The conversion rounds once.
@@ -82,8 +82,8 @@ impl Slabs {
             Self { backward, entry: [0.0; 3], exit: [0.0; 3], entry_inverse: [0.0; 3], exit_inverse: [0.0; 3] };
         for axis in 0..3 {
             let near = origin[axis] as f32;
-            // The conversion is off by u at most, and so is the sum; below the normal numbers by less than the
-            // smallest.
+            // The conversion has an error of at most u, and so has the sum. Below the normal range, the error is less
+            // than the smallest normal number.
             let slack = near.abs() * (2.0 * f32::EPSILON) + f32::MIN_POSITIVE;
             let sign = direction[axis] as f32;
             let onward = slack.copysign(sign);

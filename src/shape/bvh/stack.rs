@@ -1,44 +1,45 @@
-//! What a walk has still to look at.
+//! The nodes and leaves that a walk has yet to visit.
 #![allow(unsafe_code)]
 
 use std::mem::MaybeUninit;
 
-/// Entries of the stack, which no tree needs more of.
+/// Number of entries of the stack. No tree needs more.
 pub const STACK: usize = 256;
 
-/// Room for a stack, not filled in advance: that would take longer than a walk through a small tree.
+/// Memory for a stack, not filled in advance: that would take longer than a walk through a small tree.
 ///
-/// It stands apart from the stack's height. A value in which only some bytes are known is copied whole from a constant.
+/// It is separate from the stack's height. A value of which only some bytes are initialized would be copied whole from
+/// a constant.
 pub struct Room([MaybeUninit<u64>; STACK]);
 
 impl Room {
-    /// Room in which nothing has been written.
+    /// Creates memory in which nothing has been written.
     #[inline(always)]
     pub fn new() -> Self {
         Self([MaybeUninit::uninit(); STACK])
     }
 }
 
-/// Numbers of which the last comes first.
+/// A stack of numbers: last in, first out.
 pub struct Stack<'a> {
     entries: &'a mut [MaybeUninit<u64>; STACK],
     height: usize,
 }
 
 impl<'a> Stack<'a> {
-    /// An empty stack in some room.
+    /// Creates an empty stack in the given memory.
     #[inline(always)]
     pub fn new(room: &'a mut Room) -> Self {
         Self { entries: &mut room.0, height: 0 }
     }
 
-    /// Entries that it has.
+    /// Returns the number of entries.
     #[inline(always)]
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The last one, taken off.
+    /// Removes the top entry and returns it.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<u64> {
         self.height = self.height.checked_sub(1)?;
@@ -48,14 +49,14 @@ impl<'a> Stack<'a> {
     /// Puts a number on top.
     ///
     /// # Panics
-    /// If it is full.
+    /// If the stack is full.
     #[inline(always)]
     pub fn push(&mut self, number: u64) {
         self.entries[self.height] = MaybeUninit::new(number);
         self.height += 1;
     }
 
-    /// Puts a number below all smaller ones above an entry.
+    /// Inserts a number below all smaller ones among the entries from index `above` on.
     #[inline(always)]
     pub fn push_in_order(&mut self, number: u64, above: usize) {
         self.push(number);
@@ -68,7 +69,7 @@ impl<'a> Stack<'a> {
 
     #[inline(always)]
     fn written(&self, at: usize) -> u64 {
-        // SAFETY: entries below a height that was reached have been written: `push` is all that raises it.
+        // SAFETY: entries below a height that was reached have been written, because only `push` raises the height.
         unsafe { self.entries[at].assume_init() }
     }
 }

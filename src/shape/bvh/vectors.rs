@@ -1,20 +1,21 @@
 //! Arithmetic on several numbers at once, with the widest instructions that the machine has.
 //!
-//! Unsafe code here tells the compiler that instructions are there. Each function does the
-//! same operations in the same order in both versions, none of them fused, so that they answer the same bits.
+//! Unsafe code here tells the compiler that instructions are available. Both versions of each function do the same
+//! operations in the same order, none of them fused, so that they return the same bits.
 #![allow(unsafe_code)]
 
 use super::slabs::{Child, Slabs, WIDTH};
 
-/// Triangles that are tested together.
+/// Number of triangles that are tested together.
 pub const GROUP: usize = 4;
 
-/// What a walk through a tree does in vectors.
+/// The vector operations of a walk through a tree.
 pub trait Vectors: Copy {
-    /// A bit for each of eight boxes that a ray may enter before `reach`, and the keys of all.
+    /// Returns a bit for each of eight boxes that a ray may enter before `reach`, and the keys of all of them.
     ///
-    /// `first` and `last` are the sides where it enters and leaves. A key has the bits of the distance at which the ray
-    /// enters, and below them those of the child: keys are in the order of distances, for these are not negative.
+    /// `first` and `last` are the sides where the ray enters and leaves. A key has the bits of the distance at which
+    /// the ray enters, and below them those of the child. Keys are in the order of distances, because distances are not
+    /// negative.
     fn enter(
         self,
         first: BoxSides,
@@ -24,56 +25,57 @@ pub trait Vectors: Copy {
         reach: f32,
     ) -> (u32, Keys);
 
-    /// Where a line meets four triangles with 0 < t <= `t_max`; none if its edge functions are of two signs for all.
+    /// Returns where a line meets four triangles with 0 < t <= `t_max`, or `None` if the edge functions of each
+    /// triangle have both signs.
     ///
-    /// `corners` are rows of x, y and z, in the order of the line's axes, for each of three corners.
+    /// `corners` holds rows of x, y and z, in the order of the line's axes, for each of three corners.
     fn meet<T: Number>(self, corners: [[&[T; GROUP]; 3]; 3], line: &Line, t_max: f64) -> Option<Crossings>;
 }
 
-/// A ray as the test of four triangles takes it: sheared so that it runs along its third axis.
+/// A ray in the form that the test of four triangles takes: sheared so that it runs along its third axis.
 pub struct Line {
     pub origin: [f64; 3],
     pub shear: [f64; 3],
-    /// The part of a triangle's size by which its plane must be away from the origin for rounding not to matter.
+    /// How far a triangle's plane must be from the origin for rounding not to matter, relative to the triangle's size.
     pub near: f64,
 }
 
 /// Where a line meets four triangles.
 pub struct Crossings {
-    /// A bit for each triangle that it meets.
+    /// A bit for each triangle that the line meets.
     pub met: u32,
-    /// A bit for each that needs more digits: an edge function is 0, or the line starts near the plane.
+    /// A bit for each triangle that needs more digits: an edge function is 0, or the line starts near the plane.
     pub unsure: u32,
     pub t: [f64; GROUP],
-    /// The affine coordinates are v and w over the determinant.
+    /// The affine coordinates are v and w divided by the determinant.
     pub v: [f64; GROUP],
     pub w: [f64; GROUP],
     pub determinant: [f64; GROUP],
 }
 
-/// A computation that is compiled once for each kind of instructions.
+/// A computation that is compiled once for each instruction set.
 pub trait Computation {
-    /// What it results in.
+    /// Result of the computation.
     type Output;
 
-    /// Does it; implementations are `#[inline(always)]`.
+    /// Runs the computation. Implementations are `#[inline(always)]`.
     fn run<V: Vectors>(self, vectors: V) -> Self::Output;
 }
 
 /// One side of eight boxes on each axis.
 pub type BoxSides<'a> = [&'a [f32; WIDTH]; 3];
 
-/// Distances of eight boxes and their children.
+/// Entry distances of eight boxes, each with its child.
 pub type Keys = [u64; WIDTH];
 
-/// A coordinate as it is stored.
+/// The type of a coordinate as it is stored.
 pub trait Number: Copy + Into<f64> {
-    /// Four of them, widened.
+    /// Widens four numbers to 64 bits.
     #[cfg(target_arch = "x86_64")]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d;
 }
 
-/// What every machine of the architecture has.
+/// The instructions that every machine of the architecture has.
 #[derive(Clone, Copy, Debug)]
 pub struct Plain;
 
@@ -130,7 +132,7 @@ impl Vectors for Plain {
     }
 }
 
-/// Asks for the memory of a value that is looked at soon: a walk mostly waits for memory.
+/// Prefetches a value that will be used soon: a walk mostly waits for memory.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
@@ -143,7 +145,7 @@ pub fn prefetch<T>(value: &T) {
     let _ = value;
 }
 
-/// Instructions chosen while running.
+/// The instruction set, chosen at run time.
 #[derive(Clone, Copy, Debug)]
 pub enum Instructions {
     Plain,
@@ -152,7 +154,7 @@ pub enum Instructions {
 }
 
 impl Instructions {
-    /// The best that this machine has.
+    /// Returns the best instructions that this machine has.
     pub fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(avx2) = avx2::Avx2::detect() {
@@ -161,7 +163,7 @@ impl Instructions {
         Self::Plain
     }
 
-    /// Does a computation with these instructions.
+    /// Runs a computation with these instructions.
     #[inline]
     pub fn run<C: Computation>(self, computation: C) -> C::Output {
         match self {
@@ -177,7 +179,8 @@ impl Number for f32 {
     #[inline(always)]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
         use std::arch::x86_64::{__m128, _mm256_cvtps_pd};
-        // SAFETY: an `Avx2` exists only where its instructions do; array and vector are four 32-bit numbers.
+        // SAFETY: an `Avx2` exists only where its instructions do; both the array and the vector are four 32-bit
+        // numbers.
         unsafe { _mm256_cvtps_pd(std::mem::transmute::<[Self; GROUP], __m128>(*numbers)) }
     }
 }
@@ -186,7 +189,7 @@ impl Number for f32 {
 impl Number for f64 {
     #[inline(always)]
     fn widened(_: avx2::Avx2, numbers: &[Self; GROUP]) -> std::arch::x86_64::__m256d {
-        // SAFETY: array and vector are four 64-bit numbers.
+        // SAFETY: both the array and the vector are four 64-bit numbers.
         unsafe { std::mem::transmute::<[Self; GROUP], std::arch::x86_64::__m256d>(*numbers) }
     }
 }
@@ -204,7 +207,7 @@ pub mod avx2 {
 
     use super::{BoxSides, Child, Computation, Crossings, GROUP, Keys, Line, Number, Slabs, Vectors, WIDTH};
 
-    /// A proof that the machine has AVX2: 256-bit registers.
+    /// Proof that the machine has AVX2, with 256-bit registers.
     #[derive(Clone, Copy, Debug)]
     pub struct Avx2(());
 
@@ -249,14 +252,14 @@ pub mod avx2 {
     #[inline]
     #[target_feature(enable = "avx2")]
     fn enter(first: BoxSides, last: BoxSides, children: &[Child; WIDTH], slabs: &Slabs, reach: f32) -> (u32, Keys) {
-        // SAFETY: a child is a u32, and array and vector are eight of them.
+        // SAFETY: a child is a u32, and both the array and the vector are eight of them.
         let children = unsafe { transmute::<[Child; WIDTH], __m256i>(*children) };
         let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(reach));
         for axis in 0..3 {
-            // SAFETY: array and vector are eight 32-bit numbers.
+            // SAFETY: both the array and the vector are eight 32-bit numbers.
             let [first, last] = [first, last].map(|side| unsafe { transmute::<[f32; WIDTH], __m256>(*side[axis]) });
             let enter = _mm256_sub_ps(first, _mm256_set1_ps(slabs.entry[axis]));
-            // Of a NaN and a number, both keep the second.
+            // Given a NaN and a number, both instructions return the second operand.
             near = _mm256_max_ps(_mm256_mul_ps(enter, _mm256_set1_ps(slabs.entry_inverse[axis])), near);
             let leave = _mm256_sub_ps(last, _mm256_set1_ps(slabs.exit[axis]));
             far = _mm256_min_ps(_mm256_mul_ps(leave, _mm256_set1_ps(slabs.exit_inverse[axis])), far);
@@ -265,7 +268,7 @@ pub mod avx2 {
         let near = _mm256_castps_si256(near);
         let (even, odd) = (_mm256_unpacklo_epi32(children, near), _mm256_unpackhi_epi32(children, near));
         let halves = [_mm256_permute2x128_si256::<0x20>(even, odd), _mm256_permute2x128_si256::<0x31>(even, odd)];
-        // SAFETY: keys are 64-bit numbers, of which each vector holds four.
+        // SAFETY: keys are 64-bit numbers, and each vector holds four of them.
         (entered as u32, unsafe { transmute::<[__m256i; 2], Keys>(halves) })
     }
 
@@ -306,7 +309,7 @@ pub mod avx2 {
         let ahead = _mm256_and_pd(ahead, _mm256_cmp_pd::<_CMP_LE_OQ>(t, _mm256_set1_pd(t_max)));
         let met = _mm256_andnot_pd(unsure, _mm256_and_pd(inside, ahead));
         let bits = |lanes: __m256d| _mm256_movemask_pd(lanes) as u32;
-        // SAFETY: vector and array are four 64-bit numbers.
+        // SAFETY: both the vector and the array are four 64-bit numbers.
         let numbers = |lanes: __m256d| unsafe { transmute::<__m256d, [f64; GROUP]>(lanes) };
         Some(Crossings {
             met: bits(met),

@@ -1,4 +1,4 @@
-//! The way of a ray through the tree.
+//! The walk of a ray through the tree.
 
 use super::node::Node;
 use super::slabs::{Child, Slabs, reach};
@@ -6,19 +6,19 @@ use super::stack::{Room, Stack};
 use super::vectors::{Computation, Vectors, prefetch};
 use crate::math::Ray;
 
-/// What is done in a leaf.
+/// What a walk does in a leaf.
 pub trait Visitor {
-    /// Looks at some groups of items, and returns the new `t_max`, or none to end the walk.
+    /// Visits some groups of items. Returns the new `t_max`, or `None` to end the walk.
     ///
     /// Implementations that use vectors are `#[inline(always)]`.
     fn visit(&mut self, vectors: impl Vectors, first: usize, groups: usize, t_max: f64) -> Option<f64>;
 
-    /// Asks for the memory of a group that is visited soon.
+    /// Prefetches a group that will be visited soon.
     #[inline(always)]
     fn prefetch(&self, _group: usize) {}
 }
 
-/// A walk that looks into nearer boxes first if `ORDERED`, and into any otherwise.
+/// A walk through the tree, which visits nearer boxes first if `ORDERED`, and boxes in any order otherwise.
 pub struct Walk<'a, const ORDERED: bool, T> {
     pub root: Option<Child>,
     pub nodes: &'a [Node],
@@ -35,7 +35,7 @@ impl<const ORDERED: bool, T: Visitor> Computation for Walk<'_, ORDERED, T> {
         let Some(root) = self.root else { return };
         let slabs = Slabs::new(self.ray);
         let mut limit = reach(self.t_max);
-        // Children to look at, each under the distance at which its box begins.
+        // Children to visit, each with the distance at which its box begins.
         let mut room = Room::new();
         let mut stack = Stack::new(&mut room);
         let mut current = root;

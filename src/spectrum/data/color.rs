@@ -1,4 +1,4 @@
-//! Illuminants, reflectances, and the eye of the standard observer.
+//! Illuminants, reflectances, and the color matching functions of the standard observer.
 
 use std::sync::{LazyLock, OnceLock};
 
@@ -9,7 +9,7 @@ static ROWS: LazyLock<Rows> = LazyLock::new(|| Rows::new(include_str!("colors.tx
 const ILLUMINANT: &str = "illuminant/";
 const COLORCHECKER: &str = "colorchecker/";
 
-/// A spectrum at wavelengths in even steps: an illuminant, or the reflectance of a colored surface.
+/// A spectrum at wavelengths in equal steps: an illuminant, or the reflectance of a colored surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// Its name in a scene: `D65`, or in full `colorchecker/dark skin`.
@@ -18,9 +18,9 @@ pub struct Grid {
     pub source: &'static str,
     /// The wavelength of the first value in nm.
     pub(super) start_nm: f64,
-    /// The wavelength from value to value in nm.
+    /// The step from wavelength to wavelength in nm.
     pub(super) step_nm: f64,
-    /// The values; of a light in its own unit.
+    /// The values. Those of a light are in its own unit.
     pub(super) values: Vec<f64>,
     is_light: bool,
 }
@@ -35,12 +35,13 @@ impl Grid {
         Self { name, source, start_nm: start[0], step_nm: step[0], values, is_light: light.is_some() }
     }
 
-    /// The first and the last wavelength in nm.
+    /// Returns the first and the last wavelength in nm.
     pub fn range_nm(&self) -> [f64; 2] {
         [self.start_nm, self.start_nm + self.step_nm * (self.values.len() - 1) as f64]
     }
 
-    /// The value at a wavelength, linear between the tabulated ones; beyond the ends a light is 0, a reflectance flat.
+    /// Returns the value at a wavelength, interpolated linearly. Beyond the ends, a light is 0 and a reflectance
+    /// constant.
     pub fn at(&self, nm: f64) -> f64 {
         let [first, end] = self.range_nm();
         if self.is_light && !(first..=end).contains(&nm) {
@@ -59,27 +60,27 @@ fn find(group: &str, name: &str) -> Option<Row> {
     if whole { ROWS.find(name) } else { ROWS.find(&format!("{group}{name}")) }
 }
 
-/// The illuminant of that name, whatever the case of its letters.
+/// Returns the illuminant of that name, ignoring case.
 pub fn illuminant(name: &str) -> Option<Grid> {
     find(ILLUMINANT, name).map(Grid::read)
 }
 
-/// Every illuminant, in the order of the names.
+/// Returns every illuminant, in the order of the names.
 pub fn illuminants() -> impl Iterator<Item = Grid> {
     ROWS.starting_with(ILLUMINANT).map(Grid::read)
 }
 
-/// The reflectance of that name, with or without what it is a part of, whatever the case of its letters.
+/// Returns the reflectance of that name, with or without the name of its chart, ignoring case.
 pub fn reflectance(name: &str) -> Option<Grid> {
     find(COLORCHECKER, name).map(Grid::read)
 }
 
-/// Every reflectance, in the order of the names.
+/// Returns every reflectance, in the order of the names.
 pub fn reflectances() -> impl Iterator<Item = Grid> {
     ROWS.starting_with(COLORCHECKER).map(Grid::read)
 }
 
-/// The sensitivities x, y, z of the CIE 1931 2 degree observer at 360 + i nm.
+/// Returns the sensitivities x, y, z of the CIE 1931 2 degree observer at 360 + i nm.
 pub fn color_matching() -> &'static [[f64; 3]; 471] {
     static OBSERVER: OnceLock<[[f64; 3]; 471]> = OnceLock::new();
     OBSERVER.get_or_init(|| {

@@ -7,9 +7,9 @@ use crate::math::interpolate;
 
 static ROWS: LazyLock<Rows> = LazyLock::new(|| Rows::new(include_str!("glasses.txt")));
 
-/// What is not sold as an optical glass: what the keys begin with, in the order in which a bare name is looked up.
+/// Key prefixes of materials not sold as optical glass, in the order in which a bare name is looked up.
 const COMMON: [&str; 6] = ["crystal", "gem", "liquid", "glass", "plastic", "gas"];
-/// Who makes optical glass: what the keys begin with, in the order in which a bare name is looked up.
+/// Makers of optical glass, which begin its keys, in the order in which a bare name is looked up.
 pub const GLASS_MAKERS: [&str; 6] = ["schott", "ohara", "hoya", "cdgm", "hikari", "sumita"];
 
 /// Fraunhofer's lines F, d and C in nm.
@@ -24,15 +24,15 @@ pub struct Glass {
     pub aliases: Vec<&'static str>,
     /// Who published the index.
     pub source: &'static str,
-    /// The wavelengths in nm between which the index is known.
+    /// The range of wavelengths in nm in which the index is known.
     pub range_nm: (f64, f64),
-    /// The index.
+    /// The formula of the index.
     pub formula: Formula,
     /// (wavelength in nm, k), ascending; empty if not known.
     pub extinction: Vec<[f64; 2]>,
-    /// The index at 587.56 nm that the maker states.
+    /// The index at 587.56 nm, as the maker states it.
     pub stated_nd: Option<f64>,
-    /// The Abbe number that the maker states.
+    /// The Abbe number, as the maker states it.
     pub stated_vd: Option<f64>,
 }
 
@@ -51,7 +51,7 @@ pub enum Formula {
     Cauchy(Vec<f64>),
     /// 6: n - 1 = C1 + sum of C2 / (C3 - w^-2).
     Gas(Vec<f64>),
-    /// (wavelength in nm, n), ascending; linear between, flat beyond the ends.
+    /// (wavelength in nm, n), ascending; linear in between, constant beyond the ends.
     Tabulated(Vec<[f64; 2]>),
 }
 
@@ -68,7 +68,7 @@ impl Formula {
         }
     }
 
-    /// The index at a wavelength.
+    /// Returns the index at a wavelength in nm.
     pub fn index(&self, nm: f64) -> f64 {
         let w = nm * 1e-3;
         let w2 = w * w;
@@ -112,42 +112,42 @@ impl Glass {
         }
     }
 
-    /// Its name without the maker.
+    /// Returns its name without the maker.
     pub fn name(&self) -> &'static str {
         bare(self.key)
     }
 
-    /// The index; beyond the known wavelengths, the value at their end.
+    /// Returns the index. Beyond the known wavelengths, it is the value at their end.
     pub fn index(&self, nm: f64) -> f64 {
         self.formula.index(nm.clamp(self.range_nm.0, self.range_nm.1))
     }
 
-    /// The extinction k, if it is known; linear between its samples, flat beyond the ends.
+    /// Returns the extinction k, if it is known; linear between its samples, constant beyond the ends.
     pub fn extinction(&self, nm: f64) -> Option<f64> {
         (!self.extinction.is_empty()).then(|| interpolate(&self.extinction, nm)[1])
     }
 
-    /// The index at 587.56 nm.
+    /// Returns the index at 587.56 nm.
     pub fn n_d(&self) -> f64 {
         self.index(LINES_NM[1])
     }
 
-    /// The Abbe number (n_d - 1) / (n_F - n_C), if the index is known at these lines.
+    /// Returns the Abbe number (n_d - 1) / (n_F - n_C), if the index is known at these lines.
     pub fn v_d(&self) -> Option<f64> {
         let ([f, d, c], (first, last)) = (LINES_NM.map(|nm| self.index(nm)), self.range_nm);
         (first <= LINES_NM[0] && LINES_NM[2] <= last).then_some((d - 1.0) / (f - c))
     }
 }
 
-/// The glass of that name, whatever the case of its letters.
+/// Returns the glass of that name, ignoring case.
 ///
 /// `maker/NAME` is one glass. A bare name is looked up among crystals, gems, liquids, common glasses, plastics and
-/// gases, then among their aliases, then at Schott, Ohara, Hoya, CDGM, Hikari and Sumita, and is the first found.
+/// gases, then among their aliases, then at Schott, Ohara, Hoya, CDGM, Hikari and Sumita. The first match is returned.
 pub fn glass(name: &str) -> Option<Glass> {
     rows_called(name).next().map(Glass::read)
 }
 
-/// The keys of all glasses that a name stands for, in the order in which they are looked up.
+/// Returns the keys of all glasses that a name stands for, in the order in which they are looked up.
 pub fn glass_makers(name: &str) -> Vec<&'static str> {
     rows_called(name).map(key_of).collect()
 }
@@ -164,12 +164,12 @@ fn common_rows() -> impl Iterator<Item = Row> {
     COMMON.iter().flat_map(|group| ROWS.starting_with(group))
 }
 
-/// Every glass, in the order of the keys.
+/// Returns every glass, in the order of the keys.
 pub fn glasses() -> impl Iterator<Item = Glass> {
     ROWS.all().map(Glass::read)
 }
 
-/// How much a glass bends light, and how far it spreads it.
+/// How strongly a glass refracts and disperses light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlassConstants {
     /// The full name of the glass.
@@ -180,8 +180,8 @@ pub struct GlassConstants {
     pub v_d: Option<f64>,
 }
 
-/// That of every glass, in the order of the keys. A scene may compare thousands of materials with all of them, and to
-/// read these takes 2 ms.
+/// Returns the constants of every glass, in the order of the keys. A scene may compare thousands of materials with all
+/// of them, and reading them takes 2 ms.
 pub fn glass_constants() -> &'static [GlassConstants] {
     static ALL: LazyLock<Vec<GlassConstants>> = LazyLock::new(|| {
         glasses().map(|glass| GlassConstants { key: glass.key, n_d: glass.n_d(), v_d: glass.v_d() }).collect()
@@ -189,19 +189,19 @@ pub fn glass_constants() -> &'static [GlassConstants] {
     &ALL
 }
 
-/// The keys of all glasses.
+/// Returns the keys of all glasses.
 pub fn glass_names() -> impl Iterator<Item = &'static str> {
     ROWS.all().map(key_of)
 }
 
-/// Every name that stands for a glass: bare names and aliases first, then keys.
+/// Returns every name that stands for a glass: bare names and aliases first, then keys.
 pub fn known_as() -> impl Iterator<Item = &'static str> {
     let aliases = common_rows().flat_map(|row| names(fields(row).nth(1).unwrap_or_default()));
     let makers = GLASS_MAKERS.iter().flat_map(|maker| ROWS.starting_with(maker));
     aliases.chain(common_rows().chain(makers).map(|row| bare(key_of(row)))).chain(glass_names())
 }
 
-/// A key without its maker or its chart.
+/// Returns a key without its maker or its chart.
 pub fn bare(key: &str) -> &str {
     key.split_once('/').map_or(key, |(_, name)| name)
 }

@@ -1,4 +1,4 @@
-//! Metals, alloys and semiconductors, which light does not cross.
+//! Metals, alloys and semiconductors, which are opaque.
 
 use std::sync::LazyLock;
 
@@ -27,24 +27,24 @@ impl Metal {
         Self { name: field(), aliases: names(field()).collect(), samples: samples(field()), source: field() }
     }
 
-    /// n and k at a wavelength; linear between samples, flat beyond the ends.
+    /// Returns n and k at a wavelength in nm; linear between samples, constant beyond the ends.
     pub fn nk(&self, nm: f64) -> [f64; 2] {
         let [_, n, k] = interpolate(&self.samples, nm);
         [n, k]
     }
 }
 
-/// The metal of that name or alias, whatever the case of its letters.
+/// Returns the metal of that name or alias, ignoring case.
 pub fn metal(name: &str) -> Option<Metal> {
     ROWS.find(name).or_else(|| ROWS.all().find(|row| has_alias(row, name))).map(Metal::read)
 }
 
-/// Every metal, in the order of the names.
+/// Returns every metal, in the order of the names.
 pub fn metals() -> impl Iterator<Item = Metal> {
     ROWS.all().map(Metal::read)
 }
 
-/// The names of all metals.
+/// Returns the names of all metals.
 pub fn metal_names() -> impl Iterator<Item = &'static str> {
     ROWS.all().map(key_of)
 }

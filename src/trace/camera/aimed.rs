@@ -1,25 +1,25 @@
-//! Ways on from surfaces whose bounces are aimed at bright places.
+//! Scattering from surfaces whose bounces are aimed at bright places.
 
 use crate::material::{Branch, Material};
 use crate::spectrum::Table;
 use crate::trace::bright::Aiming;
 use crate::trace::walk::{Interaction, shading};
 
-/// Whether bounces from a material may be aimed: it scatters nearly alike in all directions of one side.
+/// Returns whether bounces from a material may be aimed: it must scatter nearly alike in all directions of one side.
 pub fn may_aim(material: &Material<Table>) -> bool {
     matches!(material, Material::Diffuse(_) | Material::Plastic(_))
 }
 
-/// What share of the light a surface sends on, in the lane of which it sends most; of plastic, about.
+/// Returns the albedo of a surface, in the lane where it is highest; for plastic, it is approximate.
 pub fn albedo<const N: usize>(at: &Interaction<N>) -> f64 {
     let Interaction { material, context, flat, .. } = at;
     let up = shading::evaluate(material, context, *flat, *flat);
     up.map_or(0.0, |(bsdf_cos, pdf)| bsdf_cos.0.iter().fold(0.0, |most, &lane| f64::from(lane).max(most)) / pdf)
 }
 
-/// The ways on from a surface whose bounces are aimed.
+/// Samples the branches of a surface whose bounces are aimed.
 ///
-/// Roulette ends aimed paths as often as others: what their density takes from the weight is no importance.
+/// Roulette ends aimed paths as often as others: what their density takes from the weight does not measure importance.
 pub fn scatter_aimed<const N: usize>(aiming: &Aiming, at: &Interaction<N>, u: [f64; 2], branches: &mut Vec<Branch<N>>) {
     let Interaction { material, context, flat, .. } = at;
     let divided = aiming.divided(u[0]);

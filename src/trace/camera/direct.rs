@@ -1,4 +1,4 @@
-//! Next-event estimation: light that comes straight from the lights.
+//! Next-event estimation: light that comes directly from the lights.
 
 use std::cell::Cell;
 
@@ -24,56 +24,56 @@ pub struct DirectLighting<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    /// The dye that the light excites, if the path follows that.
+    /// The dye that the light excites, if the path follows what excites one.
     pub excitation: Option<&'a Excitation<N, P>>,
-    /// Whether the path goes on from here and may hit a light by itself.
+    /// Whether the path continues from here and may hit a light by itself.
     pub goes_on: bool,
-    /// Whether every light is sampled, or one.
+    /// Whether every light is sampled, or only one.
     pub all_lights: bool,
-    /// The object that occluded a light last.
+    /// The object that last occluded a light.
     pub last_occluder: &'a Cell<Option<u32>>,
     /// Four random numbers of the vertex; the first light uses the first two, the choice of one light the last.
     pub u: [f64; 4],
-    /// How bounces are aimed from here, if they are.
+    /// How bounces from here are aimed, if they are.
     pub aiming: Option<&'a Aiming<'a>>,
-    /// Light vertices at which light was looked for before: what they carry does not count any more.
+    /// Light vertices at which light was already estimated: what they carry no longer counts.
     pub found_at: Option<&'a LightVertices<N>>,
 }
 
 /// A side of the surface, from which lights are sampled.
 #[derive(Clone, Copy)]
 struct Side<'s, const N: usize> {
-    /// The surface's own unit normal on that side.
+    /// The geometric unit normal on that side.
     normal: DVec3,
-    /// How likely that side is looked at, where light may arrive at both: then light from the other side is left to it.
+    /// Probability that this side is sampled, if light may arrive at both. Each side then takes only its own light.
     chance: Option<f64>,
     /// The medium the light arrives through.
     inside: Option<MaterialId>,
     /// Whether lanes have parted on the way from the light to the camera.
     parted: bool,
-    /// The surface without the lobe that is left to photons, if one is, for lights that send them.
+    /// The surface without the lobe that is left to photons, if there is one, for lights that send photons.
     beside_photons: Option<&'s Interaction<'s, N>>,
 }
 
-/// A ray to a light, and what is left to know of its light once the ray is known to be free.
+/// A ray to a light, and everything else that its light depends on if the ray is not occluded.
 struct ShadowRay<const N: usize> {
     light: LightId,
-    /// The ray, how far it goes, and the object that does not occlude it.
+    /// The ray, its length, and the object that does not occlude it.
     sample: LightSample,
-    /// How likely the light was chosen and this side looked at.
+    /// Probability that the light was chosen and this side sampled.
     probability: f64,
-    /// The material's answer times the cosine, and how densely it scatters into the ray's direction.
+    /// The BSDF times the cosine, and the density with which the material samples the ray's direction.
     bsdf_cos: Lanes<N>,
     bsdf_pdf: f64,
-    /// The factor on both, where bounces are not guided.
+    /// The factor on the light's emission and the BSDF, if bounces are not aimed.
     factor: f64,
 }
 
 impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
-    /// Hands the light of sampled lights to the sensor, and answers how likely it was to look at a side.
+    /// Samples lights, passes their light to the sensor, and returns the probability with which a side was sampled.
     ///
-    /// Where light also comes from beyond the surface, both sides are looked at or, where only one light is sampled,
-    /// one of them chosen by chance.
+    /// If light also comes from beyond the surface, both sides are sampled or, if only one light is sampled, one side
+    /// that is chosen at random.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) -> f64 {
         let (at, parted) = (self.at, self.path.parted);
         let is_left = self.path.leaves_narrow_to_photons(self.world, at);
@@ -124,7 +124,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         }
     }
 
-    /// A ray to a light that was chosen with a probability; none where the sensor gets nothing of it.
+    /// Returns a ray to a light that was chosen with a probability; `None` if the sensor receives nothing from it.
     fn shadow_ray(&self, side: &Side<N>, drawn: SampledLight, u: [f64; 2]) -> Option<ShadowRay<N>> {
         let normal = side.normal;
         let sample = self.world.scene.lights[drawn.light].sample_li_in_part(self.at.point, normal, u)?;
@@ -137,7 +137,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let flat = if normal.dot(context.wo) < 0.0 { -normal } else { normal };
         let (bsdf_cos, mut bsdf_pdf) = shading::evaluate(at.material, context, flat, wi)?;
         if !std::ptr::eq(at, self.at) {
-            // Where photons bring what the path hits, it finds no light by itself.
+            // If photons carry the light that the path hits, the path finds no light by itself.
             bsdf_pdf = 0.0;
         }
         let (light, probability) = (drawn.light, drawn.probability * side.chance.unwrap_or(1.0));
@@ -145,12 +145,12 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         factor.is_finite().then_some(ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor })
     }
 
-    /// The surface, as a light may light it along a ray.
+    /// Returns the surface that a light illuminates along a ray: without the lobe that is left to photons, if any.
     fn lit_by<'s>(&'s self, side: &Side<'s, N>, light: LightId, ray: &Ray) -> &'s Interaction<'s, N> {
         side.beside_photons.filter(|_| self.world.is_found_by_photons(light, ray)).unwrap_or(self.at)
     }
 
-    /// Hands what comes by a ray to the sensor, unless something occludes the light.
+    /// Passes the light along a ray to the sensor, unless something occludes the light.
     fn trace(&self, side: &Side<N>, shadow_ray: &ShadowRay<N>, sensor: &mut Sensor<N>) {
         let world = self.world;
         let ShadowRay { light, sample, probability, bsdf_cos, bsdf_pdf, factor } = shadow_ray;
@@ -169,7 +169,7 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         let Some((mut arriving, on_its_way)) = arriving else { return };
         let lit = on_its_way.lit_by(&world.scene.lights[*light], wi, &mut arriving);
         let on_its_way = lit.as_ref().unwrap_or(&on_its_way);
-        // The density of bounces that are guided takes its time.
+        // The density of aimed bounces takes time, so it is computed only for rays that are not occluded.
         let factor = match self.aiming.filter(|_| self.goes_on && sample.pdf.is_some()) {
             Some(aiming) => self.factor(sample, *probability, aiming.pdf(wi, *bsdf_pdf)),
             None => *factor,
@@ -185,8 +185,8 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
         sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, on_its_way);
     }
 
-    /// The factor on a light's emission and the material's answer: over the density of both ways to the light's
-    /// direction together, where the path's own next direction may hit it.
+    /// Returns the factor on a light's emission and the BSDF. If the path's own next direction may hit the light, it is
+    /// weighted by multiple importance sampling of both techniques.
     fn factor(&self, sample: &LightSample, probability: f64, bounce_pdf: f64) -> f64 {
         let Some(pdf) = sample.pdf else { return sample.factor / probability };
         let pdf = pdf * probability;
@@ -195,14 +195,14 @@ impl<const N: usize, P: Polarization<N>> DirectLighting<'_, N, P> {
     }
 }
 
-/// A random number with more digits: choosing among many lights uses up those of the sequences, 23 bits.
+/// Adds digits to a random number of the sequences: choosing among many lights uses up its 23 bits.
 fn finer(u: f64, more: f64) -> f64 {
     const STEPS: f64 = (1 << 23) as f64;
     ((u * STEPS).floor() + more) / STEPS
 }
 
-/// The weight of a light that a path hit, beside next-event estimation at the path's last surface. `intersection` is
-/// where the ray hits the light, if that is a surface.
+/// Returns the weight of a light that a path hit, against next-event estimation at the path's last surface.
+/// `intersection` is where the ray hits the light, if that is a surface.
 pub fn weight_of_hit(
     world: &World,
     light: LightId,
@@ -221,9 +221,10 @@ pub fn weight_of_hit(
     power_heuristic(scatter.pdf, pdf * (probability * scatter.chance))
 }
 
-/// Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, power heuristic, beta = 2.
+/// Returns the power heuristic with beta = 2 (Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte
+/// Carlo Rendering*).
 ///
-/// A direction drawn with density 0, exactly along the surface, has weight 0.
+/// A direction sampled with density 0, exactly along the surface, has weight 0.
 fn power_heuristic(this: f64, other: f64) -> f64 {
     if this == 0.0 {
         return 0.0;
@@ -237,7 +238,7 @@ mod tests {
     use super::*;
     use crate::math::BranchKey;
 
-    /// Numbers of the sequences have 23 bits: what is added to one fills the whole step to the next.
+    /// Numbers of the sequences have 23 bits: the added digits fill the whole step to the next number.
     #[test]
     fn finer_numbers_leave_no_gaps() {
         let mut upper = 0;

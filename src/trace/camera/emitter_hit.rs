@@ -1,4 +1,4 @@
-//! Light that a path hits by itself: of the sky, or of a surface that shines.
+//! Light that a path hits by itself: of the sky, or of an emissive surface.
 
 use super::direct::weight_of_hit;
 use crate::light::{Light, LightId};
@@ -10,14 +10,14 @@ use crate::trace::walk::{Path, Polarization, SurfaceHit};
 pub struct EmitterHit<const N: usize, P> {
     pub light: LightId,
     pub lanes: Lanes<N>,
-    /// The unit normal of the surface that shines, on its front; none of a sky.
+    /// The unit normal on the front of the emissive surface; `None` for a sky.
     pub normal: Option<DVec3>,
-    /// How the path is polarized there.
+    /// The polarization of the path there.
     pub polarization: P,
 }
 
 impl<const N: usize, P: Polarization<N>> EmitterHit<N, P> {
-    /// Of the sky or a sun at the end of a path; none beside a sun.
+    /// Returns the sky or a sun at the end of a path; `None` if the path misses the sun.
     pub fn of_sky(world: &World, draw: &Draw<N>, path: &Path<N, P>, light: LightId) -> Option<Self> {
         let sky = &world.scene.lights[light];
         let factor = match sky {
@@ -31,7 +31,7 @@ impl<const N: usize, P: Polarization<N>> EmitterHit<N, P> {
         Some(Self { light, lanes, normal: None, polarization: polarization.unwrap_or(path.polarization) })
     }
 
-    /// Of a surface that a path has hit; none of a side that is dark.
+    /// Returns the light of a surface that a path has hit; `None` if this side does not emit.
     pub fn of_surface(world: &World, draw: &Draw<N>, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Option<Self> {
         let SurfaceHit { hit, point } = surface_hit;
         let object = &world.scene.objects[hit.object as usize];

@@ -1,4 +1,4 @@
-//! What one camera sample leaves in the layers.
+//! What one camera sample contributes to the layers.
 
 use super::numbers::ALBEDO;
 use super::surface::Surface;
@@ -18,18 +18,18 @@ use crate::trace::walk::{Among, Audit, Interaction, Path, Polarization, shading}
 pub struct LayerSample<'a, const N: usize> {
     world: &'a World,
     row: Vec<f64>,
-    /// What it leaves in the bands of a spectral image, if one is asked for.
+    /// What the sample contributes to the bands of a spectral image, if one is requested.
     spectrum: Option<SpectrumSample<'a, N>>,
-    /// The largest share of the sample that a surface had so far: places are those of that surface.
+    /// The largest share of the sample that a surface has had so far. Position and UV are those of that surface.
     share: f64,
-    /// How likely the camera ray hit what it has hit, of surfaces with holes and what is behind them.
+    /// The share of the weight that belongs to what the camera ray has hit, of surfaces with holes and what is behind.
     chance: f64,
     /// The object that the camera ray hit.
     object: Option<u32>,
     branches: Vec<Branch<N>>,
 }
 
-/// What a camera sample has left.
+/// The contribution of a camera sample to the layers.
 pub struct SampleRow<'a> {
     pub row: &'a [f64],
     /// The object that the camera ray hit, if any.
@@ -37,7 +37,7 @@ pub struct SampleRow<'a> {
 }
 
 impl<'a, const N: usize> LayerSample<'a, N> {
-    /// None where no layers are asked for.
+    /// Returns `None` if no layers are requested.
     pub fn of(world: &'a World) -> Option<Self> {
         let Layers { numbers, .. } = world.layers;
         let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
@@ -57,20 +57,20 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         SampleRow { row: &self.row, object: self.object }
     }
 
-    /// Keeps what an audit of the sample has left open.
+    /// Adds what an audit of the sample has left open.
     pub fn keep_audit(&mut self, audit: &Audit<N>, draw: &Draw<N>) {
         if let Some(white) = &self.world.layers.white {
             self.world.layers.add_to(Layer::Residual, &mut self.row, audit.left_open(white, draw));
         }
     }
 
-    /// Remembers the object that the camera ray hit, or none if it went through a hole of one, and how likely that was.
+    /// Stores the object that the camera ray hit, `None` if it went through a hole of one, and its share of the weight.
     pub fn choose(&mut self, met: Option<u32>, chance: f64) {
         self.object = met;
         self.chance *= chance;
     }
 
-    /// Forgets what the sample has left but the light of a shadow catcher, with all objects and with the plate's alone.
+    /// Replaces the row by the light of a shadow catcher, with all objects and with only those of the plate.
     pub fn catch(&mut self, with_and_without: [[f64; 3]; 2]) {
         self.begin();
         if with_and_without.as_flattened().iter().all(|x| x.is_finite()) {
@@ -78,7 +78,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Receives light that came to the sensor, and the lanes by which it arrived.
+    /// Receives light that has reached the sensor, and the lanes by which it arrived.
     pub fn receive(&mut self, contribution: &Contribution, received: &ReceivedLight<N>, stokes: Option<[Lanes<N>; 3]>) {
         self.world.layers.add(&mut self.row, contribution);
         if let Some(stokes) = &stokes {
@@ -90,7 +90,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Receives light of photons that were gathered.
+    /// Receives the light of gathered photons.
     pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
         let Some(parts) = &gathered.parts else { return self.world.layers.add(&mut self.row, &gathered.all) };
         for PhotonShare { contribution, stokes, spectrum, factor } in parts {
@@ -116,19 +116,19 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Keeps what the sample at hand, which is added or subtracted, leaves in the bands of a spectral image.
+    /// Keeps what the current sample contributes to the bands of a spectral image, to be added or subtracted.
     pub fn keep(&mut self, is_subtracted: bool) {
         self.spectrum.iter_mut().for_each(|spectrum| spectrum.keep(is_subtracted));
     }
 
-    /// Adds all that was kept of spectra to a pixel's rows, that of samples that are subtracted behind the other.
+    /// Adds all spectra that were kept to a pixel's rows. The second row is for samples that are subtracted.
     pub fn hand_over(&mut self, rows: [&mut [f64]; 2]) {
         if let Some(spectrum) = &mut self.spectrum {
             spectrum.hand_over(rows);
         }
     }
 
-    /// Remembers a surface, if it is the first one.
+    /// Stores a surface, if it is the first one.
     pub fn meet<P: Polarization<N>>(
         &mut self,
         path: &Path<N, P>,
@@ -140,7 +140,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         if path.among == Among::Plate {
             return;
         }
-        // A filter before the camera is no part of what a surface is.
+        // A filter in front of the camera is not a property of a surface.
         let unfiltered = 1.0 / self.world.scene.camera.transmittance();
         let share = if layers.see_surfaces() { surface.share(path, at, layers.first, unfiltered) } else { 0.0 };
         if share <= 0.0 {
@@ -149,9 +149,9 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         let normal = shading::plain_normal(at.point, at.context.wo);
         layers.add_to(Layer::Normal, &mut self.row, (share * normal).to_array());
         layers.add_to(Layer::GeometricNormal, &mut self.row, (share * at.flat).to_array());
-        // What passes through a pane is of it as what glass refracts is, unless what is behind counts by itself.
+        // What passes through a pane belongs to it like what glass refracts, unless what is behind counts by itself.
         let panes = surface.through.filter(|_| layers.first == FirstSurface::Met).map(|through| through.straight.panes);
-        // Of surfaces with holes and what is behind them, one has been hit by chance: that is in its weight already.
+        // Of surfaces with holes and what is behind them, one was hit at random. Its weight already includes that.
         let chance = if layers.first == FirstSurface::Met { self.chance } else { 1.0 };
         let albedo = self.albedo(path, at, panes, sampler).map(|x| unfiltered * x / chance);
         layers.add_to(Layer::Albedo, &mut self.row, albedo);
@@ -170,8 +170,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// What a white light all around would show of the surface, if it is asked for: an estimate by the directions of
-    /// one draw, exact where shares do not depend on them.
+    /// Returns what a white light all around would show of the surface, if that is requested. This is an estimate by
+    /// the directions of one sample, and exact if shares do not depend on them.
     fn albedo<P: Polarization<N>>(
         &mut self,
         path: &Path<N, P>,
@@ -185,7 +185,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         let (context, draw) = (&at.context, at.context.draw);
         self.branches.clear();
         shading::scatter(at.material, context, at.flat, [u, v], &mut self.branches);
-        // Radiance changes by each lane's own index where light crosses, `eta_scale` by that of the ray.
+        // Where light crosses, radiance changes by each lane's own index, and `eta_scale` by that of the ray.
         let crossing = context.forward().map(|twice| Lanes::from_fn(|i| twice[i].sqrt()));
         let through = panes.map(|panes| white.times(draw, path.throughput.of(panes), path.parted));
         let mut albedo = through.map_or([0.0; 3], |rgb| rgb.map(|x| x / path.eta_scale));

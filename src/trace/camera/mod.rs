@@ -1,4 +1,4 @@
-//! Paths from the camera: direct light, gathered photons and light vertices, handed to the sensor.
+//! Paths from the camera. They pass direct light, gathered photons and light vertices to the sensor.
 
 mod aimed;
 mod direct;

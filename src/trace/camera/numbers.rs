@@ -1,33 +1,33 @@
-//! The random numbers of a camera sample, and which of them are spread evenly together.
+//! The random numbers of a camera sample, and which of them are jointly well distributed.
 //!
-//! What edges and bumps hide of the light differs from place to place in a pixel. So the directions to lights and of
-//! bounces are spread evenly, at the first surface, over each part of the pixel and not over the pixel alone. Later
-//! surfaces have points of their own.
+//! The light that edges and bumps hide differs from place to place in a pixel. At the first surface, the directions to
+//! lights and of bounces are therefore well distributed over each part of the pixel, and not only over the whole pixel.
+//! Later surfaces have points of their own.
 
 use crate::math::{BranchKey, Sampler};
 use crate::trace::walk::Path;
 
-/// Use of the camera's numbers, which have the first vertex's key: two for the place in the pixel and one for the
+/// Use of the camera's numbers, which have the key of the first vertex: two for the place in the pixel and one for the
 /// wavelengths, and two for the place on the lens.
 pub const PLACE: u32 = 0;
 pub const LENS: u32 = 3;
-/// Use of the numbers at a vertex: directions. The walk has 2, which branches are followed, and 4, the first hit.
+/// Use of the numbers for directions at a vertex. The walk uses 2 to choose branches, and 4 at the first hit.
 const SCATTER: u32 = 1;
-/// Which vertices of light paths are looked at.
+/// Use of the numbers that choose vertices of light paths.
 pub const VERTEX: u32 = 5;
-/// Whether a path ends where its light was looked for there.
+/// Use of the number that decides whether a path ends where its light was estimated at light vertices.
 pub const COMPLEMENT: u32 = 6;
-/// The directions by which albedo is found.
+/// Use of the numbers for the directions by which the albedo is estimated.
 pub const ALBEDO: u32 = 7;
-/// More digits of what chooses a light; these are plain numbers, and those of the lens are not.
+/// Use of the numbers that add digits to the choice of a light. They are plain numbers, unlike those of the lens.
 pub const MORE_DIGITS: u32 = 3;
-/// Directions to further lights, two to each use from this one on.
+/// Use of the numbers for directions to further lights, from this one on: two lights for each use.
 pub const FURTHER_LIGHTS: u32 = 16;
-/// Surfaces of a path whose directions are drawn from a sequence spread over the pixel's samples. Behind them the
-/// samples see so many different places that plain random numbers, which cost less, are taken.
+/// Surfaces of a path whose directions are drawn from a sequence that is well distributed over the pixel's samples.
+/// Behind them the samples see so many different places that plain random numbers, which cost less, are used.
 const SPREAD: u32 = 4;
 
-/// At a surface that scatters widely: two numbers for the direction to a light, two for that of the bounce.
+/// Returns the numbers for a surface that scatters widely: two for the direction to a light, two for the bounce.
 pub fn scatter<const N: usize, P>(sampler: &Sampler, path: &Path<N, P>) -> [f64; 4] {
     if path.key == BranchKey::CAMERA {
         sampler.pairs_beside(PLACE, path.key, SCATTER)

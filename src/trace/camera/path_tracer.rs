@@ -27,21 +27,21 @@ use crate::trace::walk::{
 };
 use crate::trace::{Method, Polarizing, Transport, World};
 
-/// Follows the rays of camera samples back to the light, and samples the lights on the way.
+/// Traces the rays of camera samples back to the light, and samples the lights on the way.
 pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub walker: Walker<'a, N, P>,
     sensor: Sensor<'a, N>,
-    /// Photons that are gathered, if any are.
+    /// The photons to gather, if any.
     photons: Option<&'a PhotonMap<N, P>>,
-    /// Vertices of light paths, if light is looked for there.
+    /// Vertices of light paths, if light is estimated there.
     pub light_vertices: Option<&'a LightVertices<N>>,
-    /// What the lanes of every sample stand for, where that is the same.
+    /// What the lanes stand for, if that is the same for every sample.
     draw: Option<Draw<N>>,
-    /// The dyes that the paths of the sample at hand have seen.
+    /// The dyes that the paths of the current sample have seen.
     excitations: Vec<Rc<Excitation<N, P>>>,
 }
 
-/// Of the paths found at light vertices, those that go on where bounces are limited, to tell what limits leave out.
+/// Share of the paths found at light vertices that continue if bounces are limited, to measure what limits leave out.
 const ACCOUNTED: f64 = 1.0 / 16.0;
 
 impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
@@ -56,13 +56,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         Self { photons, ..self }
     }
 
-    /// With somebody who is told what paths find.
+    /// Adds an observer, which is called with what paths find.
     pub fn with_observer(mut self, observer: &'a dyn Fn(SensorEvent)) -> Self {
         self.sensor.observer = Some(observer);
         self
     }
 
-    /// With the layers that the world asks for.
+    /// Adds the layers that the world requests.
     pub fn with_layers(mut self) -> Self {
         let world = self.walker.world;
         self.sensor.layers = LayerSample::of(world);
@@ -70,12 +70,12 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self
     }
 
-    /// What the last camera sample left in the layers, if any are asked for.
+    /// Returns what the last camera sample left in the layers, if any are requested.
     pub fn layers(&mut self) -> Option<&mut LayerSample<'a, N>> {
         self.sensor.layers.as_mut()
     }
 
-    /// One camera sample.
+    /// Takes one camera sample.
     pub fn sample(&mut self, sampler: &Sampler, [x, y]: [i32; 2]) -> Sample {
         let world = self.walker.world;
         let camera = &world.scene.camera;
@@ -113,19 +113,19 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
     }
 
-    /// By how much photons that were gathered blur the last camera sample.
+    /// Returns how much gathered photons blur the last camera sample.
     pub fn blur(&mut self) -> [f64; 3] {
         std::mem::take(&mut self.sensor.blur)
     }
 
-    /// Whether the camera ray has hit a shadow catcher.
+    /// Returns whether the camera ray has hit a shadow catcher.
     fn sees_shadow_catcher(&self) -> bool {
         let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
         object.is_some_and(|object| self.walker.world.visibility(object) == Visibility::ShadowCatcher)
     }
 
-    /// Holds the light of a path that hit a shadow catcher against that of the same path among the objects of the plate
-    /// alone. Neither is seen in the image, which gets nothing, unless one is not finite.
+    /// Compares the light of a path that hit a shadow catcher with that of the same path among only the objects of the
+    /// plate. The image receives neither: it gets 0, or NaN if one is not finite.
     #[cold]
     fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> [f64; 3] {
         let with = std::mem::take(&mut self.sensor.rgb);
@@ -140,7 +140,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         std::array::from_fn(|i| if (with[i] + without[i]).is_finite() { 0.0 } else { f64::NAN })
     }
 
-    /// Hands all light along the path of a camera ray to the sensor, and answers what the ray hit first.
+    /// Passes all light along the path of a camera ray to the sensor, and returns what the ray hit first.
     fn trace(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
@@ -156,7 +156,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         first
     }
 
-    /// Follows a path to the next surface. `first` becomes what the camera ray hits first.
+    /// Follows a path to the next surface. Sets `first` to what the camera ray hits first.
     #[inline(always)]
     fn advance(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, first: &mut Option<SurfacePoint>) {
         let world = self.walker.world;
@@ -182,13 +182,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             }
         };
         let mut through = self.walker.straight(path, draw, &surface_hit);
-        // Beyond a pane it is seen as through glass.
+        // Beyond a pane, a holdout is seen as through glass.
         let is_held_out = world.has_mattes
             && path.kind.is_from_camera()
             && first.is_none()
             && world.visibility(surface_hit.hit.object) == Visibility::Holdout;
         if is_held_out {
-            // What lies behind a pane is cut out with it, and what lies behind a hole is not.
+            // What lies behind a pane is cut out with it, but not what lies behind a hole.
             through.iter_mut().for_each(|through| through.straight = through.straight.through_holes());
             through = through.filter(|through| !through.straight.holes.is_zero());
         }
@@ -219,7 +219,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// What the camera ray hits: a surface, which becomes the first, or what is behind its holes.
+    /// Decides what the camera ray hits: a surface, which becomes `first`, or what is behind its holes.
     fn first_hit(
         &mut self,
         path: &Path<N, P>,
@@ -237,14 +237,14 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if is_hit { FirstHit::Here } else { FirstHit::Beyond }
     }
 
-    /// Lets a path from the camera go on from a surface or through its holes, and not both, by how likely each is: a
-    /// holdout hides all that a sample shows, and a shadow catcher takes all of it for its own. Answers by what the
-    /// throughput of a path was divided that goes on from the surface.
+    /// Lets a path from the camera continue either from a surface or through its holes, with the probability of each. A
+    /// holdout hides all that a sample shows, and a shadow catcher takes all of it. Returns the factor by which the
+    /// throughput of a path was divided that continues from the surface.
     #[cold]
     fn choose(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, through: &mut Through<N, P>) -> f64 {
         let Method { transport, polarization, .. } = &self.walker.world.method;
         let is_by_chance = matches!(transport, Transport::Random { .. });
-        // Beyond both in part light is polarized by their mean.
+        // Beyond holes and panes together, light has the mean polarization of both.
         let is_mean = |straight: &Straight<N>| *polarization == Polarizing::Traced && !straight.panes.is_zero();
         let Some(whole) = through.filter(|through| is_by_chance && !is_mean(&through.straight)) else { return 1.0 };
         let straight::Cutout { is_hit, chance, .. } =
@@ -262,7 +262,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if is_hit { chance } else { 1.0 }
     }
 
-    /// Ends a path that has hit as many surfaces as it may, but for what passes through.
+    /// Ends a path that has hit as many surfaces as allowed, except for what passes through.
     fn cut(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
         let &Surface { surface_hit, boundary, through, .. } = surface;
         if self.sensor.layers.is_some() {
@@ -277,7 +277,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.walker.pass_in_part(path, &surface_hit.point, through);
     }
 
-    /// Hands the light of the sky, at the end of a path that hits nothing, to the sensor.
+    /// Passes the light of the sky to the sensor, at the end of a path that hits nothing.
     fn background(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         let world = self.walker.world;
         self.walker.audit.iter_mut().for_each(|audit| audit.end(path, None, draw));
@@ -289,7 +289,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// Hands light that a path has hit to the sensor, unless it is found otherwise.
+    /// Passes light that a path has hit to the sensor, unless that light is found otherwise.
     fn receive(&mut self, path: &Path<N, P>, draw: &Draw<N>, met: Option<EmitterHit<N, P>>) {
         let Some(EmitterHit { light, lanes, normal, polarization }) = met else { return };
         if self.is_found_otherwise(path, light) {
@@ -304,7 +304,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.sensor.receive(Contribution { light, found, rgb, moved, first, bounces, dispersed }, &met, &polarization);
     }
 
-    /// Samples the lights where a surface scatters widely, and lets the path go on: its ways on become pending.
+    /// Samples the lights where a surface scatters widely, and lets the path continue: its branches become pending.
     fn scatter(&mut self, path: &mut Path<N, P>, draw: &Draw<N>, sampler: &Sampler, surface: &Surface<N, P>) {
         let &Surface { surface_hit, boundary, through, first, .. } = surface;
         let world = self.walker.world;
@@ -329,7 +329,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// Shows a surface to the layers, if any are asked for.
+    /// Shows a surface to the layers, if any are requested.
     #[inline]
     fn show(&mut self, path: &Path<N, P>, at: &Interaction<N>, surface: &Surface<N, P>, sampler: &Sampler) {
         if let Some(layers) = &mut self.sensor.layers {
@@ -337,13 +337,13 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// The dye that a path's light excites, if the path has seen one.
+    /// Returns the dye that a path's light excites, if the path has seen one.
     #[inline]
     fn excitation(&self, path: &Path<N, P>) -> Option<Rc<Excitation<N, P>>> {
         path.excitation.map(|number| self.excitations[number as usize].clone())
     }
 
-    /// Follows what excites the dyes of a surface; returns the factor on what it scatters by itself, 1 if awaited.
+    /// Follows what excites the dyes of a surface. Returns the factor on its own scattering, 1 if awaited.
     #[inline]
     fn excite(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler, is_awaited: bool) -> f64 {
         let world = self.walker.world;
@@ -363,7 +363,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         ways.scattered
     }
 
-    /// Samples the lights where a surface scatters widely, gathers photons there if it shall, and lets the path go on.
+    /// Samples the lights where a surface scatters widely, gathers photons there if `gathers`, and continues the path.
     fn scatter_at(
         &mut self,
         path: &Path<N, P>,
@@ -410,7 +410,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         self.walker.follow(&mut departure, sampler);
     }
 
-    /// Hands the light of a light vertex to the sensor, where the path hits a diffuse surface.
+    /// Passes the light of light vertices to the sensor, if the path hits a diffuse surface. Returns whether it did.
     fn resample(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) -> bool {
         let is_asked = path.among == Among::All && !path.resampled;
         let Some(vertices) = self.light_vertices.filter(|_| is_asked) else { return false };
@@ -424,8 +424,9 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         true
     }
 
-    /// Whether a path ends where its light was looked for at light vertices: mostly, and the less the nearer. For light
-    /// that they do not carry it goes on, and for none at all to tell how much a limit of bounces leaves out.
+    /// Returns whether a path ends because its light was estimated at light vertices: the closer it is, the less
+    /// likely. Even then it may continue for light that they do not carry, or unlit, to measure what bounce limits
+    /// leave out.
     fn ends_at_light_vertices(
         &mut self,
         path: &mut Path<N, P>,
@@ -445,7 +446,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
         let rest = vertices.rest;
         let goes_on = if self.walker.audit.is_some() { 1.0 } else { rest.unwrap_or(ACCOUNTED) };
-        // A pilot that looks on wants to know of light alone.
+        // A pilot with an observer only needs to know about light.
         let is_asked = rest.is_some() || (self.walker.world.method.has_limits() && self.sensor.observer.is_none());
         if is_asked && u[1] < goes_on {
             (path.resampled, path.unlit) = (true, rest.is_none());
@@ -456,11 +457,11 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         true
     }
 
-    /// Hands what photons bring to a place that the path has reached by way of others to the sensor.
+    /// Passes the light of photons to the sensor, at a place that the path has reached by way of other surfaces.
     fn gather_photons(&mut self, path: &Path<N, P>, at: &Interaction<N>, sampler: &Sampler) {
         if let Some(photons) = self.photons.filter(|_| path.among == Among::All) {
             let is_told = self.sensor.layers.is_some();
-            // At the first surface each photon says for itself by which lobe it comes, and whether it does so straight.
+            // At the first surface, each photon has its own lobe and number of bounces.
             let apart = is_told && (path.bounces == 0 || self.walker.world.layers.tell_photons_apart());
             let excitation = self.excitation(path);
             let excitation = excitation.as_deref();
@@ -478,7 +479,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         }
     }
 
-    /// Whether the light of the path's way to a light is found by photons, or was looked for at light vertices.
+    /// Returns whether the light along a path's ray to a light is found by photons, or was estimated at light vertices.
     fn is_found_otherwise(&self, path: &Path<N, P>, light: LightId) -> bool {
         let world = self.walker.world;
         let is_left = path.left_to_photons && path.among == Among::All;
@@ -486,7 +487,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             || self.found_at(path).is_some_and(|at| at.carry(world, light, &path.ray))
     }
 
-    /// The light vertices whose light was looked for before, and does not count on the path any more.
+    /// Returns the light vertices whose light was already estimated, and no longer counts on the path.
     fn found_at(&self, path: &Path<N, P>) -> Option<&'a LightVertices<N>> {
         self.light_vertices.filter(|_| path.resampled)
     }

@@ -1,4 +1,4 @@
-//! Light that comes to a camera path from a vertex of a light path.
+//! Light that reaches a camera path from a vertex of a light path.
 
 use std::cell::Cell;
 
@@ -19,12 +19,12 @@ pub struct Resampling<'a, const N: usize, P> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
     pub vertices: &'a LightVertices<N>,
-    /// The object that occluded a light last.
+    /// The object that last occluded a light.
     pub last_occluder: &'a Cell<Option<u32>>,
 }
 
 impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
-    /// Hands the light of two vertices to the sensor, where they are seen.
+    /// Passes the light of two vertices to the sensor, if they are visible.
     pub fn gather(&self, sampler: &Sampler, sensor: &mut Sensor<N>) {
         let [a, b, c, d] = sampler.four(self.path.key, VERTEX);
         // Both are chosen first, so that the memory of one is read while the other is chosen.
@@ -37,7 +37,7 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
         }
     }
 
-    /// Hands the light of a vertex to the sensor; answers nothing if it is not seen.
+    /// Passes the light of a vertex to the sensor. Returns `None` if the vertex is not visible or contributes nothing.
     fn connect(&self, vertex: &LightVertex<N>, factor: f64, sensor: &mut Sensor<N>) -> Option<()> {
         let (world, at) = (self.world, self.at);
         let bounces = self.path.surfaces().saturating_add(vertex.surfaces);
@@ -55,8 +55,8 @@ impl<const N: usize, P: Polarization<N>> Resampling<'_, N, P> {
             return None;
         }
         let (mut bsdf_cos, _) = shading::evaluate(at.material, &at.context, at.flat, direction)?;
-        // The ray ends before the surface of the vertex: this lies within its error of the point, and the ray, whose
-        // direction is rounded, passes that within some roundings of the distance.
+        // The ray ends before the surface of the vertex. That surface lies within its error of the point, and the ray,
+        // whose direction is rounded, passes the point within a few rounding errors of the distance.
         let short = (vertex.error + gamma(8) * distance) / cos;
         let ends = RayEnds { left: self.path.left, ..RayEnds::default() };
         let (distance, inside, last_occluder) = (distance - short, at.boundary.here, self.last_occluder);

@@ -9,41 +9,41 @@ use crate::trace::photon::Gathered;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{FoundLight, Path, Polarization, ScatterSample};
 
-/// What a path found in a direction that was drawn where lights were sampled as well.
+/// What a path found in a direction that was sampled where lights were sampled as well.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounce {
     pub from: DVec3,
-    /// The surface's unit normal there, on the side it left.
+    /// The surface's unit normal there, on the side that the path left.
     pub normal: DVec3,
     pub direction: DVec3,
-    /// How far it went; infinite where it hit nothing.
+    /// Distance to what it hit; infinite if it hit nothing.
     pub distance: f64,
-    /// What the sensor got of the light found at its end, as X + Y + Z.
+    /// The light found at its end that the sensor received, as X + Y + Z.
     pub light: f64,
     pub weight: f64,
 }
 
-/// What the camera's paths find, as somebody is told who wants to know it beside the image.
+/// What the camera's paths find, for an observer who wants to know more than the image.
 pub enum SensorEvent<'a> {
     Light(&'a Contribution),
-    /// A path has come, by way of other surfaces, to a place that scatters widely.
+    /// A path has reached a place that scatters widely, by way of other surfaces.
     Place(DVec3),
     /// All light at the end of a bounce was received.
     Bounce(Bounce),
 }
 
-/// The sink of all light that one camera sample after another finds.
+/// The sensor that receives all light that camera samples find, one sample after another.
 pub struct Sensor<'a, const N: usize> {
-    /// Whether what comes is not to be received.
+    /// Whether it ignores what arrives.
     pub is_deaf: bool,
-    /// What the sample at hand has received.
+    /// What the current sample has received.
     pub rgb: [f64; 3],
-    /// How much of that polarization may change.
+    /// The amount of the received light that polarization may change.
     moved: f64,
-    /// By how much kernels blur what it has received.
+    /// How much kernels blur what it has received.
     pub blur: [f64; 3],
     pub observer: Option<&'a dyn Fn(SensorEvent)>,
-    /// What it leaves in layers, if any are asked for.
+    /// What it leaves in the layers, if any are requested.
     pub layers: Option<LayerSample<'a, N>>,
 }
 
@@ -52,7 +52,7 @@ impl<const N: usize> Sensor<'_, N> {
         Self { is_deaf: false, rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
     }
 
-    /// Receives light, the lanes by which it arrives, and how the path is polarized where it hits the light.
+    /// Receives light, the lanes by which it arrives, and the polarization of the path where it hits the light.
     #[inline]
     pub fn receive<P: Polarization<N>>(&mut self, contribution: Contribution, light: &FoundLight<N, P>, polarized: &P) {
         if self.is_deaf {
@@ -71,7 +71,7 @@ impl<const N: usize> Sensor<'_, N> {
         self.receive_all(&contribution);
     }
 
-    /// Receives light of photons that were gathered.
+    /// Receives the light of gathered photons.
     pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
         if self.is_deaf {
             return;
@@ -82,7 +82,7 @@ impl<const N: usize> Sensor<'_, N> {
         self.receive_all(&gathered.all);
     }
 
-    /// Learns the blur of light that was gathered, from what was gathered by a kernel that blurs half as much.
+    /// Estimates the blur of gathered light, by comparison with a kernel that blurs half as much.
     pub fn blur_by(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
         if self.is_deaf {
             return;
@@ -99,7 +99,7 @@ impl<const N: usize> Sensor<'_, N> {
         }
     }
 
-    /// Tells an observer what a bounce found at a distance, where the sensor had received some light before.
+    /// Tells an observer what a bounce found at a distance; `before` is what the sensor had received before.
     #[inline]
     pub fn tell<P: Polarization<N>>(
         &self,
@@ -121,9 +121,9 @@ impl<const N: usize> Sensor<'_, N> {
         (self.rgb, self.moved, self.blur) = ([0.0; 3], 0.0, [0.0; 3]);
     }
 
-    /// What the sample received; the next one starts with nothing.
+    /// Returns what the sample has received, and resets it for the next one.
     ///
-    /// One that is not finite is left out of the image, and so of the light that is counted.
+    /// A sample that is not finite is left out of the image, and so of the light that is counted.
     pub fn read_out(&mut self, world: &World, stats: &mut Stats) -> [f64; 3] {
         let light = world.amount(self.rgb);
         if light.is_finite() && self.moved.is_finite() {

@@ -11,16 +11,16 @@ pub type Through<const N: usize, P> = Option<PassThrough<N, P>>;
 pub struct Surface<'m, const N: usize, P> {
     pub surface_hit: &'m SurfaceHit,
     pub boundary: Boundary,
-    /// What passes through.
+    /// What passes through the surface.
     pub through: Option<&'m PassThrough<N, P>>,
     /// What the camera ray hits, unless it has hit something before.
     pub first: Option<FirstHit>,
-    /// How likely the path went on from it and not through its holes, by chance: its throughput is divided by this.
+    /// Probability with which the path continued from it and not through its holes. The throughput was divided by this.
     pub chance: f64,
 }
 
 impl<const N: usize, P: Polarization<N>> Surface<'_, N, P> {
-    /// The share of the camera sample for which the surface is the first: `unfiltered` of the weight along its path.
+    /// Returns the share of the camera sample for which the surface is the first: `unfiltered` times the weight there.
     pub fn share(&self, path: &Path<N, P>, at: &Interaction<N>, first: FirstSurface, unfiltered: f64) -> f64 {
         if first == FirstSurface::Met {
             return f64::from(u8::from(self.first == Some(FirstHit::Here)));
@@ -34,7 +34,8 @@ impl<const N: usize, P: Polarization<N>> Surface<'_, N, P> {
         let through = |through: &PassThrough<N, P>| {
             path.throughput.through(through.straight.share()).weight(shares) / path.eta_scale
         };
-        // A surface covers what does not go through its holes, even if by chance all of the path was there.
+        // A surface covers what does not go through its holes, even if the whole path continued from it by a random
+        // choice.
         let received = self.chance * path.weight(draw);
         unfiltered * (received - self.through.map_or(0.0, through)) / draw.siblings(path.parted)
     }
@@ -45,13 +46,13 @@ impl<const N: usize, P: Polarization<N>> Surface<'_, N, P> {
 pub struct PathContinuation<'m, const N: usize, P> {
     /// What passes through.
     pub through: Option<&'m PassThrough<N, P>>,
-    /// Whether that is followed for certain: behind the surface's holes the camera ray hits something.
+    /// Whether what passes through is always followed, because the camera ray hits something behind the holes.
     pub is_awaited: bool,
     /// Whether photons are gathered.
     pub gathers: bool,
 }
 
-/// Of a surface with holes and what is behind them, what the camera ray hits.
+/// What the camera ray hits, of a surface with holes and what is behind it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum FirstHit {
     Here,

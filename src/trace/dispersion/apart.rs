@@ -1,4 +1,4 @@
-//! How far apart two colors show what lies behind.
+//! How far apart two colors show the scene behind dispersive surfaces.
 
 use super::color_walk::{CameraRays, ColorWalk};
 use super::targets::SEEN_PIXELS;
@@ -7,20 +7,20 @@ use crate::math::{DVec2, DVec3};
 use crate::spectrum::Table;
 use crate::trace::World;
 
-/// Lengths of the steps to a ray's neighbors, in pixels: by the longer one the neighbors on both sides of an edge are
-/// as far apart as two colors that are not seen apart.
+/// Lengths of the steps to a ray's neighbors, in pixels. With the longer one, the neighbors on both sides of an edge
+/// are as far apart as two colors that are just not seen apart.
 const STEPS: [f64; 2] = [0.5 * SEEN_PIXELS, 0.1 * SEEN_PIXELS];
-/// Places along each side of a pixel whose light is looked at.
+/// Number of places along each side of a pixel whose light is examined.
 const PLACES: u32 = 6;
 
-/// How many pixels apart both colors show what lies behind; none so close to an edge that it cannot be told.
+/// Returns how many pixels apart two colors show what lies behind; `None` if an edge is too close to tell.
 pub fn colors_apart(rays: &CameraRays, at: DVec2, first: &ColorWalk) -> Option<f64> {
     let second = rays.walk(at, 1);
     let far = apart_by(rays, STEPS[0], at, [first, &second]);
     (far >= SEEN_PIXELS || apart_by(rays, STEPS[1], at, [first, &second]) < SEEN_PIXELS).then_some(far)
 }
 
-/// The share of a pixel's light that dispersion pulls apart: facets far smaller than a pixel count as they fill it.
+/// Returns the share of a pixel's light that dispersion pulls apart. Facets far smaller than a pixel count by area.
 pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(PLACES) - 0.5;
     let share = |i: u32| {
@@ -28,7 +28,7 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
         let walks = [0, 1].map(|lane| rays.walk(at, lane));
         let [first, second] = &walks;
         let part = || {
-            // After other surfaces light comes from elsewhere: among such facets, neighbors tell nothing.
+            // After other surfaces, light comes from elsewhere: among such facets, neighbors carry no information.
             see_something(rays, [first, second]) && first.legs.len() != second.legs.len()
                 || apart_by(rays, STEPS[1], at, [first, second]) >= SEEN_PIXELS
         };
@@ -37,18 +37,18 @@ pub fn share_apart(rays: &CameraRays, middle: DVec2) -> f64 {
     (0..PLACES * PLACES).map(share).sum::<f64>() / f64::from(PLACES * PLACES)
 }
 
-/// Whether no walk is lost, and what they show may differ.
+/// Returns whether no walk is lost, and what they show may differ.
 fn see_something(rays: &CameraRays, walks: [&ColorWalk; 2]) -> bool {
     let lost = walks.iter().any(|walk| walk.weight == 0.0);
     let out = walks.iter().all(|walk| walk.is_out());
-    // All that leaves the scene sees the same where skies are even.
+    // If skies are uniform, all walks that leave the scene see the same.
     !(lost || out && skies_seen(rays.colors.world).all(Light::is_even_sky))
 }
 
-/// How many pixels apart both colors show what lies behind.
+/// Returns how many pixels apart two colors show what lies behind.
 ///
-/// The ways of a ray's neighbors, a step aside, show how far a pixel goes. Both colors are compared at one distance, so
-/// that an edge behind the glass, which one of them misses, does not count.
+/// The walks of a ray's neighbors, one step aside, show how far a pixel reaches. Both colors are compared at one
+/// distance, so that an edge behind the glass that only one of them misses does not count.
 fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&ColorWalk; 2]) -> f64 {
     let [first, second] = walks;
     if !see_something(rays, walks) {
@@ -59,13 +59,13 @@ fn apart_by(rays: &CameraRays, step: f64, at: DVec2, walks: [&ColorWalk; 2]) -> 
     let beside = |x: f64, y: f64| rays.walk(at + DVec2::new(x, y) * step, 0);
     let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
     let stretch = ways.map(|(x, y)| between(first, &beside(x, y), distance)).into_iter().fold(0.0, f64::max);
-    // Parallel rays stay parallel behind flat glass: there a pixel has the angle that the camera gives it.
+    // Parallel rays stay parallel behind flat glass. There a pixel has the angle that the camera gives it.
     let least = if distance.is_none() { rays.colors.world.scene.camera.pixel_angle() * step } else { 0.0 };
     let stretch = if stretch > 0.0 { stretch } else { least };
     if stretch > 0.0 { apart / (stretch / step) } else { 0.0 }
 }
 
-/// How far apart two walks are after a distance on their last pieces, or the angle between these.
+/// Returns how far apart two walks are at a distance along their last segments, or the angle between these.
 fn between(a: &ColorWalk, b: &ColorWalk, distance: Option<f64>) -> f64 {
     let (Some(a), Some(b)) = (a.last(), b.last()) else { return 0.0 };
     match distance {
@@ -74,7 +74,7 @@ fn between(a: &ColorWalk, b: &ColorWalk, distance: Option<f64>) -> f64 {
     }
 }
 
-/// Whether all that leaves the scene sees nothing.
+/// Returns whether rays that leave the scene see nothing.
 pub fn is_dark(world: &World) -> bool {
     skies_seen(world).next().is_none()
 }

@@ -1,4 +1,4 @@
-//! A ray of one color, followed over smooth surfaces the way that most of its light goes.
+//! A ray of one color, followed over smooth surfaces along the branch that carries most of its light.
 
 use crate::material::{Dielectric, Facets, Interface, Material, RoughSurface, reflect};
 use crate::math::{BranchKey, DVec2, DVec3, Frame, Ray, Sampler, unit};
@@ -8,66 +8,67 @@ use crate::trace::media::Media;
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
-/// Surfaces after which a ray is given up: total reflection keeps one in six of those in a diamond for more than 24.
+/// Number of surfaces after which a ray is given up. Total reflection keeps one in six rays in a diamond for more than
+/// 24.
 const LONGEST: usize = 64;
-/// Share of the light from which on a fainter way counts as one: half of what glass mirrors.
+/// Share of the light above which a fainter branch counts: half of what glass mirrors.
 const LEAST: f64 = 0.02;
-/// The share that a glossy surface mirrors, about.
+/// Rough reflectance of a glossy surface.
 const GLOSS: f64 = 0.05;
 /// Use of the random numbers at a surface.
 const SURFACE: u32 = 7;
 
-/// Which way is followed where light may go two ways.
+/// The branch that is followed where light may take two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FollowedBranch {
     Brighter,
-    /// The fainter one at the first surface that has one, from there on the brighter one.
+    /// The fainter branch at the first surface that has one, then the brighter one.
     FainterFirst,
-    /// The fainter one where light would first leave a dispersive body, then the brighter one: as in a rainbow.
+    /// The fainter branch where light would first leave a dispersive body, then the brighter one: as in a rainbow.
     FainterInside,
 }
 
-/// Where a ray of one color went.
+/// The path of a ray of one color.
 #[derive(Default)]
 pub struct ColorWalk {
-    /// Its straight pieces: where each starts and how long it is, infinite where it leaves the scene.
+    /// Its straight segments: where each starts, and how long it is; infinite if it leaves the scene.
     pub legs: Vec<(Ray, f64)>,
-    /// The objects it went by.
+    /// The objects that it met before its end.
     pub met: Vec<u32>,
-    /// Surfaces among them that sent it on another way, or through a body: `max_bounces` limits them.
+    /// Number of surfaces that deflected it, or let it enter or leave a body: `max_bounces` limits it.
     pub surfaces: u32,
-    /// The surface at which it ends, and its object; none if it leaves the scene or is lost.
+    /// The surface at which it ends, and its object; `None` if it leaves the scene or is lost.
     pub end: Option<(SurfacePoint, u32)>,
     /// Whether that surface scatters widely.
     pub diffuse: bool,
-    /// Whether the way leads over a dispersive surface.
+    /// Whether it hit a dispersive surface.
     pub dispersive: bool,
-    /// The share of the light that goes this way; 0 of a ray that is lost.
+    /// The share of the light that takes this path; 0 for a ray that is lost.
     pub weight: f64,
-    /// The share of the fainter way at the first surface that has one.
+    /// The share of the fainter branch at the first surface that has one.
     pub fork: f64,
-    /// The share of the fainter way at the first surface that has one and is hit inside a dispersive body.
+    /// The share of the fainter branch at the first surface that has one and is hit inside a dispersive body.
     pub fork_inside: f64,
     media: Media,
 }
 
 impl ColorWalk {
-    /// Whether it leaves the scene.
+    /// Returns whether it leaves the scene.
     pub fn is_out(&self) -> bool {
         self.length().is_infinite()
     }
 
-    /// The length of its last piece.
+    /// Returns the length of its last segment.
     pub fn length(&self) -> f64 {
         self.legs.last().map_or(f64::INFINITY, |leg| leg.1)
     }
 
-    /// The ray of its last piece.
+    /// Returns the ray of its last segment.
     pub fn last(&self) -> Option<&Ray> {
         self.legs.last().map(|leg| &leg.0)
     }
 
-    /// Whether the way on with a share of the light is taken, not the other; `is_inside`: inside a dispersive body.
+    /// Decides whether a branch with this share of the light is taken; `is_inside` means inside a dispersive body.
     fn takes(&mut self, share: f64, is_inside: bool, choice: FollowedBranch) -> bool {
         let (weight, fainter) = (self.weight, share.min(1.0 - share));
         let forks = |fork: &mut f64| {
@@ -88,7 +89,7 @@ impl ColorWalk {
     }
 }
 
-/// Where a walk hits a surface, with four random numbers.
+/// A surface that a walk hits, with four random numbers.
 #[derive(Clone, Copy)]
 struct WalkSurface<'a> {
     ray: &'a Ray,
@@ -98,30 +99,30 @@ struct WalkSurface<'a> {
     choice: FollowedBranch,
 }
 
-/// How a walk goes on at a surface.
+/// How a walk continues at a surface.
 enum Next {
-    /// As if nothing were there.
+    /// Straight on, as if nothing were there.
     Straight,
     Toward(DVec3),
     End,
     Lost,
 }
 
-/// A world of two lanes, one of each color that is compared.
+/// A world of two lanes, one for each color that is compared.
 pub struct Colors<'a> {
     pub world: &'a World,
     pub draw: Draw<4>,
 }
 
 impl Colors<'_> {
-    /// Whether a medium has two indices.
+    /// Returns whether a medium has two different indices.
     pub fn disperses(&self, glass: &Dielectric<Table>) -> bool {
         let index: [f64; 4] = self.draw.read_exact(&glass.index);
         index[0] != index[1]
     }
 
-    /// Follows one lane; the first lane decides for both where light may go two ways. What the camera does not see is
-    /// not there for its ray as long as that is straight.
+    /// Follows one lane. If light may take two branches, the first lane decides for both. Objects that the camera does
+    /// not see do not exist for its ray until the ray is deflected.
     pub fn walk(
         &self,
         lane: usize,
@@ -160,7 +161,7 @@ impl Colors<'_> {
         walk
     }
 
-    /// The way on from a surface; beyond as many as paths may have, one shows no more than its own light.
+    /// Returns how a walk continues at a surface. Beyond the bounce limit, surfaces show only their own light.
     fn next(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
         let next = self.beyond(walk, at);
         if !matches!(next, Next::Toward(_) | Next::End) {
@@ -174,7 +175,7 @@ impl Colors<'_> {
         if shines { Next::End } else { Next::Lost }
     }
 
-    /// The way on from a surface, however many paths may have.
+    /// Returns how a walk continues at a surface, whatever the bounce limit.
     fn beyond(&self, walk: &mut ColorWalk, at: &WalkSurface) -> Next {
         let WalkSurface { ray, surface_hit, u, choice, .. } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
@@ -189,13 +190,13 @@ impl Colors<'_> {
             Material::Thin(pane) => {
                 let here = media::index(&world.scene, draw, inside)[0];
                 let one = pane.reflectance_of_one_surface(draw, 0, here, wo.dot(normal));
-                // Of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
+                // The reflectance of both surfaces, without absorption (Born & Wolf 1999, section 7.6).
                 let mirrored = 2.0 * one / (1.0 + one);
                 if walk.takes(mirrored, false, choice) { Next::Toward(reflect(wo, normal)) } else { Next::Straight }
             }
             Material::Conductor(metal) => match metal.roughness.surface() {
                 None => Next::Toward(reflect(wo, normal)),
-                // The same facet for both colors, as if it were all there is.
+                // Both colors use the same facet, as if there were no others.
                 Some(surface) => mirrored(surface, wo, normal, [u[2], u[3]]).map_or(Next::Lost, Next::Toward),
             },
             material if material.lobes().has_delta() && walk.takes(GLOSS, false, choice) => {
@@ -208,7 +209,7 @@ impl Colors<'_> {
         }
     }
 
-    /// The way on from the surface of a clear body.
+    /// Returns how a walk continues at the surface of a clear body.
     fn meet_glass(&self, walk: &mut ColorWalk, at: &WalkSurface, glass: &Dielectric<Table>) -> Next {
         let WalkSurface { ray, surface_hit: SurfaceHit { hit, point }, u, lane, choice } = *at;
         let (world, draw, wo) = (self.world, &self.draw, -ray.direction);
@@ -222,11 +223,11 @@ impl Colors<'_> {
         let indices = boundary.sides().map(|inside| media::index(&world.scene, draw, inside));
         walk.dispersive |= indices.iter().any(|index| index[0] != index[1]);
         let [n1, n2] = indices.map(|index| index[lane]);
-        // The same facet for both colors.
+        // Both colors use the same facet.
         let facets = glass.roughness.interface().map(|rough| rough.facets());
         let facet = facets.map_or(normal, |facets| visible_facet(facets, wo, normal, [u[2], u[3]]));
         let interface = Interface::new(n1, n2, wo.dot(facet));
-        // The first color's reflectance decides for both, but where it is reflected totally: there the edge has colors.
+        // The first color's reflectance decides for both, unless it is reflected totally: there the edge has colors.
         let first = Interface::new(indices[0][0], indices[1][0], wo.dot(facet));
         let chance = if first.transmittance == 0.0 { interface.reflectance } else { first.reflectance };
         let inside = indices[0][0] != indices[0][1];
@@ -241,7 +242,7 @@ impl Colors<'_> {
     }
 }
 
-/// Rays of the camera that share their random numbers, and which way they go where light may go two ways.
+/// Rays of the camera that share their random numbers, and the branch that they follow.
 pub struct CameraRays<'a> {
     pub colors: &'a Colors<'a>,
     pub sampler: Sampler,
@@ -249,7 +250,7 @@ pub struct CameraRays<'a> {
 }
 
 impl CameraRays<'_> {
-    /// Follows one lane through a place of the film.
+    /// Follows one lane through a place on the film.
     pub fn walk(&self, at: DVec2, lane: usize) -> ColorWalk {
         let world = self.colors.world;
         let ray = world.scene.camera.ray(at);
@@ -257,14 +258,14 @@ impl CameraRays<'_> {
     }
 }
 
-/// The normal of a facet that is visible from `wo`.
+/// Samples the normal of a facet that is visible from `wo`.
 pub fn visible_facet(facets: &Facets, wo: DVec3, normal: DVec3, u: [f64; 2]) -> DVec3 {
     let frame = Frame::about(normal);
     let local = frame.to_local(wo);
     frame.to_world(facets.visible_normal(DVec3 { z: local.z.max(0.0), ..local }, u))
 }
 
-/// The mirror image of `wo` about a visible facet; none if it lies below the surface.
+/// Returns the mirror image of `wo` about a visible facet; `None` if it lies below the surface.
 fn mirrored(surface: &RoughSurface, wo: DVec3, normal: DVec3, u: [f64; 2]) -> Option<DVec3> {
     let frame = Frame::about(normal);
     let local = frame.to_local(wo);

@@ -12,26 +12,27 @@ use crate::shape::{Ball, SurfacePoint};
 use crate::spectrum::Table;
 use crate::trace::photon_targets::ball_around_all;
 
-/// Rays in all, and the fewest and most of a light toward a target.
+/// Number of rays in all, and minimum and maximum number of rays from one light toward one target.
 const RAYS: usize = 4096;
 const FEWEST: usize = 4;
 const OF_A_PAIR: usize = 1024;
-/// Lights of which rays are sent, the brightest at a target.
+/// Maximum number of lights that send rays: the brightest at a target.
 const LIGHTS: usize = 16;
-/// Colors that are apart by less than this part of the lamp's own blur look white.
+/// Colors that are apart by less than this share of the lamp's own blur look white.
 const CONTRAST: f64 = 0.05;
-/// Light by way of an object that is fainter than this share of the lamp's own is not seen: a color may miss as much.
+/// Light through an object is not seen if it is fainter than this share of the lamp's own: a color may be off by as
+/// much.
 const FAINT: f64 = 0.01;
-/// How far beside a ray its neighbors are, in radii of the object: near enough to go the same way.
+/// Distance of a ray's neighbors, in radii of the object: near enough to take the same way.
 const BESIDE: f64 = 1e-3;
-/// The largest angle in radians by which a ray is turned to see how the lamp's extent blurs.
+/// Largest angle in radians by which a ray is turned to measure the blur from the lamp's extent.
 const TURN: f64 = 1e-3;
-/// The ways of light that land somewhere: through bodies, and after a reflection inside of one, as in a rainbow.
+/// The branches followed to where light lands: through bodies, and after an internal reflection, as in a rainbow.
 const WAYS: [FollowedBranch; 2] = [FollowedBranch::Brighter, FollowedBranch::FainterInside];
-/// Sets these random numbers apart.
+/// Separates these random numbers from others.
 const SEED: u64 = 0x6c69_7420;
 
-/// How many pixels apart two colors land of the light through dispersive objects, where the camera sees it.
+/// Returns how many pixels apart two colors of light through dispersive objects land, where the camera sees it.
 pub fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[ReachedPlace]) -> f64 {
     let world = colors.world;
     if world.method.diffuse_bounces == 0 {
@@ -53,7 +54,7 @@ pub fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[ReachedPlace]) 
                 });
                 let mut found: Vec<f64> = sent.flatten().collect();
                 found.sort_by(|a, b| b.total_cmp(a));
-                // More than one of all: of what goes by an edge, a ray may be on both sides of it.
+                // Requires more than one ray: where a ray passes an edge, its colors may be on both sides.
                 let rank = (found.len() / 50).max(1);
                 most = most.max(found.get(rank).copied().unwrap_or(0.0));
                 if most >= SEEN_PIXELS {
@@ -65,7 +66,7 @@ pub fn lit_pixels(colors: &Colors, targets: &Targets, reached: &[ReachedPlace]) 
     most
 }
 
-/// The lights that shine most on a ball.
+/// Returns the lights that shine most on a ball.
 fn brightest(colors: &Colors, lights: &[LightId], ball: &Ball) -> Vec<LightId> {
     if lights.len() <= LIGHTS {
         return lights.to_vec();
@@ -83,7 +84,7 @@ fn brightest(colors: &Colors, lights: &[LightId], ball: &Ball) -> Vec<LightId> {
     known[..LIGHTS].iter().map(|light| light.1).collect()
 }
 
-/// A light and what it shines on.
+/// A light, and the ball that it shines on.
 struct Pair<'a> {
     colors: &'a Colors<'a>,
     reached: &'a [ReachedPlace],
@@ -93,7 +94,8 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// How many pixels apart both colors of one ray land; none if that is not seen, 0 where the lamp's extent hides it.
+    /// Returns how many pixels apart the two colors of one ray land; `None` if that is not seen, and 0 if the light is
+    /// too faint or the lamp's extent hides it.
     fn pixels(&self, sampler: &Sampler) -> Option<f64> {
         let u = sampler.four(BranchKey::CAMERA, 0);
         let scene = &self.colors.world.scene;
@@ -118,7 +120,7 @@ impl Pair<'_> {
         if apart >= SEEN_PIXELS && self.share(&start, target, &first, &a, &walk).is_some_and(|share| share < FAINT) {
             return Some(0.0);
         }
-        // A cone of even density.
+        // A cone of uniform density.
         let radius = sample.pdf.map_or(0.0, |pdf| (1.0 / (PI * pdf)).sqrt());
         if radius == 0.0 {
             return Some(apart);
@@ -135,8 +137,8 @@ impl Pair<'_> {
         Some(if apart >= CONTRAST * blur { apart } else { 0.0 })
     }
 
-    /// The irradiance by a ray's way as a share of the lamp's own where it lands: the areas that neighbors of the ray
-    /// span. None where they go other ways, or where something keeps the lamp's own light away.
+    /// Returns the irradiance along a ray's way, relative to the lamp's own where it lands, by the areas that the ray's
+    /// neighbors span. Returns `None` if they go other ways, or if something blocks the lamp's own light.
     fn share(
         &self,
         start: &Ray,
@@ -174,7 +176,7 @@ impl Pair<'_> {
         Some(first.weight * step * step / (x?.cross(y?).length() * own.abs() * nearer * nearer))
     }
 
-    /// A point of the ball that the light shines on; of a spot that is narrower than the ball, within its cone.
+    /// Samples a point of the ball that the light shines on; for a spot narrower than the ball, within its cone.
     fn target(&self, light: &Light<Table>, normal: DVec3, u: [f64; 4]) -> Option<DVec3> {
         if let Light::Spot(spot) = light {
             let position = DVec3::from(spot.position);
@@ -207,7 +209,8 @@ impl Pair<'_> {
         }
     }
 
-    /// Pixels per length where a ray lands, if the camera sees it: straight, through clear things or by way of others.
+    /// Returns the pixels per length where a ray lands, if the camera sees it: directly, through clear objects, or
+    /// indirectly.
     fn scale(&self, point: &SurfacePoint, walk: &ColorWalk) -> Option<f64> {
         let left = self.colors.world.method.max_bounces - walk.surfaces;
         let is_near = |place: &&ReachedPlace| (place.position - point.position).length() <= place.of_cell;

@@ -1,4 +1,4 @@
-//! How far dispersion pulls colors apart, and how light is tinted on its ways: rays of few colors over smooth surfaces.
+//! How far dispersion pulls colors apart, and how light is tinted on its way: rays of few colors over smooth surfaces.
 
 mod apart;
 mod color_walk;

@@ -1,4 +1,4 @@
-//! A way of light to the camera: what it hits, how far it has been followed back, and the surface that it hits there.
+//! A route of light to the camera: what it hits, how far it has been followed back, and the surface that it hits there.
 
 use super::color_walk::visible_facet;
 use crate::light::LightId;
@@ -15,7 +15,7 @@ use crate::trace::media::Media;
 pub struct Step {
     /// The material.
     pub material: MaterialId,
-    /// Which of the materials that it is made of, in the order of
+    /// Which of the materials that it is composed of, in the order of
     /// [`Material::with_parts`](crate::material::Material::with_parts).
     pub part: usize,
     /// What light does there.
@@ -25,46 +25,46 @@ pub struct Step {
 /// What light does at a surface, or in a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RouteEvent {
-    /// It is mirrored, by a surface or a facet of it hit under an angle of this cosine.
+    /// It is mirrored, by a surface or by a facet of it that is hit at an angle of this cosine.
     Reflected(f64),
-    /// It goes through the surface.
+    /// It crosses the surface.
     Crossed,
-    /// It is scattered in every direction.
+    /// It is scattered diffusely.
     Scattered,
-    /// It goes this distance through the body.
+    /// It travels this distance through the body.
     Inside(f64),
 }
 
-/// A way of light from a light to the camera.
+/// A route of light from a light to the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
     /// What it hits, the nearest to the camera first.
     pub steps: Vec<Step>,
-    /// Where it comes from.
+    /// The light that it comes from.
     pub light: LightId,
-    /// What is left of it but for the steps.
+    /// What is left of the light, without the effect of the steps.
     pub weight: f64,
-    /// Diffuse surfaces among the steps.
+    /// Number of diffuse surfaces among the steps.
     pub scattered: u32,
 }
 
-/// Wavelengths in nm of the lanes that decide which ways matter.
+/// Wavelengths, in nm, of the lanes that decide which routes matter.
 pub const ROUTES_NM: [f64; 4] = [450.0, 520.0, 590.0, 650.0];
 
-/// The end of a way that is followed back from the camera.
+/// The end of a route that is followed back from the camera.
 #[derive(Clone)]
 pub struct RouteWalk {
     pub ray: Ray,
-    /// Whether the camera sees straight what it hits next, if it sees that at all.
+    /// Whether the camera directly sees what the route hits next, if it sees that at all.
     pub is_from_camera: bool,
     pub media: Media,
     pub key: BranchKey,
     pub steps: Vec<Step>,
     pub weight: f64,
-    /// What is left of the light, with the steps.
+    /// What is left of the light, with the effect of the steps.
     pub left: Lanes<4>,
     pub scattered: u32,
-    /// Surfaces hit but for those that it passes through: `max_bounces` limits them.
+    /// Number of surfaces hit, without those that it passes through: `max_bounces` limits it.
     pub surfaces: u32,
 }
 
@@ -79,7 +79,7 @@ impl RouteWalk {
         self.left.0.into_iter().fold(0.0, f32::max)
     }
 
-    /// After a step that leaves a share of each lane, and a factor besides.
+    /// Returns the route after a step that leaves `tint` of each lane, times a factor.
     pub fn after(&self, step: Option<Step>, tint: Lanes<4>, factor: f64) -> Self {
         let mut next = Self { left: self.left * tint * factor as f32, weight: self.weight * factor, ..self.clone() };
         next.steps.extend(step);
@@ -87,12 +87,12 @@ impl RouteWalk {
     }
 }
 
-/// Where a way hits a surface.
+/// A surface that a route hits.
 pub struct RouteVertex<'a> {
     pub walk: &'a RouteWalk,
     pub material: MaterialId,
     pub point: &'a SurfacePoint,
-    /// Unit normal on the side of the viewer.
+    /// The unit normal on the side of the viewer.
     pub normal: DVec3,
     pub uv: [f64; 2],
     pub part: usize,
@@ -104,12 +104,12 @@ impl RouteVertex<'_> {
         Step { material: self.material, part: self.part, way }
     }
 
-    /// The unit vector to the viewer.
+    /// Returns the unit vector to the viewer.
     pub fn wo(&self) -> DVec3 {
         -self.walk.ray.direction
     }
 
-    /// The normal of a facet that the viewer sees.
+    /// Returns the normal of a facet that the viewer sees.
     pub fn facet(&self, facets: &Facets) -> DVec3 {
         visible_facet(facets, self.wo(), self.normal, [self.u[0], self.u[1]])
     }

@@ -1,4 +1,4 @@
-//! Follows the ways of one pixel back to the lights, the brightest first.
+//! Follows the routes of one pixel back to the lights, the brightest first.
 
 use super::route::{ROUTES_NM, Route, RouteEvent, RouteVertex, RouteWalk, Step};
 use crate::light::{Light, LightId};
@@ -8,16 +8,16 @@ use crate::spectrum::{Draw, Lanes, Table};
 use crate::trace::walk::{SurfaceHit, shading, straight};
 use crate::trace::{World, media};
 
-/// Surfaces that are hit for one pixel.
+/// Maximum number of surfaces that are hit for one pixel.
 const SURFACES: usize = 256;
-/// Ways that leave less than this share of the brightest one of a pixel are left.
+/// Routes that leave less than this share of a pixel's brightest one are not followed.
 const FAINT: f32 = 1e-3;
-/// Diffuse surfaces of a way.
+/// Maximum number of diffuse surfaces of a route.
 const SCATTERED: u32 = 2;
-/// Lights that are aimed at.
+/// Maximum number of lights that are sampled.
 const LIGHTS: usize = 8;
 
-/// Follows the ways of one pixel, the brightest first.
+/// Follows the routes of one pixel, the brightest first.
 pub struct RouteWalker<'a> {
     world: &'a World,
     draw: Draw<4>,
@@ -32,7 +32,7 @@ impl<'a> RouteWalker<'a> {
         Self { world, draw, sampler, pending: Vec::new(), found: Vec::new() }
     }
 
-    /// Answers how many surfaces it hit.
+    /// Follows the routes of a camera ray, and returns the number of surfaces hit.
     pub fn walk(&mut self, ray: Ray) -> usize {
         self.pending.push(RouteWalk::from_camera(self.world, ray));
         let mut best = 0.0_f32;
@@ -57,7 +57,7 @@ impl<'a> RouteWalker<'a> {
         self.found.push(Route { steps: steps.clone(), light, weight: *weight, scattered: *scattered });
     }
 
-    /// Follows a way to the next surface and finds out how it goes on.
+    /// Follows a route to the next surface, and finds how it continues.
     fn meet(&mut self, walk: RouteWalk) {
         let world = self.world;
         let hit = match walk.is_from_camera {
@@ -98,7 +98,7 @@ impl<'a> RouteWalker<'a> {
         self.leave(&at, material.with_parts()[part], flat);
     }
 
-    /// Goes on from a surface in all ways that light may go.
+    /// Continues from a surface in all ways that light may take.
     fn leave(&mut self, at: &RouteVertex, material: &Material<Table>, flat: DVec3) {
         let RouteVertex { walk, normal, uv, .. } = *at;
         let world = self.world;
@@ -148,7 +148,7 @@ impl<'a> RouteWalker<'a> {
         }
     }
 
-    /// The way after a distance through the body around it.
+    /// Returns the route after a distance through the body around it.
     fn inside(&self, walk: RouteWalk, distance: f64) -> RouteWalk {
         let Some(material) = walk.media.inside(&self.world.scene) else { return walk };
         let transmission = media::medium(&self.world.scene, material).transmission(&self.draw, distance);
@@ -158,13 +158,13 @@ impl<'a> RouteWalker<'a> {
         walk.after(Some(Step { material, part: 0, way: RouteEvent::Inside(distance) }), transmission, 1.0)
     }
 
-    /// Whether a hole lets the way pass, by chance.
+    /// Decides at random whether a hole lets the route pass.
     fn passes(&self, walk: &RouteWalk, surface_hit: &SurfaceHit, u: f64) -> bool {
         let inside = walk.media.inside(&self.world.scene);
         u < straight::holes(self.world, &self.draw, &walk.ray, inside, surface_hit)[1].into()
     }
 
-    /// The material that is hit, by chance where there are several.
+    /// Returns the part of the material that is hit, at random if there are several.
     fn part(&self, material: &Material<Table>, uv: [f64; 2], u: f64) -> usize {
         match material {
             Material::Mix(mix) => {
@@ -181,19 +181,19 @@ impl<'a> RouteWalker<'a> {
         }
     }
 
-    /// Goes on from a surface in a direction, where it is turned or scattered, or light crosses a body's surface.
+    /// Continues from a surface in a direction in which light is mirrored or scattered, or crosses a body's surface.
     fn go_on(&mut self, at: &RouteVertex, next: RouteWalk, direction: DVec3, number: usize) {
         if let Some(surfaces) = self.one_more(at.walk) {
             self.follow(at, RouteWalk { is_from_camera: false, surfaces, ..next }, direction, number);
         }
     }
 
-    /// Surfaces of a way with one more; none if paths may not have so many.
+    /// Returns the number of surfaces of a route plus one; `None` if that is beyond the bounce limit.
     fn one_more(&self, walk: &RouteWalk) -> Option<u32> {
         (walk.surfaces < self.world.method.max_bounces).then_some(walk.surfaces + 1)
     }
 
-    /// Goes straight on as if nothing were there.
+    /// Continues straight on as if nothing were there.
     fn go_straight(&mut self, at: &RouteVertex, next: RouteWalk) {
         self.follow(at, next, at.walk.ray.direction, 0);
     }
@@ -238,7 +238,7 @@ impl<'a> RouteWalker<'a> {
         self.go_on(at, mirrored, reflect(wo, facet), 1);
     }
 
-    /// Light that a surface scatters: straight from the lights, and from anywhere.
+    /// Follows the light that a surface scatters: directly from the lights, and from anywhere.
     fn scattered(&mut self, at: &RouteVertex, flat: DVec3, tint: Lanes<4>, factor: f64) {
         let Some(surfaces) = self.one_more(at.walk) else { return };
         let next = at.walk.after(Some(at.step(RouteEvent::Scattered)), tint, factor);
@@ -252,7 +252,7 @@ impl<'a> RouteWalker<'a> {
         }
     }
 
-    /// Light that comes straight from a light, through whatever lets it through.
+    /// Follows light directly from a light, through everything that lets it through.
     fn aim(&mut self, at: &RouteVertex, walk: &RouteWalk, normal: DVec3, id: LightId) {
         let (world, light) = (self.world, &self.world.scene.lights[id]);
         let Some(sample) = light.sample_li(at.point, normal, [at.u[1], at.u[0]]) else { return };

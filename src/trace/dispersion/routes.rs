@@ -1,4 +1,4 @@
-//! The ways that light takes to the camera, as far as they tint it: which surfaces and bodies it hits, and how often.
+//! The routes of light to the camera, as far as they tint it: which surfaces and bodies light hits, and how often.
 
 use super::route::Route;
 use super::route_walk::RouteWalker;
@@ -7,12 +7,12 @@ use crate::math::{DVec2, Sampler};
 use crate::trace::World;
 use crate::trace::probe::pixels_of_objects;
 
-/// Pixels along each side of the image.
+/// Number of pixels along each side of the image.
 const SIDE: u32 = 24;
-/// Surfaces that are hit for all pixels over the image or on objects.
+/// Number of surfaces after which no more pixels are traced, over the image and again on objects.
 const ALL_SURFACES: usize = 16_384;
 
-/// The routes to a few hundred pixels, those of each together, in a world of the lanes
+/// Returns the routes to a few hundred pixels, grouped by pixel, in a world whose lanes are
 /// [`ROUTES_NM`](super::route::ROUTES_NM).
 pub fn routes(world: &World) -> Vec<Vec<Route>> {
     let film = world.scene.film.whole();

@@ -1,48 +1,48 @@
-//! Where in the view dispersion is seen: what is small in the picture is still the picture.
+//! Where dispersion is seen in the view, even if only in small parts of the picture.
 //!
-//! The view is laid out in cells. A cell whose beam may touch a smooth object that its rays have not hit is divided,
-//! down to a part of a pixel; so small objects are found also behind panes, in mirrors and in water, by a number of
-//! rays that does not depend on the number of pixels. Amanatides 1984, *Ray Tracing with Cones*, has beams of rays;
-//! Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
+//! The view is divided into cells. A cell whose beam may touch a smooth object that its rays have not hit is
+//! subdivided, down to a part of a pixel. Small objects are thus found even behind panes, in mirrors and in water, by a
+//! number of rays that does not depend on the number of pixels. Beams of rays: Amanatides 1984, *Ray Tracing with
+//! Cones*; Heckbert & Hanrahan 1984, *Beam Tracing Polygonal Objects*.
 
 use super::apart::{colors_apart, is_dark, share_apart};
 use super::color_walk::{CameraRays, ColorWalk, Colors, FollowedBranch};
 use super::targets::{SEEN_PIXELS, Targets};
 use crate::math::{DVec2, DVec3, Sampler};
 
-/// Cells along each side of the view.
+/// Number of cells along each side of the view.
 const SIDE: u32 = 24;
-/// Cells that are looked at beside those.
+/// Maximum number of cells that are examined after the initial ones.
 const MOST: usize = 6000;
-/// Cells this small, in pixels, are not divided.
+/// Cells of this size or less, in pixels, are not divided.
 const SMALLEST: f64 = 0.5;
-/// So much of the view counts, in pixels, or this share of an image that has few: it changes one pixel as much as an
-/// edge that is just seen apart changes those along it.
+/// Smallest area of the view that counts, in pixels, or as a share of an image that has few pixels. It changes one
+/// pixel as much as an edge whose colors are just seen apart changes the pixels along it.
 const PIXELS: f64 = SEEN_PIXELS;
 const SHARE: f64 = 0.005;
-/// Pixels that are looked at closer each time.
+/// Number of pixels that are examined more closely each time.
 const CLOSER: usize = 32;
-/// A pixel of which this share is pulled apart changes as much as one at an edge that is just seen apart: over such an
-/// edge the colors between the outermost two are moved by half as much.
+/// A pixel of which this share is pulled apart changes as much as one at an edge whose colors are just seen apart: over
+/// such an edge, the colors between the outermost two are moved by half as much.
 const SEEN_SHARE: f64 = 0.5 * SEEN_PIXELS;
 
-/// A place on a diffuse surface that is seen by way of others.
+/// A place on a diffuse surface that is seen by way of other surfaces.
 pub struct ReachedPlace {
     pub position: DVec3,
-    /// How far a pixel goes there, and how far the cell.
+    /// The size of a pixel there, and that of the cell.
     pub of_pixel: f64,
     pub of_cell: f64,
-    /// Surfaces between it and the camera.
+    /// Number of surfaces between it and the camera.
     pub surfaces: u32,
 }
 
-/// What was found.
+/// The result of a search.
 pub struct SearchResult {
     /// Share of the view on dispersive surfaces.
     pub seen: f64,
-    /// How many pixels colors are apart on [`PIXELS`] or more.
+    /// How many pixels apart colors are, on an area of [`PIXELS`] or more.
     pub pixels: f64,
-    /// Whether no ray that went by a dispersive surface saw anything.
+    /// Whether no ray that hit a dispersive surface saw anything.
     pub dark: bool,
     pub reached: Vec<ReachedPlace>,
 }
@@ -53,25 +53,25 @@ struct ViewCell {
     corner: DVec2,
     size: DVec2,
     choice: FollowedBranch,
-    /// How many such cells it stands for.
+    /// Number of such cells that it stands for.
     count: f64,
 }
 
 /// What was seen in a cell.
 struct Look {
     cell: ViewCell,
-    /// Its area in pixels, as far as it is on dispersive surfaces; the share of light that goes this way.
+    /// The area, in pixels, of the cell's part on dispersive surfaces, and the share of light that goes this way.
     dispersive: f64,
     weight: f64,
-    /// How many pixels colors are apart; none where that cannot be told.
+    /// How many pixels apart colors are; `None` if that cannot be told.
     apart: Option<f64>,
-    /// Whether its way leads out of a scene that nothing shines from.
+    /// Whether its ray leaves a scene that no sky shines on.
     dark: bool,
     /// The target it may show a part of.
     touched: Option<usize>,
 }
 
-/// Looks for dispersion in all of the view.
+/// Searches the whole view for dispersion.
 pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
     let film = colors.world.scene.film;
     let all = f64::from(film.width) * f64::from(film.height);
@@ -98,7 +98,7 @@ pub fn search(colors: &Colors, targets: &Targets) -> SearchResult {
         for look in &divided {
             next.extend(look.cell.parts().into_iter().map(|part| (look.touched.unwrap_or(0), part)));
         }
-        // Faint mirror images are kinds of their own.
+        // Faint mirror images form groups of their own.
         let kind = |cell: &ViewCell| targets.all.len() + usize::from(cell.choice == FollowedBranch::FainterInside);
         next.extend(forks.into_iter().map(|cell| (kind(&cell), cell)));
         if next.is_empty() {
@@ -129,7 +129,7 @@ fn look(
         if first.fork > 0.0 {
             forks.push(ViewCell { choice: FollowedBranch::FainterFirst, ..cell });
         }
-        // Before a sky, or the dark, what is mirrored inside may be all there is to see.
+        // In front of a sky, or the dark, internal reflections may be all there is to see.
         if first.fork_inside > 0.0 && first.is_out() {
             forks.push(ViewCell { choice: FollowedBranch::FainterInside, ..cell });
         }
@@ -148,8 +148,8 @@ fn look(
     Look { cell, dispersive, weight: first.weight, apart, dark, touched: targets.touched(&walks, width) }
 }
 
-/// Looks at all of a pixel where it cannot be told from one ray. Between the edges of small gems it hardly ever can,
-/// and what can be told there lies in the largest facets, many of which are parallel.
+/// Examines a whole pixel where one ray is not enough. Between the edges of small gems it hardly ever is. Where it is,
+/// it lies in the largest facets, many of which are parallel.
 fn look_closer(colors: &Colors, looks: &mut [Look]) {
     let untold: Vec<&mut Look> =
         looks.iter_mut().filter(|look| look.dispersive > 0.0 && look.apart.is_none()).collect();
@@ -158,13 +158,13 @@ fn look_closer(colors: &Colors, looks: &mut [Look]) {
         let share = share_apart(&look.cell.rays(colors), look.cell.middle());
         look.apart = Some(if share >= SEEN_SHARE { SEEN_PIXELS } else { 0.0 });
         if share >= SEEN_SHARE {
-            // It was all of a pixel.
+            // The whole pixel was examined.
             (look.dispersive, look.weight) = (look.dispersive.max(1.0), 1.0);
         }
     }
 }
 
-/// The place where the first of a cell's walks ends, if that is on a diffuse surface that is seen by way of others.
+/// Returns the place where the first of a cell's walks ends, if that is on a diffuse surface seen by way of others.
 fn place(walks: &[ColorWalk; 5], size: DVec2) -> Option<ReachedPlace> {
     let of = |walk: &ColorWalk| walk.end.filter(|_| walk.diffuse).map(|end| end.0.position);
     let position = of(&walks[0]).filter(|_| !walks[0].met.is_empty())?;
@@ -189,7 +189,7 @@ impl ViewCell {
         self.size.x * f64::from(SIDE) >= f64::from(colors.world.scene.film.width)
     }
 
-    /// Its halves along each side that can be divided.
+    /// Returns its halves along each side that can be divided.
     fn parts(&self) -> Vec<Self> {
         let count = |size: f64| if size > SMALLEST { 2 } else { 1 };
         let (columns, rows) = (count(self.size.x), count(self.size.y));
@@ -203,7 +203,7 @@ impl ViewCell {
     }
 }
 
-/// At most so many cells: all targets get alike, and those that want less leave it to the others.
+/// Returns at most `most` cells. All targets get the same number, and those that need less leave the rest to others.
 fn fairly(mut cells: Vec<(usize, ViewCell)>, most: usize) -> Vec<ViewCell> {
     cells.sort_by_key(|cell| cell.0);
     let mut groups: Vec<&[(usize, ViewCell)]> = cells.chunk_by(|a, b| a.0 == b.0).collect();
@@ -219,7 +219,7 @@ fn fairly(mut cells: Vec<(usize, ViewCell)>, most: usize) -> Vec<ViewCell> {
     chosen
 }
 
-/// How many pixels colors are apart on so many pixels or more. Where it cannot be told, it is taken to be as elsewhere.
+/// Returns how many pixels apart colors are, on `enough` pixels or more. Where that is unknown, it is as elsewhere.
 fn pixels_apart<'a>(looks: impl Iterator<Item = &'a Look> + Clone, enough: f64) -> f64 {
     let area = |look: &Look| look.dispersive * look.weight;
     let all: f64 = looks.clone().map(area).sum();

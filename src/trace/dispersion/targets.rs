@@ -1,4 +1,4 @@
-//! Where dispersive objects are, and the smooth ones in or through which they may be seen.
+//! Where dispersive objects are, and the smooth objects in or through which they may be seen.
 
 use super::color_walk::{ColorWalk, Colors};
 use crate::material::Material;
@@ -7,9 +7,9 @@ use crate::shape::Ball;
 
 /// Dispersion over fewer pixels is not seen.
 pub const SEEN_PIXELS: f64 = 0.2;
-/// Most boxes of either kind: of more objects, neighbors share one.
+/// Maximum number of boxes of either kind. If there are more objects, neighbors share a box.
 const MOST: usize = 48;
-/// How much wider a beam is taken than the rays around it: what they enclose may bulge out between them.
+/// How much wider than the rays around it a beam is taken to be: what they enclose may bulge out between them.
 const WIDER: f64 = 1.25;
 
 /// A box around an object, or around neighbors.
@@ -25,7 +25,7 @@ impl SearchTarget {
 }
 
 pub struct Targets {
-    /// Dispersive ones first.
+    /// The targets, dispersive ones first.
     pub all: Vec<SearchTarget>,
     /// The target that each object belongs to, if any.
     of_object: Vec<Option<usize>>,
@@ -54,10 +54,10 @@ impl Targets {
         Self { all, of_object }
     }
 
-    /// The first target that a beam may touch which not all of its rays have hit; none if there is none.
+    /// Returns the first target that a beam may touch and that not all of its rays have hit; `None` if there is none.
     ///
-    /// Rays that went by the same objects are one beam on their next piece: as wide as they are apart. Of one that goes
-    /// its own way it is only known how wide a beam it would be that nothing has bent: `width` is its angle.
+    /// Rays that passed the same objects are one beam on their next segment, as wide as they are apart. For a ray that
+    /// goes its own way, only the width of a beam that nothing has bent is known: `width` is its angle.
     pub fn touched(&self, walks: &[ColorWalk], width: f64) -> Option<usize> {
         let met = |walk: &ColorWalk, target: usize| {
             walk.met
@@ -74,16 +74,16 @@ impl Targets {
     }
 }
 
-/// A ray, and how far from it others are that go along with it.
+/// A ray, and how far from it other rays lie that go along with it.
 struct Beam {
     ray: Ray,
     length: f64,
-    /// At its start, and how much more for each unit of its length.
+    /// Radius at its start, and its increase per unit of length.
     radius: f64,
     slope: f64,
 }
 
-/// The beams of rays that start together.
+/// Returns the beams of rays that start together.
 fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
     let mut beams = Vec::new();
     let longest = walks.iter().map(|walk| walk.legs.len()).max().unwrap_or(0);
@@ -114,7 +114,7 @@ fn beams(walks: &[ColorWalk], width: f64) -> Vec<Beam> {
 }
 
 impl Beam {
-    /// Whether a box lies within the beam in part, or may.
+    /// Returns whether a box may lie partly within the beam.
     fn touches(&self, bounds: &Bounds) -> bool {
         let (half, middle) = (0.5 * bounds.size().length(), bounds.center() - self.ray.origin);
         let farthest = (middle.dot(self.ray.direction) + half).clamp(0.0, self.length);

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::film::RANKS;
 
-/// Of each pixel, the objects that its camera samples hit, with how many did.
+/// For each pixel, the objects that its camera samples hit, and how many samples hit each.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Coverage(Vec<Vec<ObjectSamples>>);
 
@@ -23,7 +23,7 @@ impl Coverage {
         self.0.len()
     }
 
-    /// Whether all objects are among so many.
+    /// Whether all object numbers are less than `objects`.
     pub fn is_among(&self, objects: usize) -> bool {
         self.0.iter().flatten().all(|covered| (covered.object as usize) < objects)
     }
@@ -37,8 +37,8 @@ impl Coverage {
         }
     }
 
-    /// The numbers that stand for most of a pixel, as the bits of f32, and the samples of each; the most come first.
-    /// All objects have a number, which several may share.
+    /// Returns the ids that cover most of a pixel, as the bits of f32, and the samples of each, in descending order.
+    /// Each object has an id, which several may share.
     pub fn ranks(&self, pixel: usize, ids: &[u32]) -> [(u32, u32); RANKS] {
         let mut found: Vec<(u32, u32)> = Vec::new();
         for &ObjectSamples { object, samples } in self.0.get(pixel).into_iter().flatten() {

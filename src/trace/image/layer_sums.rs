@@ -13,17 +13,17 @@ use crate::trace::spectrum_sample::Spectrum;
 /// Sums of the pixels of a tile.
 #[derive(Default, Serialize, Deserialize)]
 pub struct LayerSums {
-    /// A row of numbers for each pixel; and the same of samples that are subtracted, where there may be any: of light
-    /// alone, and of what is made of samples.
+    /// A row of numbers for each pixel, and another for samples that are subtracted, if there may be any. The latter
+    /// only counts for light and for what is computed from samples.
     rows: [Vec<f64>; 2],
-    /// The depth of what each pixel's places are of.
+    /// The depth of the point that each pixel's position and uv belong to.
     depths: Vec<f64>,
     /// The objects of each pixel, if there are mattes.
     pub covered: Coverage,
 }
 
 impl LayerSums {
-    /// Of so many pixels; some samples of theirs are subtracted, or none is.
+    /// Creates the sums of `pixels` pixels; `is_signed` tells whether some of their samples are subtracted.
     pub fn new(layers: &Layers, pixels: usize, is_signed: bool) -> Self {
         match layers.is_empty() {
             true => Self::default(),
@@ -41,8 +41,8 @@ impl LayerSums {
         lengths(self) == lengths(other)
     }
 
-    /// Adds a sample of a pixel: what the image gets of it, and what it left in the layers. `early` are those of the
-    /// first half: they and the others are each spread as evenly as all are, as every other one would not be.
+    /// Adds a sample of a pixel: its contribution to the image and to the layers. `early` samples are those of the
+    /// first half. Each half is spread as evenly as all samples are, which every other sample would not be.
     pub fn add(&mut self, layers: &Layers, pixel: usize, early: bool, sample: &Sample, left: &SampleRow) {
         let row = &mut self.rows[usize::from(sample.is_subtracted)][pixel * layers.numbers..][..layers.numbers];
         if let Some(object) = left.object.filter(|_| !layers.ids.is_empty() && !sample.is_subtracted) {
@@ -81,33 +81,33 @@ impl LayerSums {
         }
     }
 
-    /// The row of a pixel, and that of its samples that are subtracted, which may be empty.
+    /// Returns the row of a pixel, and that of its samples that are subtracted, which may be empty.
     pub fn rows(&self, layers: &Layers, pixel: usize) -> [&[f64]; 2] {
         let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
         self.rows.each_ref().map(|rows| rows.get(range.clone()).unwrap_or_default())
     }
 
-    /// The same, to add to them.
+    /// Returns the row of a pixel, and that of its samples that are subtracted, to add to them.
     pub fn rows_mut(&mut self, layers: &Layers, pixel: usize) -> [&mut [f64]; 2] {
         let range = pixel * layers.numbers..(pixel + 1) * layers.numbers;
         self.rows.each_mut().map(|rows| rows.get_mut(range.clone()).unwrap_or_default())
     }
 
-    /// The sums of luminance that shadow catchers send to a pixel, if there are any.
+    /// Returns the sums of luminance that shadow catchers send to a pixel, if there are any.
     pub fn caught(&self, layers: &Layers, pixel: usize) -> Option<CatcherLight<f64>> {
         let of = |row: &[f64]| layers.caught(row, &[], 1.0).map(|caught| layers.luminance_caught(&caught));
         layers.catches().then(|| self.rows(layers, pixel)[0]).and_then(of)
     }
 }
 
-/// What the sums of what photons show count in an image.
+/// The weights of sums over photons in an image.
 #[derive(Clone, Copy, Debug)]
 pub struct SplatCounts {
     /// In all layers but the halves.
     pub image: f64,
-    /// In the halves, times that: 1 each where as many samples have photons in both.
+    /// In the halves, relative to `image`: 1 each where as many samples have photons in both.
     pub halves: [f64; 2],
-    /// For how many samples of each pixel those of each replicate are, where there are replicates.
+    /// For each replicate, the number of samples of each pixel that its photons stand for, if there are replicates.
     pub samples: Option<[f64; REPLICATES]>,
 }
 
@@ -115,21 +115,21 @@ pub struct SplatCounts {
 pub struct PixelSums<'a> {
     /// Its row of sums, and that of samples that are subtracted.
     pub sums: [&'a [f64]; 2],
-    /// The same of what photons show, which is no sum over samples; empty where they show nothing.
+    /// The row of what photons contribute, which is no sum over samples; empty where they contribute nothing.
     pub splatted: &'a [f64],
-    /// What that counts beside the samples.
+    /// The weights of the photons relative to the samples.
     pub counts: SplatCounts,
-    /// The variance of the mean, where replicates tell it.
+    /// The variance of the mean, if replicates measure it.
     pub variance: Option<[f64; 3]>,
-    /// The sum of the samples that were kept, of those that are added and subtracted, and what they count.
+    /// The sums of the samples that were kept, both added and subtracted, and their weights.
     pub rgb: [[f64; 3]; 2],
     pub weights: SampleWeights,
-    /// Which objects the pixels of its tile show, and its place among them.
+    /// The objects that the pixels of its tile show, and its index among these pixels.
     pub covered: &'a Coverage,
     pub place: usize,
 }
 
-/// The images of the layers, as yet without values.
+/// Returns the images of the layers, as yet without values.
 pub fn images(layers: &Layers) -> Vec<LayerImage> {
     let image = |layer: Layer, name: String| LayerImage { layer, name, values: Vec::new() };
     let of_layer = |&layer: &Layer| match layer {
@@ -140,14 +140,14 @@ pub fn images(layers: &Layers) -> Vec<LayerImage> {
     layers.wanted.iter().flat_map(of_layer).collect()
 }
 
-/// The spectra, as yet without values; none if they are not asked for.
+/// Returns the spectra, as yet without values, if requested.
 pub fn spectral_image(layers: &Layers) -> Option<SpectralImage> {
     let spectrum = layers.spectrum.as_ref()?;
     Some(SpectralImage { bands: spectrum.bands, has_stokes: spectrum.has_stokes, values: Vec::new() })
 }
 
 impl PixelSums<'_> {
-    /// Writes the pixel's values into those that its tile has of each layer.
+    /// Writes the pixel's values into its tile's values of each layer.
     pub fn write(&self, layers: &Layers, images: &mut [Vec<f32>]) {
         let mut images = images.iter_mut();
         for &layer in &layers.wanted {
@@ -186,7 +186,7 @@ impl PixelSums<'_> {
         }
     }
 
-    /// Writes the pixel's spectrum into those of its tile.
+    /// Writes the pixel's spectrum into the spectra of its tile.
     pub fn write_spectrum(&self, spectrum: &Spectrum, spectra: &mut [f32]) {
         let numbers = spectrum.numbers();
         for (number, value) in spectra[self.place * numbers..][..numbers].iter_mut().enumerate() {
@@ -194,20 +194,21 @@ impl PixelSums<'_> {
         }
     }
 
-    /// The sums of a number over samples that are added and subtracted, and what photons show of it.
+    /// Returns the sums of a number over samples that are added and subtracted, and what photons contribute to it.
     fn number(&self, at: usize) -> ([f64; 2], f64) {
         let of = |row: &[f64]| row.get(at).copied().unwrap_or_default();
         (self.sums.map(of), of(self.splatted))
     }
 
-    /// The mean of a number that is light, with what photons show.
+    /// Returns the mean of a number that is light, including what photons contribute.
     fn light(&self, at: usize) -> f64 {
         let (sums, splatted) = self.number(at);
         self.weights.sum(sums) / self.weights.taken() + splatted
     }
 
-    /// The mean of a channel over so many samples that are added and subtracted, of which these are the sums: by their
-    /// own weights, but so that this mean and that of all other samples have the mean of all.
+    /// Returns the mean of a channel over a part of the samples, from the sums and numbers of those added and
+    /// subtracted. It uses the part's own weights, but such that this mean and that of all other samples average to the
+    /// mean of all.
     fn half(&self, sums: [f64; 2], taken: [u32; 2], channel: usize) -> f64 {
         let (weights, all) = (&self.weights, self.rgb.map(|rgb| rgb[channel]));
         let [own, others] = [weights.of_part(taken), weights.of_others(taken)];
@@ -225,7 +226,7 @@ impl PixelSums<'_> {
         match layer {
             Layer::Samples => weights.kept().into(),
             Layer::Position | Layer::Uv => sums[0],
-            // Photons land independently: the sum of their squares estimates the variance of their sum.
+            // Photons land independently, so the sum of their squares estimates the variance of their sum.
             Layer::Variance => self.variance.map_or_else(
                 || weights.variance(self.rgb.map(|rgb| rgb[channel]), sums[0] + sums[1]) + self.counts.image * splatted,
                 |variance| variance[channel],

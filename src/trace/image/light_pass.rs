@@ -1,10 +1,10 @@
-//! The light pass: caustics, by photons that are sent through glass and over mirrors to what the camera sees.
+//! The light pass: caustics from photons that are sent through glass and over mirrors to what the camera sees.
 //!
-//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera; and so all of those paths
-//! whose light and first smooth surface photons are sent from and to. The camera's rays leave exactly these out, so
-//! that nothing counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport
-//! Simulation*, section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with
-//! Lightweight Photon Mapping*, the split by kind of path.
+//! It finds the paths light, one or more smooth surfaces, one that scatters widely, camera: all of those whose light
+//! and first smooth surface photons are sent from and to. The camera's rays leave out exactly these, so that nothing
+//! counts twice and no weights are needed. Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
+//! section 10.3.4, has the importance; Grittmann et al. 2018, *Efficient Caustic Rendering with Lightweight Photon
+//! Mapping*, the split by kind of path.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,15 +24,15 @@ const AT_ONCE: usize = 64;
 /// Sets these random numbers apart from those of the camera.
 const SEED: u64 = 0x7068_6f74;
 
-/// Who looks on while an image is made.
+/// The callbacks of a render in progress.
 pub struct Observer<'a> {
-    /// Is told how many camera samples, or photons, were done since it was last told, from any thread.
+    /// Called with the number of camera samples, or photons, done since the last call; from any thread.
     pub progress: &'a (dyn Fn(u64) + Sync),
-    /// Says when to stop for a while; is asked again and again, from any thread.
+    /// Returns whether to stop for a while; called again and again, from any thread.
     pub is_due: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// How far a light pass is. It goes on where it stopped.
+/// How far a light pass is. It continues where it stopped.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct LightPassProgress {
     /// Batches that are done.
@@ -42,7 +42,7 @@ pub struct LightPassProgress {
 }
 
 impl LightPassProgress {
-    /// The part of a pass's photons that are sent.
+    /// Returns the share of a pass's photons that have been sent.
     pub(in crate::trace) fn part(&self, world: &World, pass: &Pass) -> f64 {
         let Some(targets) = world.photon_targets.as_ref().filter(|_| self.batches > 0) else { return 0.0 };
         let batches = batches_of_pass(&pass.targets(world, targets, 1), 0, 0);
@@ -51,11 +51,11 @@ impl LightPassProgress {
     }
 }
 
-/// Sends the photons of a world's light pass that have not been sent, until it shall stop, and adds what they show to
-/// the tiles of a part of the image; answers whether all are sent. `progress` is told how many are done. The first pass
-/// sends all photons; where there are replicates, every pass sends some.
+/// Sends the photons of a world's light pass that have not been sent, until told to stop, and adds their splats to the
+/// tiles of a part of the image. Returns whether all are sent. Calls `progress` with the number that is done. The first
+/// pass sends all photons; with replicates, every pass sends some.
 ///
-/// Every part sends all photons, which may be seen anywhere: a sum of what the parts found would have other last bits.
+/// Every part sends all photons, which may be seen anywhere: summing what the parts found would change the last bits.
 pub fn show<const N: usize, P: Polarization<N>>(
     world: &World,
     pass: &Pass,
@@ -65,7 +65,7 @@ pub fn show<const N: usize, P: Polarization<N>>(
     watch: &Observer,
 ) -> bool {
     let Some(targets) = &world.photon_targets else { return true };
-    // Where every pass sends photons, they count as much as its samples.
+    // Where every pass sends photons, they weigh as much as its samples.
     let weight = pass.replicate.map_or(1.0, |_| pass.numbers.len() as f64);
     let (window, numbers) = (world.scene.film.window(), world.layers.numbers);
     for tile in tiles.iter_mut().filter(|tile| tile.splatted.pixels.is_empty()) {
@@ -116,7 +116,7 @@ fn add_to_layers(world: &World, splat: &Splat, row: &mut [f64]) {
     world.layers.add_to(if early { Layer::HalfA } else { Layer::HalfB }, row, rgb.map(|x| 2.0 * x));
 }
 
-/// Sends all of them and hands over what they show, pixel by pixel, in an order that never changes; holds no image.
+/// Sends all photons and calls `take` with their splats, pixel by pixel, in a fixed order; stores no image.
 pub fn splats<const N: usize, P: Polarization<N>>(
     world: &World,
     take: &mut dyn FnMut(u32, Splat),
@@ -128,7 +128,7 @@ pub fn splats<const N: usize, P: Polarization<N>>(
     sending
 }
 
-/// The same of those that have not been sent, until it shall stop; answers whether all are.
+/// Sends the photons that have not been sent, until told to stop; returns whether all are sent.
 fn send_on<const N: usize, P: Polarization<N>>(
     world: &World,
     targets: &PhotonTargets,
@@ -144,7 +144,7 @@ fn send_on<const N: usize, P: Polarization<N>>(
         };
         let done = in_parallel(group.len(), &send);
         for (batch, sent) in group.iter().zip(done) {
-            // Splats are added in the order of the batches: what was found beyond a gap is found again.
+            // Splats are added in the order of the batches, so those after a gap are found again later.
             let Some(sent) = sent else { return false };
             (watch.progress)(batch.count);
             (sending.batches, sending.photons) = (sending.batches + 1, sending.photons + batch.count);

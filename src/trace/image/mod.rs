@@ -1,4 +1,4 @@
-//! An image in the making, pass by pass over its tiles: sums, noise, when it is enough, and what is saved.
+//! A render in progress, pass by pass over its tiles: sums, noise, when it is enough, and what is saved.
 
 mod blur;
 mod coverage;

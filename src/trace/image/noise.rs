@@ -1,20 +1,20 @@
-//! The noise of an image, told by replicates.
+//! The noise of an image, estimated from replicates.
 //!
-//! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. It is itself a
-//! random number, and the bound has to hold for the one that was drawn. Two things are not known of it:
+//! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. The actual error is
+//! a random number, and the bound has to hold for the one that was drawn. Two things about it are unknown:
 //!
-//! - E is an estimate. Its variance is told by how far the |e_r|^2 are apart: s^2 / R.
-//! - The error that was drawn lies around E. Where pixels know nothing of each other it hardly does, for they are many;
-//!   but light vertices and photons are shared by pixels, so that a whole image may be too bright. Of normal errors,
-//!   R |mean e_r|^2 has the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels, and the products of two
-//!   replicates tell that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of
-//!   which the mean has R times as many: they add (s^2 - g^2) / R.
+//! - E is an estimate. Its variance is s^2 / R, from how much the |e_r|^2 differ.
+//! - The error that was drawn varies around E. With independent pixels it hardly does, since there are many; but pixels
+//!   share light vertices and photons, so that a whole image may be too bright. For normal errors, R |mean e_r|^2 has
+//!   the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels. The products of two replicates estimate
+//!   that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of which the mean has
+//!   R times as many: they add (s^2 - g^2) / R.
 //!
 //! The bound is R E + t sqrt(s^2 / R + g^2 + (s^2 - g^2) / R), over R, with Student's t of R - 1 degrees of freedom.
 //!
-//! Light that one replicate found alone may be one of many rare finds, and others may have been missed. Where one is
-//! found, up to 4.74 are expected, at 95 % (Garwood 1936, *Fiducial Limits for the Poisson Distribution*): so many
-//! times as much light as was found may be missing, wherever it is. Its square adds to the bound.
+//! Light that only one replicate found may be one of many rare finds, of which others were missed. Where one is found,
+//! up to 4.74 are expected, at 95 % (Garwood 1936, *Fiducial Limits for the Poisson Distribution*): that many times as
+//! much light as was found may be missing, wherever it is. Its square adds to the bound.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,49 +22,49 @@ use super::blur::squares_of_blur;
 use crate::film::{Filter, TilePlace};
 use crate::trace::replicates::{Products, REPLICATES, Replicates};
 
-/// How far the replicates of an image are apart, and what that tells of their mean.
+/// How much the replicates of an image differ, and what that tells about their mean.
 ///
-/// Errors are relative: the root of the mean square over all pixels and film channels, by that of the image.
+/// Errors are relative: the root mean square over all pixels and film channels, divided by that of the image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
-    /// Camera samples of each pixel that it is the noise of.
+    /// Camera samples of each pixel for which the noise is measured.
     pub samples: u32,
-    /// The error that is expected.
+    /// The expected error.
     pub expected: f64,
     /// The error is smaller than this in 95 of 100 renders of as many samples, with light as rare as that of the
-    /// outlier. A render that takes samples until this is small enough stops rather when it is too small by chance.
+    /// outlier. A render that takes samples until this is small enough tends to stop when it is too small by chance.
     pub at_most: f64,
-    /// The tile of 16 x 16 pixels with most noise: the first column and row, and its error, relative to the image.
+    /// The tile of 16 x 16 pixels with the most noise: its first column and row, and its error relative to the image.
     pub worst_tile: TileNoise,
-    /// A pixel that makes much of the noise by what one replicate found alone: light that is hardly ever found.
+    /// A pixel that causes much of the noise by light that only one replicate found: light that is hardly ever found.
     pub outlier: Option<Outlier>,
 }
 
-/// What replicates tell of the error of their mean.
+/// What replicates tell about the error of their mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// How far the image is off by chance.
+    /// The random error of the image.
     pub noise: Noise,
-    /// By how much gathered photons blur it; 0 where none are. Relative to the image, as noise is.
+    /// How much gathered photons blur it, relative to the image like the noise; 0 without them.
     pub blur: Estimate,
-    /// The noise of alpha, where shadow catchers make some: the root of the mean square over all pixels, by that of
-    /// alpha itself. Alpha is never above 1, so no light is so rare that it could be far off unseen.
+    /// The noise of alpha, where shadow catchers cause some: the root mean square over all pixels, divided by that of
+    /// alpha itself. Alpha never exceeds 1, so no light is rare enough to make it far off unseen.
     pub alpha: Option<Estimate>,
 }
 
-/// An error as it is estimated.
+/// An estimate of an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// What is expected.
+    /// The expected error.
     pub expected: f64,
-    /// It is smaller than this in 95 of 100 renders.
+    /// The error is smaller than this in 95 of 100 renders.
     pub at_most: f64,
 }
 
 impl Measured {
-    /// The error is smaller than this in 95 of 100 renders, rather more, since both parts of it are at most what is
-    /// told. The noise of a pixel has nothing to do with how far it is blurred, so squares add up. The larger of the
-    /// errors of colors and alpha counts.
+    /// Returns a bound on the error that holds in 95 of 100 renders or more, since it combines two such bounds. The
+    /// noise of a pixel is independent of its blur, so their squares add up. The larger of the errors of colors and
+    /// alpha counts.
     pub fn at_most(&self) -> f64 {
         let alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
         self.noise.at_most.hypot(self.blur.at_most).max(alpha)
@@ -76,16 +76,16 @@ impl Measured {
 pub struct TileNoise {
     /// Its first column and row in the format.
     pub corner: [i64; 2],
-    /// The error that is expected of it, relative to the image.
+    /// Its expected error, relative to the image.
     pub expected: f64,
 }
 
-/// A pixel whose noise tells that its light is hardly ever found.
+/// A pixel whose noise shows that its light is hardly ever found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outlier {
     /// Its column and row in the format.
     pub pixel: [i64; 2],
-    /// Its part of the image's variance.
+    /// Its share of the image's variance.
     pub share: f64,
     /// The replicate that found it, counted from 0.
     pub replicate: u32,
@@ -93,28 +93,28 @@ pub struct Outlier {
 
 /// Student's t for 95 %, one side, 7 degrees of freedom.
 const STUDENT: f64 = 1.894_578_605;
-/// A pixel with more than this part of all variance is looked at (row A7 of the stability catalog).
+/// A pixel with more than this share of all variance may be an outlier (row A7 of the stability catalog).
 const MUCH: f64 = 0.1;
-/// The part of a pixel's variance that one of eight replicates makes where it stands out: the largest of eight normal
-/// numbers is as far from their mean in 1 of 20 cases (Grubbs 1950, *Sample Criteria for Testing Outlying
-/// Observations*: 2.126 standard deviations; 2.126^2 / 7).
+/// Share of a pixel's variance above which one of eight replicates stands out: the largest of eight normal numbers is
+/// as far from their mean in 1 of 20 cases (Grubbs 1950, *Sample Criteria for Testing Outlying Observations*: 2.126
+/// standard deviations; 2.126^2 / 7).
 const ALONE: f64 = 0.6457;
-/// How many finds may be expected where there is one: a Poisson number of this mean is 0 or 1 in 5 of 100 cases.
+/// How many finds may be expected where there is one: a Poisson number with this mean is 0 or 1 in 5 of 100 cases.
 const UNSEEN: f64 = 4.743_864_518;
 
 /// Sums over some pixels.
 #[derive(Default)]
 struct Spread {
-    /// Of the replicates' deviations from their mean, and of squares of the mean.
+    /// Sums of products of the replicates' deviations from their mean, and of the squared mean.
     products: Products,
     squares: f64,
     numbers: f64,
-    /// The pixel with the largest deviations in which one replicate stands out: where it is, and how large they are.
+    /// The pixel with the largest deviations in which one replicate stands out, and the sum of their squares.
     outlier: Option<(Outlier, f64)>,
 }
 
 impl Spread {
-    /// The sum of all squared deviations.
+    /// Returns the sum of all squared deviations.
     fn total(&self) -> f64 {
         (0..REPLICATES).map(|i| self.products.0[i][i]).sum()
     }
@@ -149,10 +149,10 @@ impl Spread {
         }
     }
 
-    /// The mean square error of a replicate, and the 95 % bound of the error of the mean of all, times their number.
+    /// Returns the mean square error of a replicate, and the 95 % bound of that of the mean of all, times their number.
     fn errors(&self) -> [f64; 2] {
         let (count, numbers) = (REPLICATES as f64, self.numbers.max(1.0));
-        // Each replicate is a part of the mean that its deviation is from.
+        // Each replicate is a part of the mean from which it deviates.
         let errors: [f64; REPLICATES] =
             std::array::from_fn(|i| self.products.0[i][i] / numbers * count / (count - 1.0));
         let mean = errors.iter().sum::<f64>() / count;
@@ -172,10 +172,10 @@ impl Spread {
         [mean, mean + STUDENT * variance.sqrt()]
     }
 
-    /// A mean square error as an error relative to the mean of all replicates.
+    /// Returns a mean square error as an error relative to the mean of all replicates.
     fn relative(&self, square: f64) -> f64 {
         let (numbers, [mean, _]) = (self.numbers.max(1.0), self.errors());
-        // The square of the mean has its variance in it.
+        // The square of the mean includes its variance.
         let signal = self.squares / numbers - mean / REPLICATES as f64;
         match square / signal {
             _ if square == 0.0 => 0.0,
@@ -184,7 +184,7 @@ impl Spread {
         }
     }
 
-    /// What the sums tell of so many samples. `worst` is the tile with the largest mean square error.
+    /// Returns the noise after `samples` samples. `worst` is the tile with the largest mean square error.
     fn noise(&self, samples: u32, worst: Option<([i64; 2], f64)>) -> Noise {
         let (count, total, [mean, bound]) = (REPLICATES as f64, self.total(), self.errors());
         let outlier = self.outlier.map(|(outlier, sum)| Outlier { share: sum / total, ..outlier });
@@ -201,7 +201,7 @@ impl Spread {
     }
 }
 
-/// The errors of an image's tiles, whose first pixels are given, after so many samples of each replicate.
+/// Measures the errors of an image's tiles after `each` samples of each replicate. `first` is the image's first pixel.
 pub fn measure<'t>(
     tiles: impl Iterator<Item = (&'t Replicates, TilePlace)>,
     first: [i32; 2],
@@ -244,9 +244,9 @@ mod tests {
     use super::*;
     use crate::math::{BranchKey, Sampler};
 
-    /// Of renders of 1024 pixels by eight replicates of so many samples: the shares that are off by no more than they
-    /// say, and in which one replicate found much of the noise alone. `value` is that of a sample with a random number
-    /// in a pixel, and `truth` its mean there.
+    /// Renders 1024 pixels with eight replicates of `samples` samples, many times. Returns the share of renders that
+    /// are off by no more than their bound, and the share in which one replicate found much of the noise alone. `value`
+    /// is that of a sample with a random number in a pixel, and `truth` its mean there.
     fn told(value: &dyn Fn(u32, f64) -> f64, truth: &dyn Fn(u32) -> f64, samples: u32) -> [f64; 2] {
         const RENDERS: u32 = 60;
         const PIXELS: u32 = 1024;
@@ -283,7 +283,7 @@ mod tests {
         // Light that a render finds once or twice, or never, in one of many pixels, and a hundred times as bright.
         for (pixels, chance, samples) in [(1024, 1.2e-5, 16), (100, 8e-5, 16), (1024, 1e-5, 8)] {
             let bright = |pixel| if pixel < pixels { 100.0 } else { 0.0 };
-            // What a thousand times the number has behind its point is as good as another.
+            // The fraction of a thousand times the number is as good as another random number.
             let value =
                 |pixel: u32, u: f64| 0.7 + 0.6 * (1e3 * u).fract() + if u < chance { bright(pixel) } else { 0.0 };
             let [kept, found] = told(&value, &|pixel| 1.0 + chance * bright(pixel), samples);

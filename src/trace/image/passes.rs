@@ -10,25 +10,25 @@ use crate::trace::pass::{Pass, Stage};
 use crate::trace::replicates::{HALF, REPLICATES};
 use crate::trace::stats::Stats;
 
-/// Samples of each pixel in the first pass, where no photons are gathered; each later pass doubles them.
+/// Samples of each pixel in the first pass, if no photons are gathered; each later pass doubles them.
 const FIRST_PASS: u32 = 16;
 
-/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once: but where photons
-/// are gathered, a pass is as long as its map lasts.
+/// Samples of each pixel in the largest pass with light vertices, all of which are in memory at once. Where photons are
+/// gathered, a pass lasts as long as its map.
 const MOST_AT_ONCE: u32 = 64;
 
-/// How far an image in the making is, but for the pixels that are ahead in a pass.
+/// How far a render is, except for the pixels that are ahead in a pass.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Progress {
-    /// Camera samples of each pixel, and passes.
+    /// Camera samples of each pixel, and passes, that are done.
     pub samples: u32,
     pub passes: u32,
-    /// Where there are replicates.
+    /// The stage of the replicates, if there are any.
     pub(in crate::trace) stage: Stage,
-    /// What they told when they last had as many samples each.
+    /// What the replicates showed when they last had the same number of samples each.
     pub measured: Option<Measured>,
     pub sending: LightPassProgress,
-    /// Of photons that were gathered, and paths from the lights.
+    /// Statistics of gathered photons, and of paths from the lights.
     pub(in crate::trace) gathered: Stats,
     pub gathered_photons: u64,
 }
@@ -42,7 +42,7 @@ impl Progress {
         Pass::of_one_render(world, self.passes, numbers)
     }
 
-    /// Camera samples of each pixel after the next pass.
+    /// Returns the camera samples of each pixel after the next pass.
     pub fn end_of_pass(&self, world: &World) -> u32 {
         self.samples + self.pass(world).numbers.len() as u32
     }
@@ -56,8 +56,8 @@ impl Progress {
         }
     }
 
-    /// For how many samples of each pixel photons of each replicate have been shown, where every pass sends some: of
-    /// the pass under way, for as large a part of its samples as of its photons.
+    /// Returns the number of samples of each pixel that the photons of each replicate stand for, where every pass sends
+    /// some. Samples of the pass under way count in proportion to the photons it has sent.
     fn splatted_for(&self, world: &World) -> [f64; REPLICATES] {
         let mut splatted_for = std::array::from_fn(|replicate| f64::from(self.stage.samples_of(replicate as u32)));
         let pass = self.pass(world);
@@ -67,7 +67,7 @@ impl Progress {
         splatted_for
     }
 
-    /// What the sums of what photons show count in the image.
+    /// Returns the weights of sums over photons in the image.
     pub fn shown_counts(&self, world: &World) -> SplatCounts {
         if world.method.stop.is_none() {
             return SplatCounts { image: 1.0, halves: [1.0; 2], samples: None };
@@ -80,25 +80,25 @@ impl Progress {
         SplatCounts { image: over(1.0, all), halves, samples: Some(samples) }
     }
 
-    /// Camera samples of each pixel after the stage of all replicates.
+    /// Returns the camera samples of each pixel after the stage of all replicates.
     pub fn samples_of_stage(&self) -> u32 {
         (self.stage.before.saturating_add(self.stage.size)).saturating_mul(REPLICATES as u32)
     }
 
-    /// Whether its numbers fit together.
+    /// Whether its numbers are consistent.
     pub fn is_whole(&self, world: &World) -> bool {
         let unused = self.stage == Stage::default();
         if world.method.stop.is_some() { self.stage.is_after(self.samples) } else { unused }
     }
 
-    /// Whether a render of a world comes by here, so that all its sums are these.
+    /// Whether a render of a world passes this point, so that all its sums are these.
     pub fn is_on_the_way_of(&self, world: &World) -> bool {
         let samples = (0..self.passes).fold(0, |samples, pass| end_of_pass(world, samples, pass));
         samples == self.samples && samples <= world.method.samples
     }
 }
 
-/// Most samples of a replicate in one pass: as many as share a map, or light vertices that are in memory at once.
+/// Returns the most samples of a replicate in one pass: those that share a map, or light vertices in memory at once.
 pub fn most_at_once(world: &World) -> u32 {
     let map = world.method.map().filter(|_| world.has_map());
     map.map_or(MOST_AT_ONCE, |map| (world.method.samples / map.count).clamp(1, MOST_AT_ONCE))

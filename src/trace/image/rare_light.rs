@@ -1,4 +1,4 @@
-//! Which light made a pixel stand out in one of the replicates.
+//! Finds which light made a pixel stand out in one of the replicates.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -15,10 +15,10 @@ use crate::trace::photon::PassLight;
 use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of;
 
-/// Light that one of the replicates found and no other.
+/// Light that only one of the replicates found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RareLight {
-    /// The name of the light; none where photons of several were gathered.
+    /// The name of the light; `None` where photons of several were gathered.
     pub name: Option<String>,
     /// How often surfaces scattered, mirrored or refracted it on its way.
     pub bounces: u32,
@@ -26,17 +26,17 @@ pub struct RareLight {
     pub found: &'static str,
 }
 
-/// Of all light of the pixel in the replicate, the part that one path must have brought to be what stands out.
+/// Share of the pixel's light in the replicate that one path must have contributed to be what stands out.
 const MUCH: f64 = 0.2;
 
-/// Takes the samples of the pixel that stands out once more, and looks for the brightest light of them, after so many
-/// samples of each replicate. None where it was a photon that the camera saw, which is no sample's.
+/// Repeats the samples of the pixel that stands out, up to `each` of each replicate, and finds the brightest light
+/// among them. Returns `None` if it was a photon that the camera saw, which belongs to no sample.
 pub fn rare_light(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
     in_lanes_of!(world, N, P => brightest::<N, P>(world, outlier, each))
 }
 
 fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlier, each: u32) -> Option<RareLight> {
-    // The brightest light that a sample got, and how much it is.
+    // The brightest light that a sample received, and its amount.
     let of_sample: Cell<Option<(f64, Contribution)>> = Cell::new(None);
     let observer = |found: SensorEvent| {
         let SensorEvent::Light(contribution) = found else { return };
@@ -69,8 +69,8 @@ fn brightest<const N: usize, P: Polarization<N>>(world: &World, outlier: &Outlie
     Some(RareLight { name, bounces: found.bounces, found: word(found.found) })
 }
 
-/// The samples of a replicate's passes, up to so many, in the stages of the render: what light a pass has depends on
-/// how long it is. Those after one that the time cut short may be others.
+/// Returns the samples of a replicate's passes, up to `each`, in the stages of the render: the light of a pass depends
+/// on its length. Samples after a stage that ran out of time may differ.
 fn numbers_of_passes(world: &World, each: u32) -> Vec<Range<u32>> {
     let (mut passes, mut before, most) = (Vec::new(), 0, most_at_once(world));
     while before < each {

@@ -1,4 +1,4 @@
-//! An image in the making: pass after pass over its tiles.
+//! A render in progress: pass after pass over its tiles.
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -28,19 +28,19 @@ use crate::trace::walk::Polarization;
 use crate::trace::width::in_lanes_of_layers;
 use crate::trace::{World, media};
 
-/// Tiles whose values are made before they are put into the image.
+/// Tiles whose values are computed before they are put into the image.
 const TILES_AT_A_TIME: usize = 256;
 
-/// What rendering noticed; as programs read it, without what messages alone say.
+/// What rendering noticed. Fields that only messages use are not serialized.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
     /// Camera samples taken.
     pub samples: u64,
-    /// Rays followed, without those to lights.
+    /// Rays traced, without shadow rays.
     pub rays: u64,
     /// Samples left out because they were not finite.
     pub non_finite: u64,
-    /// Column, row and number of the first of them.
+    /// Column, row and sample number of the first of them.
     #[serde(skip)]
     pub first_non_finite: Option<[i64; 3]>,
     /// Mean weight per camera sample of the branches that deterministic transport dropped.
@@ -52,52 +52,52 @@ pub struct Report {
     /// Whether there are more clear materials than may overlap in one place.
     #[serde(skip)]
     pub has_many_media: bool,
-    /// Camera samples of deterministic transport that hit so many surfaces that they went on by chance.
+    /// Camera samples of deterministic transport that hit so many surfaces that they continued by chance.
     pub by_chance: u64,
-    /// Most of the light seen, as a share, that polarization, which is not traced, may change.
+    /// Largest share of the visible light that polarization, which is not traced, may change.
     pub polarization: f64,
-    /// The same in the tile of 16 x 16 pixels where it is largest.
+    /// Largest share of the light that polarization may change in a tile of 16 x 16 pixels.
     pub polarization_of_tile: f64,
     /// All light that camera rays and photons found, as X + Y + Z of every camera sample.
     #[serde(skip)]
     pub light: f64,
-    /// Photons sent by the light pass.
+    /// Photons sent by the light pass and for maps.
     pub photons: u64,
-    /// How far the image is off by chance, where a stop rule has it measured.
+    /// The random error of the image, if a stop rule measures it.
     #[serde(skip)]
     pub noise: Option<Noise>,
-    /// By how much photons that were gathered blur it, where a stop rule has it measured.
+    /// How much gathered photons blur it, if a stop rule measures it.
     #[serde(skip)]
     pub blur: Option<Estimate>,
-    /// What ended the render, if a stop rule could, and it is finished.
+    /// What ended the render, if a stop rule could and it is finished.
     pub stopped_by: Option<Stopped>,
 }
 
-/// Renders the world's image, or the part of it that is asked for. `progress` is told how much is done,
-/// from any thread; in the end that is [`Rendering::work`].
+/// Renders the world's image, or the requested part of it. Calls `progress` with the work done since the last call,
+/// from any thread; all of it adds up to [`Rendering::work`].
 pub fn render(world: &World, progress: &(dyn Fn(u64) + Sync)) -> (Film, Report) {
     let mut rendering = Rendering::of_shard(Cow::Borrowed(world), Shard::WHOLE);
     while rendering.advance(progress) {}
     (rendering.film(), rendering.report())
 }
 
-/// How far an image in the making came.
+/// How far a render in progress has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advance {
     /// All samples are taken.
     Finished,
     /// A pass is finished, and another one is left.
     Passed,
-    /// It stopped within a pass, as it was told to.
+    /// It stopped within a pass, as requested.
     Stopped,
 }
 
-/// How many camera samples a photon counts as in the progress: those that take as long, one at least.
+/// How many camera samples a photon counts as in the progress: as many as take the same time, and at least one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhotonCost {
-    /// One of the light pass.
+    /// For a photon of the light pass.
     pub splatted: u64,
-    /// One of a map.
+    /// For a photon of a map.
     pub stored: u64,
 }
 
@@ -107,25 +107,25 @@ impl Default for PhotonCost {
     }
 }
 
-/// An image in the making. It advances pass by pass, can be looked at after each, and is finished after the last.
+/// A render in progress. It advances pass by pass, can be looked at after each, and is finished after the last.
 ///
-/// A pass takes the next samples of all pixels; where photons are gathered, each pass sends its own before. The light
-/// pass comes before the first. It may stop anywhere between two pixels, be saved there, and go on.
+/// A pass takes the next samples of all pixels; where photons are gathered, each pass first sends its own. The light
+/// pass comes before the first. A render may stop anywhere between two pixels, be saved there, and continue.
 pub struct Rendering<'a> {
     world: Cow<'a, World>,
     shard: Shard,
     tiles: Vec<Tile>,
     progress: Progress,
-    /// What the paths of the pass that was stopped look at.
+    /// The photons and light vertices of the pass that was stopped.
     light: Option<Box<dyn Any + Send + Sync>>,
-    /// How fast it goes, where there is a stop rule.
+    /// How fast it is, if there is a stop rule.
     clock: Clock,
-    /// What counts as work.
+    /// How much work photons count as.
     photon_cost: PhotonCost,
 }
 
 impl<'a> Rendering<'a> {
-    /// An image without samples yet, or one of several parts of it, where all other pixels stay blank.
+    /// Creates a render without samples, or one of several parts of it, where all other pixels stay blank.
     pub fn of_shard(world: Cow<'a, World>, shard: Shard) -> Self {
         let window = world.scene.film.window();
         let tiles = shard.tiles(window).map(|place| Tile::new(&world, place)).collect();
@@ -133,27 +133,27 @@ impl<'a> Rendering<'a> {
         Self { world, shard, tiles, progress, light: None, clock, photon_cost: PhotonCost::default() }
     }
 
-    /// Lets the time of a stop rule run from another moment on.
+    /// Starts the time of a stop rule at another moment.
     pub fn since(self, began: Instant) -> Self {
         Self { clock: Clock::new(began), ..self }
     }
 
-    /// Counts photons as so many camera samples in its [work](Self::work).
+    /// Counts photons as a number of camera samples in its [work](Self::work).
     pub fn counting_photons_as(self, photon_cost: PhotonCost) -> Self {
         Self { photon_cost, ..self }
     }
 
-    /// What is rendered, and how.
+    /// Returns what is rendered, and how.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Camera samples of each pixel that have been taken.
+    /// Returns the camera samples of each pixel that have been taken.
     pub fn samples(&self) -> u32 {
         self.progress.samples
     }
 
-    /// Whether all samples are taken, or enough.
+    /// Whether all samples are taken, or enough of them.
     pub fn is_finished(&self) -> bool {
         match &self.world().method.stop {
             None => self.samples() >= self.world().method.samples,
@@ -161,12 +161,12 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// The work of the method's samples in all parts of the image, by one render.
+    /// Returns the work of the method's samples in all parts of the image, by one render.
     pub fn work_of_all_parts(&self) -> u64 {
         self.work_of(self.world().scene.film.window().pixels())
     }
 
-    /// The work of the method's samples of so many pixels, and of all photons.
+    /// Returns the work of the method's samples of `pixels` pixels, and of all photons.
     fn work_of(&self, pixels: u64) -> u64 {
         let world = self.world();
         let samples = pixels * u64::from(world.method.samples);
@@ -176,9 +176,9 @@ impl<'a> Rendering<'a> {
         samples + splatted * photons(&world.photon_targets) + stored * passes * photons(&world.map_targets)
     }
 
-    /// How many camera samples the image takes, where photons count as those that take as long; with a stop rule,
-    /// about, and better known after each pass: the most that it may take as long as nothing
-    /// [is known](Self::is_work_known).
+    /// Returns the work of the image in camera samples, where photons count as those that take as long. With a stop
+    /// rule, this is an estimate that improves with each pass. As long as nothing [is known](Self::is_work_known), it
+    /// is the most that the image may take.
     pub fn work(&self) -> u64 {
         let (world, all) = (self.world(), self.work_of(self.pixels()));
         match &world.method.stop {
@@ -192,25 +192,25 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// Whether it is known, about, how many that are.
+    /// Whether the work is known, at least roughly.
     pub fn is_work_known(&self) -> bool {
         let stop = self.world().method.stop.as_ref();
         self.is_finished() || stop.is_none_or(|stop| is_wanted_known(stop, &self.progress))
     }
 
-    /// How many of them are done.
+    /// Returns how much of the work is done.
     pub fn done(&self) -> u64 {
         let PhotonCost { splatted, stored } = self.photon_cost;
         self.samples_taken() + splatted * self.progress.sending.photons + stored * self.progress.gathered_photons
     }
 
-    /// Makes the next pass, if there is one, and answers whether another one is left. `progress` is told how much
-    /// of the [work](Self::work) was done since it was last told, from any thread.
+    /// Makes the next pass, if there is one, and returns whether another one is left. Calls `progress` with the
+    /// [work](Self::work) done since the last call, from any thread.
     pub fn advance(&mut self, progress: &(dyn Fn(u64) + Sync)) -> bool {
         self.advance_until(progress, &|| false) == Advance::Passed
     }
 
-    /// The same, but stops once `is_due` says so, which is asked before every pixel of a pass, from any thread.
+    /// Makes the next pass, but stops once `is_due`, called before every pixel and from any thread, returns true.
     pub fn advance_until(&mut self, progress: &(dyn Fn(u64) + Sync), is_due: &(dyn Fn() -> bool + Sync)) -> Advance {
         let stopped = AtomicBool::new(false);
         let stops = || {
@@ -227,7 +227,7 @@ impl<'a> Rendering<'a> {
         if self.is_finished() { Advance::Finished } else { Advance::Passed }
     }
 
-    /// Whether there is a next pass. Decides how many samples the replicates take, if that is not known.
+    /// Whether there is a next pass. Decides how many samples the replicates take, if that is not yet decided.
     fn begin_pass(&mut self) -> bool {
         if let (Some(stop), 0) = (&self.world().method.stop, self.progress.stage.size) {
             self.progress.stage.size = next_stage(stop, &self.progress, &self.clock);
@@ -237,7 +237,7 @@ impl<'a> Rendering<'a> {
         self.world().method.stop.is_some() || !self.is_finished()
     }
 
-    /// Looks at the replicates, if they have as many samples each.
+    /// Measures the replicates, if they have the same number of samples each.
     fn look(&mut self) {
         let (stage, film) = (self.progress.stage, self.world().scene.film);
         if stage.size == 0 && stage.before > 0 && self.world().method.stop.is_some() {
@@ -247,7 +247,7 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// The image of the samples so far.
+    /// Returns the image of the samples so far.
     pub fn film(&self) -> Film {
         let (mut film, counts) = (self.frame(), self.progress.shown_counts(self.world()));
         film.resize(film.height);
@@ -259,7 +259,7 @@ impl<'a> Rendering<'a> {
         film
     }
 
-    /// All of it but its values.
+    /// Returns the film without its values.
     pub fn frame(&self) -> Film {
         let World { scene, layers, .. } = self.world();
         let Window { left, top, width, height } = scene.film.window();
@@ -276,18 +276,18 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// The values of each tile that is made.
+    /// Returns the values of each tile that is rendered.
     pub fn tiles(&self) -> impl Iterator<Item = TileValues> {
         let (frame, counts) = (self.frame(), self.progress.shown_counts(self.world()));
         self.places().map(move |(tile, _)| values_of(self.world(), &frame, tile, counts))
     }
 
-    /// Camera samples taken so far.
+    /// Returns the number of camera samples taken so far.
     pub fn camera_samples(&self) -> u64 {
         self.tiles.iter().map(Tile::samples).sum()
     }
 
-    /// What was noticed so far.
+    /// Returns what was noticed so far.
     pub fn report(&self) -> Report {
         let (mut all, mut first_non_finite, mut polarization_of_tile) = (self.shared_stats(), None, 0.0_f64);
         let shown_counts = self.progress.shown_counts(self.world()).image;
@@ -321,29 +321,29 @@ impl<'a> Rendering<'a> {
         }
     }
 
-    /// What replicates told at the last look, where a stop rule looks.
+    /// Returns what replicates showed at the last look, if a stop rule looks.
     pub fn measured(&self) -> Option<&Measured> {
         self.progress.measured.as_ref().filter(|Measured { noise, .. }| noise.samples >= FIRST_LOOK)
     }
 
-    /// What ended the render, if a stop rule could, and it is finished.
+    /// Returns what ended the render, if a stop rule could and it is finished.
     pub fn stopped_by(&self) -> Option<Stopped> {
         let stop = self.world().method.stop.as_ref().filter(|_| self.is_finished())?;
         Some(Stopped::new(stop, &self.progress))
     }
 
-    /// Which light it is that one replicate found alone, if any did at the last look.
+    /// Returns the light that only one replicate found, if any did at the last look.
     pub fn rare_light(&self) -> Option<RareLight> {
         let noise = self.measured()?.noise;
         rare_light(self.world(), &noise.outlier?, noise.samples / REPLICATES as u32)
     }
 
-    /// What was left out of the light that all parts of an image send alike.
+    /// Returns how many values of photons and light paths, which all parts of an image trace alike, were not finite.
     pub fn non_finite_in_all_parts(&self) -> u64 {
         self.shared_stats().non_finite
     }
 
-    /// Writes how far it is, and all sums.
+    /// Writes its progress and all sums.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -351,16 +351,16 @@ impl<'a> Rendering<'a> {
         saved::save(self.world(), &self.progress, &self.tiles, blocks)
     }
 
-    /// Goes on from what was saved of a rendering of the same world, of other samples perhaps.
+    /// Continues from what was saved of a render of the same world, perhaps with another number of samples.
     ///
     /// # Errors
-    /// If it cannot be read. Then, and if it does not go on, this one must not be used.
+    /// If it cannot be read. Then, and if it does not continue, this render must not be used.
     pub(crate) fn restore(&mut self, blocks: BlockReader) -> Result<Restored> {
         self.light = None;
         saved::restore(&self.world, &mut self.progress, &mut self.tiles, blocks)
     }
 
-    /// Its tiles with their places.
+    /// Returns its tiles with their places.
     fn places(&self) -> impl Iterator<Item = (&Tile, TilePlace)> {
         self.tiles.iter().zip(self.shard.tiles(self.world().scene.film.window()))
     }
@@ -369,7 +369,7 @@ impl<'a> Rendering<'a> {
         self.tiles.iter().map(|tile| tile.sums.len() as u64).sum()
     }
 
-    /// Camera samples taken, with those of the pass that was stopped, as if all pixels took as many.
+    /// Returns the camera samples taken, including those of the pass that was stopped, as if all pixels took as many.
     fn samples_taken(&self) -> u64 {
         let (samples, passes) = (self.progress.samples, self.progress.passes);
         let of_pass = u64::from(self.progress.end_of_pass(self.world()) - samples);
@@ -383,7 +383,7 @@ impl<'a> Rendering<'a> {
         stats
     }
 
-    /// What was noticed in a tile, with the light that photons show there, whose sums count so much.
+    /// Returns the statistics of a tile, including the light that photons show there, whose sums have the given weight.
     fn stats_of(&self, tile: &Tile, shown_counts: f64) -> Stats {
         let mut stats = tile.stats;
         let samples = f64::from(self.samples()) * shown_counts;
@@ -392,7 +392,7 @@ impl<'a> Rendering<'a> {
         stats
     }
 
-    /// Makes the next pass, or goes on with it; answers whether it is finished.
+    /// Makes the next pass, or continues it; returns whether it is finished.
     fn pass<const N: usize, P: Polarization<N>>(&mut self, watch: &Observer) -> bool {
         let world = &*self.world;
         let progress = &mut self.progress;

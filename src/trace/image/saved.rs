@@ -1,4 +1,4 @@
-//! Images in the making as they are saved: how far they are, and the sums of all tiles.
+//! Renders in progress as they are saved: how far they are, and the sums of all tiles.
 
 use std::io;
 
@@ -11,15 +11,15 @@ use crate::error::Result;
 use crate::film::{BlockReader, BlockWriter, Layer};
 use crate::trace::World;
 
-/// What stands before the tiles.
+/// The header before the tiles.
 #[derive(Serialize, Deserialize)]
 struct Header {
     progress: Progress,
     /// Camera samples of each pixel after the pass that was stopped, if any pixel is ahead in it.
     end_of_pass: Option<u32>,
-    /// Of all passes.
+    /// Camera samples of each pixel in all passes.
     samples: u32,
-    /// Of the light pass.
+    /// Photons of the light pass.
     photons: Option<u64>,
     tiles: u64,
 }
@@ -28,14 +28,14 @@ fn photons(world: &World) -> Option<u64> {
     world.method.light_pass.as_ref().map(|pass| pass.photons)
 }
 
-/// What came of a saved render.
+/// What came of restoring a saved render.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Restored {
-    /// Another one goes on from there.
+    /// The new render continues from there.
     Continues,
-    /// It was finished, with more samples per pixel than are asked for: so many. Nothing else was read.
+    /// It was finished with this many samples per pixel, more than requested. Nothing else was read.
     HasMore(u32),
-    /// Why this render cannot go on from there, and how many samples per pixel one that can takes.
+    /// Why this render cannot continue from there, and the samples per pixel of one that can.
     Refused(String, u32),
 }
 
@@ -51,7 +51,7 @@ pub fn save(world: &World, progress: &Progress, tiles: &[Tile], blocks: &mut Blo
     tiles.iter().try_for_each(|tile| blocks.block(tile))
 }
 
-/// Reads how far a render of an equal world was, of other samples perhaps, and its sums.
+/// Reads how far a render of an equal world was, perhaps with another number of samples, and its sums.
 ///
 /// # Errors
 /// If they cannot be read.
@@ -77,7 +77,7 @@ pub fn restore(
     if saved != tiles.len() as u64 || !progress.is_whole(world) {
         return Err(blocks.damaged());
     }
-    // Camera samples are what they are, however many photons are sent beside them.
+    // Camera samples do not depend on how many photons are sent beside them.
     let is_sent_anew = sent != photons(world);
     let objects = world.scene.objects.len();
     for tile in tiles {
@@ -99,7 +99,7 @@ pub fn restore(
     Ok(Restored::Continues)
 }
 
-/// Why a render cannot go on from what was saved of one of the same plan and so many samples.
+/// Returns why a render cannot continue from what was saved of one with the same plan and `samples` samples.
 fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, samples: u32) -> Option<String> {
     if let Some(stop) = &world.method.stop {
         let (end, most) = (progress.samples_of_stage(), stop.most);

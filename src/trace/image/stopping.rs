@@ -1,4 +1,4 @@
-//! When enough samples are taken.
+//! Decides when enough samples are taken.
 
 use std::time::{Duration, Instant};
 
@@ -9,11 +9,11 @@ use super::passes::Progress;
 use crate::trace::Stop;
 use crate::trace::replicates::REPLICATES;
 
-/// Samples of each replicate before the first look at the noise. The next looks come when there are twice as many.
+/// Samples of each replicate before the first look at the noise. Further looks come whenever they have doubled.
 const FIRST: u32 = 8;
-/// Samples of a pixel that tell its noise, at least.
+/// Fewest samples of a pixel that tell its noise.
 pub const FIRST_LOOK: u32 = REPLICATES as u32 * FIRST;
-/// The part of the time left that a stage is planned to take, and the part of all time too short for another one.
+/// Share of the time left that a stage is planned to take, and share of all time that is too short for another one.
 const PLANNED: f64 = 0.95;
 const SHORT: f64 = 0.02;
 
@@ -21,17 +21,17 @@ const SHORT: f64 = 0.02;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stopped {
-    /// The error is as small as was asked for.
+    /// The error is as small as requested.
     #[serde(rename = "error")]
     Noise,
-    /// The time is over.
+    /// The time is up.
     Time,
-    /// All samples are taken that it might take.
+    /// The most samples allowed are taken.
     Samples,
 }
 
 impl Stopped {
-    /// What ended it.
+    /// Returns what ended a render.
     pub fn new(stop: &Stop, progress: &Progress) -> Self {
         match () {
             () if is_enough(stop, progress.measured.as_ref()) => Self::Noise,
@@ -40,7 +40,7 @@ impl Stopped {
         }
     }
 
-    /// The word for it.
+    /// Returns the word for it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Noise => "error",
@@ -50,11 +50,11 @@ impl Stopped {
     }
 }
 
-/// How fast a render goes.
+/// The speed of a render.
 #[derive(Clone, Debug)]
 pub struct Clock {
     began: Instant,
-    /// When this run began its first stage, and how many samples of each pixel there were.
+    /// When this run began its first stage, and the samples of each pixel at that time.
     first: Option<(Instant, u32)>,
 }
 
@@ -63,17 +63,17 @@ impl Clock {
         Self { began, first: None }
     }
 
-    /// A stage begins, after so many samples of each pixel.
+    /// Notes that a stage begins, after `samples` samples of each pixel.
     pub fn begin(&mut self, samples: u32) {
         self.first.get_or_insert((Instant::now(), samples));
     }
 
-    /// The time that is left of some.
+    /// Returns what is left of a time since the render began.
     fn left(&self, time: Duration) -> Duration {
         time.saturating_sub(self.began.elapsed())
     }
 
-    /// How many samples of each pixel are taken in a time, after so many; none if that is not known.
+    /// Estimates how many samples of each pixel a time allows, after `samples` of them; `None` if that is not known.
     fn samples_in(&self, time: Duration, samples: u32) -> Option<f64> {
         let (since, before) = self.first?;
         let taken = samples.checked_sub(before).filter(|&taken| taken > 0)?;
@@ -81,7 +81,7 @@ impl Clock {
     }
 }
 
-/// Whether noise and blur are small enough, and known well enough to say so.
+/// Whether noise and blur are small enough, measured with enough samples to say so.
 fn is_enough(stop: &Stop, measured: Option<&Measured>) -> bool {
     let is_small = |wanted: f64, error: &Measured| error.noise.samples >= stop.least && error.at_most() <= wanted;
     stop.noise.zip(measured).is_some_and(|(wanted, error)| is_small(wanted, error))
@@ -91,7 +91,7 @@ fn most(stop: &Stop) -> u32 {
     stop.most / REPLICATES as u32
 }
 
-/// How many samples each replicate takes after so many, if there is room and time for them.
+/// Returns how many samples each replicate takes next after `each`, if there is room and time for them.
 pub fn doubled(stop: &Stop, each: u32) -> u32 {
     match (each, stop.time) {
         (0, None) => FIRST,
@@ -100,7 +100,7 @@ pub fn doubled(stop: &Stop, each: u32) -> u32 {
     }
 }
 
-/// How many samples each replicate takes in the next stage; none if enough are taken.
+/// Returns how many samples each replicate takes in the next stage; 0 if enough are taken.
 pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     if is_enough(stop, progress.measured.as_ref()) {
         return 0;
@@ -114,7 +114,7 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
             if left < time.mul_f64(SHORT) {
                 return 0;
             }
-            // A run that goes on from a checkpoint does not know yet how fast it is.
+            // A run that continues from a checkpoint does not yet know how fast it is.
             let fits = clock.samples_in(left.mul_f64(PLANNED), all).map_or(1.0, |samples| samples / REPLICATES as f64);
             size.min(fits as u32)
         }
@@ -122,12 +122,12 @@ pub fn next_stage(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     }
 }
 
-/// Whether it is about known how many samples of a pixel are enough: by an error alone, not before the first look.
+/// Whether it is roughly known how many samples of a pixel are enough: for an error alone, not before the first look.
 pub fn is_wanted_known(stop: &Stop, progress: &Progress) -> bool {
     stop.noise.is_none() || stop.time.is_some() || progress.measured.is_some()
 }
 
-/// How many samples of a pixel will be enough, about; where that is not known, the most that are taken.
+/// Estimates how many samples of a pixel will be enough; if that is not known, returns the most that are taken.
 pub fn samples_wanted(stop: &Stop, progress: &Progress, clock: &Clock) -> u32 {
     let stage = progress.stage;
     let each = stage.before + stage.size;

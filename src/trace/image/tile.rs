@@ -1,4 +1,4 @@
-//! Parts of an image that are made side by side.
+//! Parts of an image that are rendered in parallel.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,33 +21,33 @@ use crate::trace::walk::Polarization;
 pub struct Tile {
     /// Sums of its pixels, row by row.
     pub sums: Vec<PixelSum>,
-    /// The same of samples that are subtracted; empty where the filter is nowhere negative.
+    /// Sums of samples that are subtracted; empty where the filter is nowhere negative.
     pub subtracted: Vec<PixelSum>,
     pub layers: LayerSums,
-    /// What photons show in its pixels.
+    /// What photons contribute to its pixels.
     pub splatted: PhotonTile,
-    /// What each replicate found, where there are several.
+    /// What each replicate found, if there are several.
     pub replicates: Replicates,
     pub stats: Stats,
     pub first_non_finite: Option<[i64; 3]>,
-    /// Passes that all its pixels have had, and how many of them have had the next one.
+    /// Passes that all its pixels have had, and the number of pixels that have had the next one.
     pub passes: u32,
     pub ahead: u32,
 }
 
-/// What photons show in a tile; empty without photons. Where every pass sends some, each counts by its samples.
+/// What photons contribute to a tile; empty without photons. Where every pass sends some, each counts by its samples.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct PhotonTile {
     /// Film values of its pixels.
     pub pixels: Vec<[f64; 3]>,
-    /// A row for each pixel of what they show in the layers.
+    /// A row for each pixel of what they contribute to the layers.
     pub layers: Vec<f64>,
     /// How much of their light polarization may change.
     pub moved: f64,
 }
 
-/// Bytes of memory that the film takes by some method, without layers: the sums of each pixel, those of its replicates
-/// where a stop rule compares them, what photons show in it, and its finished values.
+/// Returns the bytes of memory that the film takes with a method, without layers: the sums of each pixel, those of its
+/// replicates where a stop rule compares them, what photons contribute to it, and its finished values.
 pub fn bytes_of_film(scene: &Scene<Curve>, method: &Method) -> u64 {
     let is_signed = scene.film.filter.is_signed();
     let (shows, catches) = (method.light_pass.is_some(), scene.has_shadow_catchers());
@@ -72,7 +72,7 @@ impl Tile {
         Self { sums, subtracted, layers, splatted, replicates, stats, first_non_finite: None, passes: 0, ahead: 0 }
     }
 
-    /// Whether it has as many sums of each kind as another one of the same place.
+    /// Whether it has as many sums of each kind as another tile of the same place.
     pub fn is_shaped_as(&self, other: &Self, layers: &Layers) -> bool {
         let pixels = other.sums.len();
         let of = |whole: usize| [0, whole].into_iter();
@@ -89,7 +89,8 @@ impl Tile {
         kept + self.stats.non_finite
     }
 
-    /// Takes samples of all pixels that have not had them, until it shall stop. Answers how many pixels have got them.
+    /// Takes the samples of a pass for all pixels that have not had them, until told to stop. Returns how many pixels
+    /// got them.
     pub fn take<const N: usize, P: Polarization<N>>(
         &mut self,
         place: TilePlace,
@@ -102,7 +103,7 @@ impl Tile {
         let mut tracer = PathTracer::<N, P>::new(world).with_photons(light.photons.as_ref()).with_layers();
         let first = self.ahead;
         while (self.ahead as usize) < self.sums.len() && !stops() {
-            // Random numbers and rays belong to the format's pixel, whatever part of it is made.
+            // Random numbers and rays belong to a pixel of the format, whatever part of it is rendered.
             let x = window.left + (place.corner[0] + self.ahead % place.width) as i32;
             let y = window.top + (place.corner[1] + self.ahead / place.width) as i32;
             self.take_pixel(world, &mut tracer, light, [x, y], pass);
@@ -125,7 +126,7 @@ impl Tile {
         pass: &Pass,
     ) {
         let place = self.ahead as usize;
-        // Of samples that are added, and of those that are subtracted.
+        // Sums of samples that are added, and of those that are subtracted.
         let mut sums = [PassSum::default(), PassSum::default()];
         let mut blurs = [PassSum::default(), PassSum::default()];
         let blurs_are_told = light.photons.as_ref().is_some_and(|photons| photons.half.is_some());
@@ -164,7 +165,7 @@ impl Tile {
         if let Some(sum) = self.subtracted.get_mut(place) {
             sum.add(subtracted);
         }
-        // Pixel by pixel, so that a stop between two of them changes no order of sums.
+        // Add statistics pixel by pixel, so that a stop between two pixels does not change the order of sums.
         self.stats += std::mem::take(&mut tracer.walker.stats).of_pixel(rate);
     }
 }

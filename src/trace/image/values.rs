@@ -1,4 +1,4 @@
-//! The values of an image, made of sums.
+//! Computes the values of an image from its sums.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,7 @@ use super::tile::Tile;
 use crate::film::{Film, PixelSum, SampleWeights, TileValues};
 use crate::trace::World;
 
-/// The values of a tile of a film.
+/// Returns the values of a tile of a film.
 pub fn values_of(world: &World, film: &Film, tile: &Tile, counts: SplatCounts) -> TileValues {
     let mut values = TileValues::blank(film, tile.sums.len());
     (0..tile.sums.len()).for_each(|place| write_pixel(&mut values, world, tile, counts, place));
@@ -41,7 +41,7 @@ fn write_pixel(values: &mut TileValues, world: &World, tile: &Tile, counts: Spla
     }
 }
 
-/// Numbers so many times as large.
+/// Multiplies numbers by a factor.
 fn times(numbers: &[f64], factor: f64) -> Cow<'_, [f64]> {
     if factor == 1.0 { numbers.into() } else { numbers.iter().map(|x| x * factor).collect() }
 }

@@ -1,4 +1,4 @@
-//! Photons are sent in batches.
+//! Sends photons in batches.
 
 use std::ops::Range;
 
@@ -9,13 +9,13 @@ use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Walker};
 use crate::trace::{Transport, World};
 
-/// Photons that are followed one after another; what they leave is added in the order of the batches.
+/// Photons of a batch, which are traced one after another. What they leave is added in the order of the batches.
 const BATCH: u64 = 4096;
 /// Use of a photon's random numbers: its first ray.
 const RAY: u32 = 0;
 
-/// Photons are followed like camera paths: in all branches while they carry much, then in one. Splitting at 0.05 took
-/// as much time for as much noise, never splitting 2 to 15 times as much (`benches/caustics.rs`).
+/// Photons are traced like camera paths: along all branches while they carry much, then along one. Splitting at 0.05
+/// took as much time for the same noise; never splitting took 2 to 15 times as much (`benches/caustics.rs`).
 pub const PHOTONS: Transport = Transport::Random { split: 0.25, roulette: 0.05 };
 
 /// A part of a target's photons.
@@ -34,15 +34,15 @@ pub struct SentBatch<T> {
     pub stats: Stats,
 }
 
-/// What is kept of a photon that lands.
+/// The callback that decides what is kept of a photon that lands.
 type Land<'a, const N: usize, P, T> = dyn Fn(&Walker<N, P>, &PhotonHit<N, P>, &mut Vec<T>) + 'a;
 
-/// All photons of some targets, after those of so many passes, batch by batch.
+/// Splits all photons to some targets into batches. Their numbers follow those of the first `before` passes.
 pub fn batches_of_pass(targets: &PhotonTargets, before: u64, seed: u64) -> Vec<Batch> {
     batches(targets, |target| before * target.photons..(before + 1) * target.photons, seed)
 }
 
-/// Of each target the photons with some numbers, batch by batch.
+/// Splits those photons of each target that have the given numbers into batches.
 pub fn batches(targets: &PhotonTargets, numbers: impl Fn(&PhotonTarget) -> Range<u64>, seed: u64) -> Vec<Batch> {
     let of_target = |(target, of): (usize, &PhotonTarget)| {
         let numbers = numbers(of);
@@ -53,7 +53,7 @@ pub fn batches(targets: &PhotonTargets, numbers: impl Fn(&PhotonTarget) -> Range
     targets.targets.iter().enumerate().flat_map(of_target).collect()
 }
 
-/// Follows the photons of one batch; `land` says what is kept of one that lands. What is learned is only of which
+/// Traces the photons of one batch; `land` decides what is kept of each that lands. If `learns`, only records for which
 /// photons something would be kept.
 pub fn send<const N: usize, P: Polarization<N>, T>(
     world: &World,
@@ -66,7 +66,7 @@ pub fn send<const N: usize, P: Polarization<N>, T>(
     let (mut kept, mut places) = (Vec::new(), Vec::new());
     let target = &targets.targets[batch.target];
     let light = target.light;
-    // Ways and wavelengths matter more than where on a small lamp they begin, so theirs are the numbers spread best.
+    // Directions and wavelengths matter more than where on a small lamp photons start, so they get the best numbers.
     let is_extended = world.scene.lights[light].is_extended();
     for number in batch.first..batch.first + batch.count {
         let key = [batch.target as u32, (number >> 32) as u32];

@@ -1,4 +1,4 @@
-//! Photons: light followed forward over surfaces, to where it lands.
+//! Photons: light traced forward over surfaces, to where it lands.
 
 use std::f64::consts::PI;
 
@@ -12,13 +12,14 @@ use crate::trace::walk::{
     Interaction, OutgoingPath, PassThrough, Path, PathKind, Polarization, Polarized, Walker, shading,
 };
 
-/// The branch of what passes holes, beyond those that a material may have.
+/// The branch of what passes through holes, beyond those that a material may have.
 const BEYOND: usize = 64;
-/// The branch of what narrow lobes send on by themselves.
+/// The branch of what narrow lobes scatter separately.
 const BY_NARROW: usize = 65;
-/// How often a material draws where a photon goes that hits it at a shading normal of its own, unless it is diffuse.
+/// Probability that the material draws the direction of a photon, and not the cosine, where the shading normal is not
+/// the surface's own. Diffuse materials never do.
 const BY_MATERIAL: f64 = 0.5;
-/// Use of the random numbers where a photon leaves a surface, and where it passes one or not.
+/// Uses of the random numbers: where a photon leaves a surface, and whether it passes through one.
 const SCATTER: u32 = 4;
 const STRAIGHT: u32 = 9;
 
@@ -36,24 +37,24 @@ pub struct Photon<'a, const N: usize> {
 }
 
 impl<const N: usize> Photon<'_, N> {
-    /// Whether photons of the light pass bring the light that starts along its way.
+    /// Whether photons of the light pass contribute the light that starts along its way.
     pub fn is_left_to_pass(&self, world: &World) -> bool {
         world.is_found_by_photons(self.light, &self.toward_light())
     }
 
-    /// Whether light paths for light vertices bring it.
+    /// Whether light paths for light vertices contribute the light that starts along its way.
     fn is_found_by_light_paths(&self, world: &World) -> bool {
         world.is_found_by_light_paths(self.light, &self.toward_light())
     }
 
-    /// The ray back along its way.
+    /// Returns the ray back along its way.
     fn toward_light(&self) -> Ray {
         let Ray { origin, direction } = self.emitted.ray;
         Ray { origin, direction: -direction }
     }
 }
 
-/// Where a photon lands, and the light's way there.
+/// The point where a photon lands, and its path there.
 pub struct PhotonHit<'a, const N: usize, P = Polarized> {
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
@@ -61,31 +62,31 @@ pub struct PhotonHit<'a, const N: usize, P = Polarized> {
 }
 
 impl<const N: usize, P> PhotonHit<'_, N, P> {
-    /// What the light shines on the photon's way, per emission.
+    /// Returns what the light emits along the photon's way.
     pub fn shone(&self, world: &World) -> Lanes<N> {
         let Photon { emitted, light, .. } = *self.photon;
         world.scene.lights[light].toward(self.at.context.draw, -emitted.ray.direction, emitted.uv())
     }
 
-    /// What the photon brings: its flux, lane by lane.
+    /// Returns the flux of the photon, lane by lane.
     pub fn flux(&self, world: &World) -> Lanes<N> {
         self.path.throughput.scaled(self.photon.emitted.factor / self.path.eta_scale).of(self.shone(world))
     }
 }
 
-/// Which surfaces a photon goes on from.
+/// The surfaces from which a photon continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surfaces {
-    /// Smooth ones, and by narrow lobes such as have no other. The first must be one that photons are sent to, and may
-    /// have others: paths by way of others are left to the camera's rays.
+    /// Smooth ones, and those with narrow lobes only. The first must be one that photons are sent to, and may have
+    /// other lobes too: paths over others are left to the camera's rays.
     Smooth,
-    /// All.
+    /// All surfaces.
     All,
 }
 
-/// Follows a photon over surfaces; `land` is told where it lands on those that scatter widely.
+/// Traces a photon over surfaces, and calls `land` where it lands on those that scatter widely.
 ///
-/// Throughput is followed as if the light were the viewer; flux is that without the factor of radiance between media.
+/// Throughput is computed as if the light were the viewer; flux lacks the factor of radiance between media.
 pub fn follow_photon<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     photon: &Photon<N>,
@@ -100,7 +101,7 @@ pub fn follow_photon<const N: usize, P: Polarization<N>>(
     }
 }
 
-/// Follows a photon to the next surface.
+/// Traces a photon to the next surface.
 #[inline(always)]
 fn advance<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
@@ -122,7 +123,7 @@ fn advance<const N: usize, P: Polarization<N>>(
     let is_first = path.vertices == 0;
     let is_smooth = is_first || path.kind == PathKind::Other;
     let is_target = is_smooth && world.is_photon_target(surface_hit.hit.object, surface_hit.point.position);
-    // Whether gathered photons bring what smooth lobes send on.
+    // Whether gathered photons contribute what smooth lobes scatter.
     let is_left = is_target && over != Surfaces::Smooth && world.has_map() && photon.is_left_to_pass(world);
     match over {
         Surfaces::Smooth if is_first && !is_target => return,
@@ -142,11 +143,11 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
     let at = Interaction::new(world, draw, &path.arriving(), &surface_hit, boundary);
     if over != Surfaces::Smooth && path.surfaces() == 1 && (path.hidden > 0 || !at.lobes.is_diffuse()) {
-        // From the camera, a path has to leave the next diffuse surface to reach this one, or a light that a hidden
-        // surface keeps from being sampled. It leaves none for a light.
+        // A path from the camera has to leave the next diffuse surface to reach this one, or to reach a light that a
+        // hidden surface keeps from being sampled. It leaves none to sample a light.
         path.diffuse_left = path.diffuse_left.saturating_sub(1);
     }
-    // As often as light may leave surfaces on its way from the camera.
+    // The limits of bounces are those of paths from the camera.
     let allowed = path.surfaces() <= world.method.max_bounces && !(at.lobes.is_diffuse() && path.diffuse_left == 0);
     let shown = over != Surfaces::Smooth || path.vertices > 1;
     if at.lobes.is_wide() && allowed && shown && !(path.is_narrow && at.lobes.is_narrow()) {
@@ -167,8 +168,8 @@ fn advance<const N: usize, P: Polarization<N>>(
     }
 }
 
-/// Lets a photon pass through, and answers whether it does not hit the surface as well. One that carries little does
-/// one or the other: each of a stack of panes would double the photons that it mirrors.
+/// Lets a photon pass through a surface. Returns false if the photon hits the surface as well. A photon that carries
+/// little does only one of both: otherwise, each of a stack of panes would double the photons that it reflects.
 #[cold]
 fn passes<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
@@ -194,8 +195,8 @@ fn passes<const N: usize, P: Polarization<N>>(
     false
 }
 
-/// Lets a photon go on from a surface that scatters widely, by the lobes that are asked for, with the share that the
-/// camera would see of the way back.
+/// Lets a photon continue from a surface that scatters widely, by the given lobes. Its shares are those that the camera
+/// would see along the reverse path.
 fn scatter<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
@@ -213,8 +214,8 @@ fn scatter<const N: usize, P: Polarization<N>>(
         walker.branches.iter_mut().filter(|branch| is_turned(branch)).for_each(|branch| turn_back(at, branch));
         send_forward(context, walker.branches.iter_mut().filter(|branch| !is_turned(branch)));
     } else {
-        // By shading normals that depend on the viewer, not every direction is drawn from which light arrives: of those
-        // that the material draws, only a part.
+        // With shading normals that depend on the viewer, light may arrive from directions that the material never
+        // draws. The material therefore draws only a part of the directions.
         let by_material = if at.lobes.is_diffuse() { 0.0 } else { BY_MATERIAL };
         if u[2] < by_material {
             shading::scatter(material, context, *flat, [u[0], u[1]], &mut walker.branches);
@@ -234,18 +235,18 @@ fn scatter<const N: usize, P: Polarization<N>>(
         });
         walker.polarize_forward(path, at);
     }
-    // From the camera, a path has to leave the next surface to get to the first one, by whatever lobe.
+    // From the camera, a path has to leave the next surface to reach the first one, by whatever lobe.
     let all_count = path.surfaces() == 1 && path.hidden == 0;
     walker.follow(&mut OutgoingPath { all_count, ..OutgoingPath::new(walker.world, path, at) }, sampler);
 }
 
-/// What the camera would see of a photon in the direction in which it leaves, times the cosine of its arrival.
+/// Returns the BSDF, times the cosine of arrival, of a photon that the camera sees from its outgoing direction.
 fn seen_from<const N: usize>(at: &Interaction<N>, direction: DVec3) -> Option<Lanes<N>> {
     let viewed = at.viewed_from(direction);
     shading::evaluate(at.material, &viewed.context, viewed.flat, at.context.wo).map(|(bsdf_cos, _)| bsdf_cos)
 }
 
-/// Replaces the share of a branch by that of light the other way: materials need not answer alike to both.
+/// Replaces the share of a branch by that of the reverse direction: materials need not be reciprocal.
 fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
     let forward = shading::evaluate(at.material, &at.context, at.flat, branch.wi);
     let (Some((forward, _)), Some(back)) = (forward, seen_from(at, branch.wi)) else {
@@ -258,7 +259,7 @@ fn turn_back<const N: usize>(at: &Interaction<N>, branch: &mut Branch<N>) {
     branch.share = branch.share * Lanes::from_fn(ratio);
 }
 
-/// Lets a photon go on over a smooth surface.
+/// Lets a photon continue over a smooth surface.
 fn bounce<const N: usize, P: Polarization<N>>(
     walker: &mut Walker<N, P>,
     path: &Path<N, P>,
@@ -285,7 +286,7 @@ fn bounce<const N: usize, P: Polarization<N>>(
     walker.follow(&mut OutgoingPath::new(walker.world, path, &at), sampler);
 }
 
-/// Makes shares of radiance that cross a smooth surface shares of flux.
+/// Turns shares of radiance that cross a smooth surface into shares of flux.
 fn send_forward<'a, const N: usize>(context: &ScatterContext<N>, branches: impl Iterator<Item = &'a mut Branch<N>>) {
     if let Some(forward) = context.forward() {
         branches.filter(|branch| branch.crosses).for_each(|branch| branch.share = branch.share * forward);

@@ -1,15 +1,15 @@
-//! Photons are gathered around a place that a path from the camera has reached.
+//! Gathers photons around a place that a path from the camera has reached.
 //!
-//! Light that photons bring to a disc of radius r is taken for the light at its middle, which blurs: light that varies
-//! by its Laplacian comes out too bright by r^2 / 12 of that. The radius is one of pixels, seen along the path, and
-//! shrinks with the samples as their number to the power -1 / 6, where bias and noise vanish at the same pace
-//! (Silverman 1986, *Density Estimation for Statistics and Data Analysis*, section 4.3). How far that blurs an image is
-//! told where a stop rule asks: see `blur.rs`.
+//! The light on a disc of radius r is taken for the light at its center. This blurs: light that varies comes out too
+//! bright by r^2 / 12 times its Laplacian. The radius is measured in pixels, seen along the path, and shrinks with the
+//! number of samples to the power -1 / 6, at which bias and noise vanish at the same rate (Silverman 1986, *Density
+//! Estimation for Statistics and Data Analysis*, section 4.3). The blur of an image is measured if a stop rule needs
+//! it: see `blur.rs`.
 //!
-//! Whatever object they lie on, photons count on surfaces that continue the one around the place and that a point above
-//! it sees. At edges a part of the disc has no such surface, and what is found is divided by the share that has. One
-//! over that share is how often points of the disc must be drawn, on average, until one has (Booth 2007, *Unbiased
-//! Monte Carlo Estimation of the Reciprocal of an Integral*): once, away from edges.
+//! Photons count, whatever object they lie on, if their surface continues the one around the place and is visible from
+//! a point above it. At edges, a part of the disc has no such surface, and the sum is divided by the share that has.
+//! The reciprocal of that share is the mean number of points of the disc that must be drawn until one lies on such a
+//! surface (Booth 2007, *Unbiased Monte Carlo Estimation of the Reciprocal of an Integral*): one, away from edges.
 
 use std::f64::consts::PI;
 
@@ -28,19 +28,19 @@ use crate::trace::walk::{Excitation, Interaction, Path, Polarization, shading};
 const ALIKE: f64 = 0.5;
 /// How far, in radii, a surface may lie from where it would continue another: flat faces at 30 degrees lie nearer.
 const STEP: f64 = 0.25;
-/// How far above the place, in radii, the point lies that sees photons, unless something is in the way: from there a
-/// ball of the same radius shows all that is gathered of it.
+/// Height above the place, in radii, of the point that sees photons, unless something is in the way. From there, all
+/// that is gathered on a ball of the same radius is visible.
 const HIGH: f64 = 4.0;
-/// Points of the disc that are drawn at most: what covers less of it is too small to be seen.
+/// Most points of the disc that are drawn: what covers less of it is too small to be seen.
 const MOST: u32 = 1 << 12;
-/// Branches of random numbers, beyond those that a path may take: of these points, and of the photon looked at.
+/// Branches of random numbers, beyond those that a path may take: for these points, and for the photon that is tested.
 const POINTS: usize = 128;
 const CHOICE: usize = 129;
 
-/// What was found, and one photon of it, drawn by what it brings.
+/// The sum of what was found, and one photon of it, drawn in proportion to its contribution.
 struct GatheredSum<const N: usize> {
     sum: [f64; 3],
-    /// What each photon brings, if that is asked for.
+    /// What each photon contributes, if requested.
     parts: Option<Vec<PhotonShare<N>>>,
     weight: f64,
     drawn: Option<Chosen>,
@@ -51,46 +51,46 @@ struct Chosen {
     position: DVec3,
     rgb: [f64; 3],
     weight: f64,
-    /// Its number among the parts.
+    /// Its index among the parts.
     part: usize,
-    /// By what share polarization may change it.
+    /// The share by which polarization may change it.
     change: f64,
 }
 
-/// Light that was gathered, and what each photon brings of it if that was asked for.
+/// Gathered light, and what each photon contributes to it, if requested.
 pub struct Gathered<const N: usize> {
     pub all: Contribution,
     pub parts: Option<Vec<PhotonShare<N>>>,
 }
 
-/// What one photon brings, but for a factor.
+/// What one photon contributes, up to a factor.
 pub struct PhotonShare<const N: usize> {
     pub contribution: Contribution,
-    /// S1, S2 and S3 of it, if they are asked for.
+    /// Its S1, S2 and S3, if requested.
     pub stokes: Option<[[f64; 3]; 3]>,
     pub spectrum: PhotonSpectrum<N>,
     pub factor: f64,
 }
 
-/// The spectrum of what a photon brings.
+/// The spectrum of a photon's contribution.
 pub enum PhotonSpectrum<const N: usize> {
-    /// Lanes by which the light of a source arrives at the sensor, whether they parted, and the parts of them that S1,
-    /// S2 and S3 are, if their spectra are asked for.
+    /// The lanes in which the light of a source arrives at the sensor, whether they parted, and the shares of them that
+    /// S1, S2 and S3 are, if their spectra are requested.
     Lanes { source: SourceId, lanes: Lanes<N>, parted: bool, stokes: Option<Box<[Lanes<N>; 3]>> },
     /// One wavelength.
     SingleLane(Wavelength),
 }
 
-/// Where a camera path gathers the photons around it.
+/// The place where a camera path gathers the photons around it.
 pub struct GatherPoint<'a, const N: usize, P> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    /// The dye that they excite, if the path follows that.
+    /// The dye that the photons excite, if the path follows its light.
     pub excitation: Option<&'a Excitation<N, P>>,
 }
 
-/// What the sensor gets of one photon: in all, S1, S2 and S3 of it, and its spectrum.
+/// What the sensor receives of one photon: the total, its S1, S2 and S3, and its spectrum.
 struct Seen<const N: usize> {
     rgb: [f64; 3],
     stokes: Option<[[f64; 3]; 3]>,
@@ -98,7 +98,7 @@ struct Seen<const N: usize> {
 }
 
 impl<const N: usize> Seen<N> {
-    /// Of lanes by which it arrives.
+    /// Returns what the sensor receives of light that arrives in lanes.
     fn new(world: &World, received: &ReceivedLight<N>, stokes: Option<[Lanes<N>; 3]>) -> Self {
         let ReceivedLight { source, lanes, parted, .. } = *received;
         let of_bands = stokes.filter(|_| world.layers.spectrum.is_some()).map(Box::new);
@@ -114,15 +114,15 @@ impl<const N: usize> Seen<N> {
 struct PhotonSearch<'a, const N: usize, P> {
     around: &'a GatherPoint<'a, N, P>,
     kernel: &'a Kernel<N>,
-    /// Whether the path comes to the front of the surface.
+    /// Whether the path arrives at the front of the surface.
     front: bool,
-    /// Whether light crosses the surface: then what lies close beyond it is another.
+    /// Whether light crosses the surface: then a surface close behind it is another one.
     crosses: bool,
     radius: f64,
 }
 
-/// What the sensor gets of the photons around a place that a path has reached; if `apart`, photon by photon as well.
-/// How much of it polarization may change is an estimate by the photon that is looked at.
+/// Returns what the sensor receives of the photons around a place that a path has reached; if `apart`, photon by photon
+/// as well. How much of it polarization may change is estimated from the photon that is tested.
 pub fn gather<const N: usize, P: Polarization<N>>(
     photons: &PhotonMap<N, P>,
     kernel: &Kernel<N>,
@@ -153,14 +153,14 @@ pub fn gather<const N: usize, P: Polarization<N>>(
 }
 
 impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
-    /// All that is gathered. Together photons have no light, no lobe and no way, but came over two surfaces at least,
-    /// as they do wherever the path has left one.
+    /// Returns all that is gathered. Photons together have no single light, lobe or path, but came over at least two
+    /// surfaces, as they do wherever the path has left one.
     fn all(&self, rgb: [f64; 3], moved: f64) -> Contribution {
         let (found, first, bounces) = (FoundBy::Gathered, self.path.first, self.path.bounces + 2);
         Contribution { light: None, found, rgb, moved, first, bounces, dispersed: false }
     }
 
-    /// What one photon brings, but for a factor.
+    /// Returns what one photon contributes, up to a factor.
     fn brought<T, L>(&self, photon: &StoredPhoton<T, L>, light: LightId, rgb: [f64; 3], parted: bool) -> Contribution {
         let Self { world, path, at, excitation } = self;
         let (light, found, bounces) = (Some(light), FoundBy::Gathered, path.bounces + photon.surfaces);
@@ -169,7 +169,7 @@ impl<const N: usize, P: Polarization<N>> GatherPoint<'_, N, P> {
         Contribution { light, found, rgb, moved: 0.0, first, bounces, dispersed }
     }
 
-    /// Whether lanes part on the way of the path and a photon that came from a direction.
+    /// Whether lanes part on the way of the path and of a photon from the direction `back`.
     fn parted(&self, back: DVec3) -> bool {
         self.path.parted || (self.at.parts && back.dot(self.at.flat) < 0.0)
     }
@@ -205,7 +205,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         found.add(world, position, part, || path.polarization.change_of_joined(at, photon.back, light, &joined, lanes));
     }
 
-    /// Adds a photon of one wavelength of lanes that have parted.
+    /// Adds a photon of one wavelength, whose lanes have parted.
     fn add_alone(&self, found: &mut GatheredSum<N>, position: DVec3, photon: &StoredPhoton<SingleLane, P::Stored>) {
         let Self { around, kernel, .. } = self;
         let GatherPoint { world, path, at, excitation } = around;
@@ -216,7 +216,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
             true => kernel.matching.shared(draw, wavelength, lanes, parted),
             false => kernel.matching.read(wavelength, lanes),
         };
-        // Most photons of wavelengths that parted meet others.
+        // Most photons with parted wavelengths meet paths with other wavelengths.
         if by_heroes && read(path.throughput.present()) == 0.0 {
             return;
         }
@@ -243,11 +243,12 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         });
     }
 
-    /// For how much a photon counts, if it is seen, per area of the plane that touches the surface at the place.
+    /// Returns the weight of a photon per area of the tangent plane at the place, if it counts.
     fn density<T, L>(&self, position: DVec3, photon: &StoredPhoton<T, L>) -> Option<f64> {
         let GatherPoint { world, path, at, .. } = self.around;
         let short = path.surfaces() + photon.surfaces - 1 <= world.method.max_bounces;
-        // Where a path was to find light at light vertices, those bring what surfaces send on.
+        // Where a path looks for light at light vertices, those account for what surfaces scatter of the photon's
+        // light.
         let is_found = path.resampled && photon.is_resampled;
         if !short || is_found || photon.crosses != self.crosses || !self.continues(position, photon.flat, photon.front)
         {
@@ -255,13 +256,13 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         }
         let (way, squared_radius) = (position - at.point.position, self.radius * self.radius);
         let beside = way - at.flat * way.dot(at.flat);
-        // The kernel of Epanechnikov, which integrates to 1 over the disc.
+        // The Epanechnikov kernel, which integrates to 1 over the disc.
         let kernel = 2.0 * (1.0 - beside.length_squared() / squared_radius) / (PI * squared_radius);
         Some(kernel * photon.flat.dot(at.flat).abs())
     }
 
-    /// Whether a surface continues that of the place; `flat` is its unit normal on the side from where it is reached,
-    /// and `front` whether that is the front.
+    /// Whether a surface continues that of the place. `flat` is its unit normal on the side from which it is reached,
+    /// and `front` tells whether that is the front.
     fn continues(&self, position: DVec3, flat: DVec3, front: bool) -> bool {
         let Interaction { point, flat: own, .. } = self.around.at;
         let cos = flat.dot(*own);
@@ -269,12 +270,13 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         if cos.abs() < ALIKE || (cos < 0.0 && front == self.front) {
             return false;
         }
-        // A chord of a ball is at right angles to the sum of the normals at its ends.
+        // A chord of a ball is perpendicular to the sum of the normals at its ends.
         let normals = *own + flat * cos.signum();
         0.5 * (position - point.position).dot(normals).abs() <= STEP * self.radius
     }
 
-    /// What is seen of what was found, over the share of the disc that is seen; how much polarization may change it.
+    /// Returns the visible part of the sum, divided by the visible share of the disc, and how much polarization may
+    /// change it.
     fn seen_of(&self, found: &mut GatheredSum<N>, sampler: &Sampler) -> ([f64; 3], f64) {
         let GatherPoint { world, path, at, .. } = self.around;
         let GatheredSum { mut sum, ref mut parts, weight, drawn: ref chosen, .. } = *found;
@@ -311,7 +313,7 @@ impl<const N: usize, P: Polarization<N>> PhotonSearch<'_, N, P> {
         (sum, moved)
     }
 
-    /// Whether what a ray to a point, or so many times as far, hits continues the surface; none if it hits nothing.
+    /// Whether a ray to a point, or `further` times as far, hits a surface that continues this one; `None` for no hit.
     fn sees(&self, from: DVec3, to: DVec3, further: f64) -> Option<bool> {
         let scene = &self.around.world.scene;
         let way = to - from;
@@ -339,7 +341,7 @@ impl<const N: usize> GatheredSum<N> {
             return;
         }
         self.weight += weight;
-        // What is left of a random number after a choice is one again.
+        // What is left of a random number after a choice is a random number again.
         let chance = weight / self.weight;
         if self.u < chance {
             self.drawn = Some(Chosen { position, rgb, weight, part: number, change: change() });
@@ -350,7 +352,7 @@ impl<const N: usize> GatheredSum<N> {
     }
 }
 
-/// A point of the unit disc, drawn by the kernel: with q the square of its radius, a share 2 q - q^2 lies within it.
+/// Returns a point of the unit disc, drawn by the kernel: the share within a squared radius q is 2 q - q^2.
 fn by_kernel([u, v]: [f64; 2]) -> DVec2 {
     let radius = (1.0 - (1.0 - u).sqrt()).sqrt();
     let (sin, cos) = libm::sincos(2.0 * PI * v);

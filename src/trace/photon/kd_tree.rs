@@ -1,17 +1,17 @@
 //! A map of points: a balanced k-d tree.
 //!
 //! Bentley 1975, *Multidimensional Binary Search Trees Used for Associative Searching*; Jensen 2001, *Realistic Image
-//! Synthesis Using Photon Mapping*, section 6.2, keeps photons in one. A grid would want one radius for all, and here
-//! each path has its own. What belongs to a point is kept apart, so that a search reads little memory.
+//! Synthesis Using Photon Mapping*, section 6.2, stores photons in one. A grid would need one radius for all searches,
+//! but each path has its own. What belongs to a point is stored separately, so that a search reads little memory.
 
 use std::ops::Range;
 
 use crate::math::{Bounds, DVec3};
 
-/// Points with what belongs to them.
+/// Points, and what belongs to each of them.
 #[derive(Clone, Debug)]
 pub struct KdTree<T> {
-    /// Leaf by leaf; within each in the order that they were given.
+    /// Leaf by leaf; within each, in the order in which they were given.
     points: Vec<DVec3>,
     found: Vec<T>,
     /// Level by level: the children of split i are 2 i + 1 and 2 i + 2.
@@ -19,14 +19,14 @@ pub struct KdTree<T> {
     bounds: Bounds,
 }
 
-/// A plane that has one half of a range before it and the other beyond.
+/// A plane that separates the two halves of a range.
 #[derive(Clone, Copy, Debug, Default)]
 struct Split {
     at: f64,
     axis: u32,
 }
 
-/// Ranges of so few points are not split.
+/// Ranges of at most this many points are not split.
 const FEW: usize = 8;
 
 impl<T> KdTree<T> {
@@ -41,10 +41,10 @@ impl<T> KdTree<T> {
         Self { points, found, splits, bounds }
     }
 
-    /// Visits all points nearer to a place than a radius, in an order that never changes.
+    /// Visits all points closer to a place than a radius, in a fixed order.
     pub fn near(&self, place: DVec3, radius: f64, visit: &mut impl FnMut(DVec3, &T)) {
         let Bounds { min, max } = self.bounds;
-        // From what holds nothing everything is infinitely far.
+        // Everything is infinitely far from an empty tree.
         if (place.clamp(min, max) - place).length_squared() < radius * radius {
             self.visit(0, 0..self.points.len(), place, radius, visit);
         }
@@ -75,7 +75,7 @@ impl<T> KdTree<T> {
     }
 }
 
-/// Puts points in the order of a tree, which their numbers and places alone decide.
+/// Puts points in the order of a tree, which depends only on their numbers and places.
 fn split(points: &mut [(DVec3, u32)], node: usize, splits: &mut Vec<Split>) {
     if points.len() <= FEW {
         points.sort_unstable_by_key(|point| point.1);
@@ -106,7 +106,7 @@ mod tests {
         for count in [0, 1, 8, 9, 100, 40_000] {
             let place = |i: u32| {
                 let [x, y, z, _] = Sampler::new(7, [0, 0], i).four_plain(BranchKey::CAMERA, 0);
-                // Many alike along one axis, as on a floor.
+                // Many share a coordinate along one axis, as on a floor.
                 DVec3::new(x, (8.0 * y).floor(), 0.1 * z)
             };
             let map = KdTree::new((0..count).map(|i| (place(i), i)).collect());

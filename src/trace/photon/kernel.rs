@@ -5,15 +5,15 @@ use crate::trace::World;
 use crate::trace::pass::Pass;
 use crate::trace::replicates::REPLICATES;
 
-/// How far photons count, and in which wavelengths: what blurs.
+/// How far photons count, and at which wavelengths: both blur.
 pub struct Kernel<const N: usize> {
-    /// In pixels as wide as the path from the camera is long.
+    /// In widths of a pixel at the distance that the camera path has come.
     pub radius: f64,
     pub matching: Matching<N>,
 }
 
-/// Parts of the draws in one of which two wavelengths count as one, where the radius is a pixel. They are chosen, as
-/// radii are, so that the blur is small where dispersion spreads colors over dozens of pixels.
+/// Number of parts into which the draws of wavelengths are divided, for a radius of one pixel: two wavelengths in one
+/// part count as one. Like the radius, it keeps the blur small where dispersion spreads colors over dozens of pixels.
 const PARTS: f64 = 32.0;
 
 impl<const N: usize> Kernel<N> {
@@ -21,11 +21,11 @@ impl<const N: usize> Kernel<N> {
         Self { radius, matching: Matching::new(&world.method.basis, PARTS / radius) }
     }
 
-    /// That of a pass.
+    /// Returns the kernel of a pass.
     ///
-    /// Where a stop rule takes more samples than the plan's radius is for, it shrinks as it would for as many: bias and
-    /// noise then vanish together, and an error that is small enough comes (Knaus & Zwicker 2011, *Progressive Photon
-    /// Mapping: A Probabilistic Approach*).
+    /// If a stop rule takes more samples than the plan chose the radius for, the radius shrinks as it would for that
+    /// many. Bias and noise then vanish together, and a small enough error is reached in the end (Knaus & Zwicker 2011,
+    /// *Progressive Photon Mapping: A Probabilistic Approach*).
     pub fn of_pass(world: &World, pass: &Pass) -> Option<Self> {
         let radius = world.method.map()?.radius;
         let samples = pass.replicate.map_or(0.0, |_| REPLICATES as f64 * f64::from(pass.numbers.end));
@@ -33,7 +33,7 @@ impl<const N: usize> Kernel<N> {
         Some(Self::new(world, radius * libm::pow(more, -1.0 / 6.0)))
     }
 
-    /// One that blurs half as much: of half the area, and of half the square of a width among wavelengths.
+    /// Returns a kernel that blurs half as much: with half the area, and half the squared width among wavelengths.
     pub fn half(&self, world: &World) -> Self {
         Self::new(world, self.radius * std::f64::consts::FRAC_1_SQRT_2)
     }

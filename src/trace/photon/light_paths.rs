@@ -1,7 +1,7 @@
-//! Paths from the lights, and photons like them, whose vertices paths from the camera look at.
+//! Paths from the lights, and photons like them, at whose vertices paths from the camera look for light.
 //!
-//! Where photons are gathered, others that are sent as they are leave vertices too: light that comes over smooth
-//! surfaces is looked for at those as at others, and gathered only where a bounce goes on.
+//! Where photons are gathered, others that are sent in the same way leave vertices too. Light over smooth surfaces is
+//! looked for at these vertices as at the others, and is gathered only where a bounce continues.
 
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_PI;
@@ -27,46 +27,46 @@ use crate::trace::{Transport, World};
 
 /// Samples of each pixel that share light paths.
 pub const SHARED: u32 = 16;
-/// Camera samples for each light path, fewest and most light paths: noise that pixels share does not average out.
+/// Camera samples per light path, and fewest and most light paths: noise that pixels share does not average out.
 const PER_PATH: u64 = 32;
 const FEWEST: u64 = 256;
 const MOST: u64 = 16_384;
-/// Least photons for each light path.
+/// Fewest photons per light path.
 const LEAST_PHOTONS: f64 = 1.0 / 16.0;
-/// Light paths that are followed one after another; their vertices are kept in the order of the batches.
+/// Light paths of a batch, which are traced one after another. Their vertices are kept in the order of the batches.
 const BATCH: u64 = 256;
-/// D as a share of the median distance of vertices from their middle: a twelfth of the side of a room. From two thirds
-/// of that to one and a half, the error for the time is the same.
+/// D as a share of the median distance of vertices from their center: a twelfth of the side of a room. From two thirds
+/// of that to one and a half times as much, the error for the time is the same.
 const NEAR: f64 = 0.1;
-/// The set of a pilot, and its light paths.
+/// The set of a pilot, and the number of its light paths.
 const PILOT: u32 = u32::MAX;
 const OF_A_PILOT: u64 = 1024;
-/// The set of those that tell D, and its light paths.
+/// The set of light paths that determines D, and their number.
 const SCALE: u32 = u32::MAX - 1;
 const OF_SCALE: u64 = 256;
 /// Sets these random numbers apart from the others, and those of photons from both.
 const SEED: u64 = 0x6c76_7274;
 const PHOTON_SEED: u64 = 0x6169_6d65;
-/// Uses of a light path's random numbers: where it starts, and of which light.
+/// Uses of a light path's random numbers: where it starts, and from which light.
 const START: u32 = 0;
 const LIGHT: u32 = 1;
 
-/// Where light paths of skies through openings find all but a share of the light, paths from the camera that look for
-/// the rest go on with the root of so many times that share, and as often as this at least. What is found so rarely
-/// is about ten times as noisy as what light vertices bring, and noise for the time is least for the root of the ratio.
+/// If light paths of skies through openings miss only a share of the light, camera paths that look for the rest
+/// continue with the probability sqrt(`SPIKES` * share), but at least `LEAST_ON`. What is found so rarely is about ten
+/// times as noisy as what light vertices contribute, and the noise for the time is least for the root of the ratio.
 const SPIKES: f64 = 10.0;
 const LEAST_ON: f64 = 1.0 / 8.0;
 
-/// Fewest paths of a pilot that reach what is seen: of a largest set, as many as a smallest one has.
+/// Fewest paths of a pilot that must reach what is seen: at this rate, `FEWEST` paths of a largest set do.
 const REACHING: usize = (OF_A_PILOT * FEWEST / MOST) as usize;
 
-/// How much fainter than the brightest one a lamp may be that has a layer of its own. One that is ten times fainter had
-/// nine times the noise in means over 32 x 32 pixels.
+/// Relative brightness below which a lamp with a layer of its own is too faint, compared with the brightest one. A lamp
+/// that is ten times fainter had nine times the noise in means over 32 x 32 pixels.
 const FAINT: f64 = 0.25;
 
-/// Whether light paths find what surfaces send each other of a light that they start from, as paths from the camera do.
+/// Whether light paths, for the lights they start from, find the same indirect light as paths from the camera.
 ///
-/// Not where each camera sample draws wavelengths, nor where light passes through surfaces at which light paths end.
+/// They do not if each camera sample draws wavelengths, or if light passes through surfaces at which light paths end.
 pub fn can_be_followed(world: &World) -> bool {
     let objects = 0..world.scene.objects.len() as u32;
     !world.method.basis.draws_wavelengths()
@@ -74,33 +74,33 @@ pub fn can_be_followed(world: &World) -> bool {
         && objects.into_iter().all(|object| !(world.ends_light_paths(object) && world.is_see_through(object)))
 }
 
-/// Whether enough of the light paths that a world's method asks for reach what the camera sees. From a lamp that is far
-/// away or behind a small hole hardly any do: what they bring would be bright or dark all over an image, and a pilot
+/// Whether enough of the light paths of a world's method reach what the camera sees. From a lamp that is far away or
+/// behind a small hole, hardly any do: their light would be too bright or too dark all over an image, and a pilot
 /// without any would show no noise.
 pub fn light_paths_reach(world: &World) -> bool {
     let paths = LightPaths::new(world, world.method.seed);
     paths.is_some_and(|paths| in_lanes!(&world.method.basis, N => paths.reach::<N>()))
 }
 
-/// A few vertices of the light paths that a world's method asks for, for a pilot; none where no light can be followed.
+/// Returns a few vertices of the method's light paths, for a pilot; `None` where no light can be traced forward.
 pub fn few_vertices<const N: usize>(world: &World) -> Option<LightVertices<N>> {
     Some(LightPaths::new(world, world.method.seed)?.of_set::<N, Polarized>(PILOT, OF_A_PILOT))
 }
 
-/// The lights of a world that paths start from, and from where their vertices are looked at: what all sets share.
+/// The lights from which paths start, and the places from which their vertices are looked at: what all sets share.
 pub struct LightPaths<'a> {
     world: &'a World,
     seed: u64,
     by_flux: Distribution,
-    /// How likely paths from the camera go on for light that is not theirs; none where all is.
+    /// Probability that camera paths continue for light that light paths do not find; `None` where they find all.
     rest: Option<f64>,
     places: Vec<DiffusePlace>,
-    /// The middle of vertices, and D.
+    /// The center of the vertices, and D.
     scale: OnceLock<(DVec3, f64)>,
 }
 
 impl<'a> LightPaths<'a> {
-    /// Those that the method asks for; none where no light can be followed.
+    /// Returns the light paths that the method uses, or `None` where no light can be traced forward.
     pub fn new(world: &'a World, seed: u64) -> Option<Self> {
         if world.path_starts.is_empty() || !can_be_followed(world) {
             return None;
@@ -110,7 +110,7 @@ impl<'a> LightPaths<'a> {
         let by_flux = Distribution::new(starts().enumerate().map(flux));
         let ends_nowhere = (0..world.scene.objects.len() as u32).all(|object| !world.ends_light_paths(object));
         let find_all = starts().all(|(start, _)| matches!(start, PathStart::Anywhere));
-        // Suns that mirrors show, rare and bright, must not be found by a few paths that count more.
+        // Suns in mirrors are rare and bright: they must not be found by a few paths with large weights.
         let may_dazzle = |(id, light): (LightId, &Light<_>)| {
             light.is_infinite() && light.sends_photons() && !(world.has_map() && world.sends_photons(id))
         };
@@ -127,7 +127,7 @@ impl<'a> LightPaths<'a> {
         (by_flux.total() > 0.0).then_some(Self { world, seed, by_flux, rest, places, scale: OnceLock::new() })
     }
 
-    /// Whether a layer of lights is asked for whose paths are so few that all of it would be too bright or too dark.
+    /// Whether a layer of lights is requested whose paths are so few that all of it would be too bright or too dark.
     pub fn starve_a_layer(&self) -> bool {
         if self.world.layers.at(Layer::Lights).is_none() {
             return false;
@@ -140,7 +140,7 @@ impl<'a> LightPaths<'a> {
         started().fold(1.0, f64::min) < FAINT * started().fold(0.0, f64::max)
     }
 
-    /// Whether enough paths of a pilot leave a vertex that is seen from what the camera sees.
+    /// Whether enough paths of a pilot leave a vertex that is visible from what the camera sees.
     fn reach<const N: usize>(&self) -> bool {
         let mut reaching = 0;
         (0..OF_A_PILOT).step_by(BATCH as usize).any(|first| {
@@ -155,7 +155,7 @@ impl<'a> LightPaths<'a> {
         })
     }
 
-    /// The light of a path and how the path leaves it, if it does.
+    /// Draws the light of a path and how the path leaves it, if it does.
     fn start(&self, sampler: &Sampler) -> Option<(LightId, LeSample)> {
         let drawn = self.by_flux.sample(sampler.four_plain(BranchKey::CAMERA, LIGHT)[0]);
         let (light, u) = (drawn.index, sampler.four(BranchKey::CAMERA, START));
@@ -163,14 +163,15 @@ impl<'a> LightPaths<'a> {
         Some((light, LeSample { factor: emitted.factor / drawn.probability, ..emitted }))
     }
 
-    /// The vertices for some samples of each pixel, at most `SHARED`.
+    /// Returns the vertices for some samples of each pixel, at most `SHARED`.
     pub fn shared<const N: usize, P: Polarization<N>>(&self, samples: Range<u32>) -> LightVertices<N> {
         let all = self.world.scene.film.whole().pixels() * samples.len() as u64;
         self.of_set::<N, P>(samples.start, (all / PER_PATH).clamp(FEWEST, MOST))
     }
 
-    /// Those of so many light paths of a set, and where photons are gathered, of photons that are sent as those are: as
-    /// many as there are for the flux of the paths, so that vertices of both bring about as much.
+    /// Returns the vertices of `paths` light paths of a set and, where photons are gathered, of photons that are sent
+    /// in the same way. Their numbers are in proportion to their flux, so that vertices of both contribute about as
+    /// much.
     fn of_set<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> LightVertices<N> {
         let (mut vertices, mut stats) = self.vertices::<N, P>(set, paths);
         if let Some(targets) = &self.world.map_targets {
@@ -193,17 +194,17 @@ impl<'a> LightPaths<'a> {
         LightVertices::dealt(vertices, center, near, self.rest, stats, |vertices| self.powers(vertices))
     }
 
-    /// The middle of vertices, and D, by light paths of their own: by the same ones, weights would be biased.
+    /// Returns the center of vertices, and D, from separate light paths: with the same ones, weights would be biased.
     fn scale<const N: usize, P: Polarization<N>>(&self) -> (DVec3, f64) {
         let (vertices, _) = self.vertices::<N, P>(SCALE, OF_SCALE);
-        // Medians: some vertices may lie far outside of all that is seen.
+        // Medians, since some vertices may lie far outside of all that is seen.
         let middle = |axis: usize| median(vertices.iter().map(|vertex| vertex.position[axis]).collect());
         let center = DVec3::from([0, 1, 2].map(|axis| middle(axis).unwrap_or_default()));
         let distances = vertices.iter().map(|vertex| (vertex.position - center).length()).collect();
         (center, median(distances).map_or(1.0, |distance| (NEAR * distance).max(f64::MIN_POSITIVE)))
     }
 
-    /// The vertices of some light paths of a set.
+    /// Traces some light paths of a set, and returns their vertices.
     fn vertices<const N: usize, P: Polarization<N>>(&self, set: u32, paths: u64) -> (Vec<LightVertex<N>>, Stats) {
         let first = |batch: usize| batch as u64 * BATCH;
         let of_batch = |batch| self.follow::<N, P>(set, first(batch)..first(batch + 1).min(paths));
@@ -218,7 +219,7 @@ impl<'a> LightPaths<'a> {
         (vertices, stats)
     }
 
-    /// Follows some light paths of a set.
+    /// Traces those light paths of a set that have the given numbers.
     fn follow<const N: usize, P: Polarization<N>>(&self, set: u32, paths: Range<u64>) -> (Vec<LightVertex<N>>, Stats) {
         let world = self.world;
         let mut walker = Walker::<N, P>::new(world, PHOTONS);
@@ -234,7 +235,7 @@ impl<'a> LightPaths<'a> {
         (vertices, walker.stats)
     }
 
-    /// What leaves each vertex, as the sensor sees it, times how often it is seen; 1 of the brightest.
+    /// Returns what leaves each vertex, as the sensor sees it, times how often it is seen; 1 for the brightest.
     fn powers<const N: usize>(&self, vertices: &[LightVertex<N>]) -> Vec<f32> {
         let world = self.world;
         let draw = Draw::<N>::fixed(world.method.basis.fixed_lanes());
@@ -247,8 +248,8 @@ impl<'a> LightPaths<'a> {
     }
 }
 
-/// The vertex where a light path or a photon that is aimed at smooth surfaces lands, if it is one: what comes over
-/// those from lights that send photons is left to photons.
+/// Returns the vertex where a light path, or a photon aimed at smooth surfaces, lands, if it is one. Light that comes
+/// over smooth surfaces from lights that send photons is left to photons.
 fn kept<const N: usize, P>(world: &World, photon_hit: &PhotonHit<N, P>, is_of_photon: bool) -> Option<LightVertex<N>> {
     let PhotonHit { path, at, photon } = photon_hit;
     let Material::Diffuse(diffuse) = at.material else { return None };
@@ -259,7 +260,7 @@ fn kept<const N: usize, P>(world: &World, photon_hit: &PhotonHit<N, P>, is_of_ph
         && !is_left
         && !leaving.is_zero()
         && leaving.0.iter().all(|x| x.is_finite());
-    // From the camera, a path leaves one diffuse surface more to come over smooth ones to the light.
+    // A path from the camera leaves one more diffuse surface to reach the light over smooth ones.
     let diffuse = world.method.diffuse_bounces - path.diffuse_left + 1 + u32::from(is_of_photon);
     let SurfacePoint { position, error, normal, .. } = *at.point;
     let (error, flat, light) = (normal.abs().dot(error), at.flat, photon.light);

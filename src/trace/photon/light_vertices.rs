@@ -1,11 +1,11 @@
-//! Vertices of paths from the lights, at which paths from the camera look for the light that surfaces send each other.
+//! Vertices of paths from the lights, at which paths from the camera look for the light between surfaces.
 //!
-//! At a diffuse surface x, a path from the camera chooses one vertex y of some, by what each would bring, and looks
-//! whether it sees it: resampled importance sampling (Talbot, Cline & Egbert 2005, *Importance Resampling for
-//! Global Illumination*). Near vertices would bring too much by far: of what leaves y for x, only the part d^2 / (d^2 +
-//! D^2) is looked for at distance d, and the bounce that happens to go from x to y goes on from there with the
-//! probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004, *Illumination
-//! in the Presence of Weak Singularities*, bound the same way).
+//! At a diffuse surface x, a path from the camera chooses one of several vertices y, in proportion to their estimated
+//! contributions, and tests whether it sees it: resampled importance sampling (Talbot, Cline & Egbert 2005, *Importance
+//! Resampling for Global Illumination*). Near vertices would contribute far too much: of what leaves y for x, only the
+//! part d^2 / (d^2 + D^2) is looked for at distance d. A bounce that happens to go from x to y continues from there
+//! with the probability of the rest, D^2 / (d^2 + D^2). Both together are exact for any D (Kollig & Keller 2004,
+//! *Illumination in the Presence of Weak Singularities*, bound the same way).
 
 use crate::light::LightId;
 use crate::material::Material;
@@ -19,65 +19,66 @@ use crate::trace::stats::Stats;
 #[derive(Clone, Debug)]
 pub struct LightVertex<const N: usize> {
     pub position: DVec3,
-    /// Bound of its distance from the true surface.
+    /// Bound on its distance from the true surface.
     pub error: f64,
     /// The surface's unit normal on the side that is lit.
     pub flat: DVec3,
-    /// What leaves it in any direction of that side, lane by lane: intensity over the cosine.
+    /// Light that leaves it in any direction on that side, lane by lane: intensity over the cosine.
     pub leaving: Lanes<N>,
     pub light: LightId,
-    /// Surfaces that the light has hit, and the diffuse ones of them, this one included.
+    /// Number of surfaces that the light has hit, and of diffuse ones among them, this one included.
     pub surfaces: u32,
     pub diffuse: u32,
-    /// Whether a photon has left it.
+    /// Whether a photon left it.
     pub is_of_photon: bool,
-    /// Whether lanes have parted on the way there.
+    /// Whether lanes parted on the way there.
     pub parted: bool,
 }
 
 /// The vertices of some light paths, dealt into sets of candidates. Each set has vertices from all over the scene.
 pub struct LightVertices<const N: usize> {
     candidates: Vec<Candidates>,
-    /// In the order of a curve through the scene. Of n sets of candidates each has every n-th vertex, row after row.
+    /// Ordered along a curve through the scene. Of n sets of candidates, each has every n-th vertex, row after row.
     vertices: Vec<LightVertex<N>>,
-    /// The point from which places of candidates are counted, in units of D.
+    /// The origin of the places of candidates, which are in units of D.
     center: DVec3,
     /// D.
     near: f64,
-    /// How likely paths from the camera go on for light that light paths do not find; none where they find all.
+    /// Probability that camera paths continue for light that light paths do not find; `None` where they find all.
     pub rest: Option<f64>,
-    /// The instructions by which candidates are weighed.
+    /// The instructions that weigh candidates.
     instructions: Instructions,
     pub stats: Stats,
 }
 
-/// Rows of candidates, and vertices of a row. There are 64 in all: of 32, an image is noisier by a sixth.
+/// Rows of candidates, and vertices of a row. There are 64 candidates in all: with 32, an image is noisier by a sixth.
 const ROWS: usize = 8;
 const ROW: usize = 8;
 const CANDIDATES: usize = ROWS * ROW;
-/// Cells of Morton's curve to a D.
+/// Cells of the Morton curve per D.
 const CELLS: f64 = 25.0;
 
-/// What a choice among some vertices asks of them; absent ones have no power.
+/// The data of some vertices that a choice among them needs; absent vertices have no power.
 #[derive(Clone, Debug)]
 struct Candidates {
     place: [OfCandidates; 3],
     flat: [OfCandidates; 3],
-    /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 of the brightest vertex.
+    /// X + Y + Z of what leaves, as the sensor sees it, times how often it is seen; 1 for the brightest vertex.
     power: OfCandidates,
 }
 
 /// A number for each candidate: for each place in a row, those of all rows side by side, which are summed at once.
 type OfCandidates = [[f32; ROWS]; ROW];
 
-/// Whether light between surfaces is looked for at light vertices on this one: a diffuse one, by its own normal.
+/// Whether light between surfaces is looked for at vertices on this surface. It must be diffuse and shaded by its own
+/// normal.
 pub fn holds_vertices(world: &World, object: u32, point: &SurfacePoint) -> bool {
     matches!(world.scene.material_of(object), Material::Diffuse(_)) && point.shading == point.normal
 }
 
 impl<const N: usize> LightVertices<N> {
-    /// Deals vertices into sets of candidates, in the order in which `powers` says what leaves them: as the sensor sees
-    /// it, times how often it is seen; 1 of the brightest.
+    /// Deals vertices into sets of candidates. `powers` returns what leaves each of them, as the sensor sees it, times
+    /// how often it is seen; 1 for the brightest.
     pub fn dealt(
         mut vertices: Vec<LightVertex<N>>,
         center: DVec3,
@@ -95,22 +96,22 @@ impl<const N: usize> LightVertices<N> {
         Self { candidates, vertices, center, near, rest, instructions: Instructions::best(), stats }
     }
 
-    /// D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
+    /// Returns D^2: of light from a distance d, the part d^2 / (d^2 + D^2) is looked for at vertices.
     pub fn near_squared(&self) -> f64 {
         self.near * self.near
     }
 
-    /// Whether the light that comes along a ray from a light is looked for behind the first surface that it hits.
+    /// Whether vertices contribute the light of a ray from a light, beyond the first surface that it hits.
     pub fn carry(&self, world: &World, light: LightId, ray: &Ray) -> bool {
         self.rest.is_none() || world.is_found_by_light_paths(light, ray)
     }
 
-    /// The chance with which a bounce goes on from a surface at a distance whose light is looked for at light vertices.
+    /// Returns the probability that a bounce continues from a surface at a distance whose light is found at vertices.
     pub fn complement(&self, distance_squared: f64) -> f64 {
         self.near_squared() / (distance_squared + self.near_squared())
     }
 
-    /// A vertex seen from a point of a surface, for two random numbers, and one over how likely it was; none if unseen.
+    /// Chooses a vertex for a point of a surface; returns it with one over its probability, if any would contribute.
     pub fn choose(&self, from: DVec3, flat: DVec3, [u, v]: [f64; 2]) -> Option<(&LightVertex<N>, f64)> {
         let count = self.candidates.len();
         let number = ((u * count as f64) as usize).min(count.checked_sub(1)?);
@@ -126,8 +127,8 @@ impl<const N: usize> LightVertices<N> {
     }
 }
 
-/// The place of the weight in which a share of the sum ends, and what of the share falls to it. A weight of 0 is never
-/// chosen. Where rounding leaves the share larger than the sum, the last weight above 0 is chosen.
+/// Returns the index of the weight in which a share of the sum ends, and what of the share falls to it. A weight of 0
+/// is never chosen. If rounding leaves the share larger than the sum, the last weight above 0 is chosen.
 fn chosen<const COUNT: usize>(weights: [f32; COUNT], share: f32) -> Option<(usize, f32)> {
     let (mut left, mut chosen) = (share, None);
     for (number, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
@@ -153,10 +154,10 @@ impl Candidates {
     }
 }
 
-/// Finds about what each candidate would bring to a white diffuse surface.
+/// Estimates what each candidate would contribute to a white diffuse surface.
 struct Weighing<'a> {
     candidates: &'a Candidates,
-    /// The point of the surface as places of candidates are given, and its unit normal.
+    /// The point of the surface in the coordinates of the candidates, and its unit normal.
     from: [f32; 3],
     flat: [f32; 3],
 }
@@ -167,7 +168,7 @@ impl Computation for Weighing<'_> {
     #[inline(always)]
     fn run<V: Vectors>(self, _: V) -> OfCandidates {
         let Self { candidates: Candidates { place, flat: flats, power }, from, flat } = self;
-        // One instruction, where `max` takes several for the sake of NaN.
+        // A single instruction; `max` takes several to handle NaN.
         let positive = |x: f32| if x > 0.0 { x } else { 0.0 };
         std::array::from_fn(|i| {
             std::array::from_fn(|row| {
@@ -183,7 +184,7 @@ impl Computation for Weighing<'_> {
     }
 }
 
-/// The place of a point along Morton's curve through a cube around the origin.
+/// Returns the index of a point along the Morton curve through a cube around the origin.
 fn morton(place: DVec3) -> u64 {
     let spread = |x: f64| {
         let mut x = (x + 1024.0).clamp(0.0, 2047.0) as u64;

@@ -8,7 +8,7 @@ use crate::trace::pass::Pass;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{Polarization, Polarized};
 
-/// The light that the paths of one pass look at.
+/// The photons and light vertices that the paths of one pass use.
 pub struct PassLight<const N: usize, P: Polarization<N> = Polarized> {
     pub photons: Option<PhotonMap<N, P>>,
     vertices: Vec<LightVertices<N>>,
@@ -28,7 +28,7 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
         Self { photons, vertices }
     }
 
-    /// The vertices that a sample looks at, counted from the first of the pass.
+    /// Returns the vertices that a sample uses, counted from the first sample of the pass.
     pub fn vertices(&self, sample: u32) -> Option<&LightVertices<N>> {
         self.vertices.get((sample / SHARED) as usize)
     }
@@ -37,7 +37,7 @@ impl<const N: usize, P: Polarization<N>> PassLight<N, P> {
         self.photons.as_ref().map_or(0, |photons| photons.sent)
     }
 
-    /// Adds what was noticed of it.
+    /// Adds its statistics to those of others.
     pub fn add_to(&self, stats: &mut Stats) {
         self.photons.iter().for_each(|photons| *stats += photons.stats);
         self.vertices.iter().for_each(|set| *stats += set.stats);

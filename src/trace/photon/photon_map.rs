@@ -1,8 +1,8 @@
-//! Caustics that the camera does not see straight: photons are kept where they land, and paths from the camera gather
-//! them around the places that they reach by way of other surfaces.
+//! Caustics that the camera does not see directly. Photons are stored where they land, and paths from the camera gather
+//! them around the places that they reach over other surfaces.
 //!
-//! Every photon draws wavelengths of its own, as every camera sample does. One whose lanes have not parted is kept with
-//! its fixed lanes; of one whose lanes have, each wavelength is kept alone, with the color that its light has.
+//! Each photon draws its own wavelengths, as each camera sample does. One whose lanes have not parted is stored with
+//! its fixed lanes. If they have parted, each wavelength is stored separately, with the color of its light.
 
 use super::batch::{batches_of_pass, send};
 use super::follow::{Photon, PhotonHit};
@@ -20,7 +20,7 @@ use crate::trace::walk::{Interaction, Polarization, Polarized, Walker};
 /// A photon as the map stores it: where it landed, and what it carries.
 #[derive(Clone, Debug)]
 pub struct StoredPhoton<T, L = Polarized> {
-    /// Unit vector back along its way.
+    /// Unit vector back along its path.
     pub back: DVec3,
     /// The surface's own unit normal there, on the side it came from.
     pub flat: DVec3,
@@ -28,9 +28,9 @@ pub struct StoredPhoton<T, L = Polarized> {
     pub front: bool,
     /// Whether light crosses the surface.
     pub crosses: bool,
-    /// Surfaces it hit, the last one included.
+    /// Number of surfaces it hit, the last one included.
     pub surfaces: u32,
-    /// Whether light vertices show what surfaces send on of its light.
+    /// Whether light vertices account for what surfaces scatter of its light.
     pub is_resampled: bool,
     /// How its light is polarized.
     pub polarization: L,
@@ -39,7 +39,7 @@ pub struct StoredPhoton<T, L = Polarized> {
 
 #[derive(Clone, Debug)]
 pub struct JointLanes<const N: usize> {
-    /// Flux, lane by lane, over the cosine under which it arrived.
+    /// Flux, lane by lane, divided by the cosine of its arrival.
     pub flux: Lanes<N>,
     pub light: LightId,
 }
@@ -49,19 +49,19 @@ pub struct JointLanes<const N: usize> {
 pub struct SingleLane {
     pub wavelength: Wavelength,
     pub light: LightId,
-    /// Its flux over the cosine under which it arrived ..
+    /// Its flux, divided by the cosine of its arrival.
     pub weight: f64,
-    /// .. and the film's color of that.
+    /// The film's color of `weight`.
     pub color: [f64; 3],
 }
 
 pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
     pub together: KdTree<StoredPhoton<JointLanes<N>, P::Stored>>,
     pub alone: KdTree<StoredPhoton<SingleLane, P::Stored>>,
-    /// Whether any of them landed on a surface that light crosses.
+    /// Whether any photon landed on a surface that light crosses.
     pub crosses: bool,
     pub kernel: Kernel<N>,
-    /// One that blurs half as much, where the blur is to be told.
+    /// A kernel that blurs half as much, if the blur is to be measured.
     pub half: Option<Kernel<N>>,
     pub sent: u64,
     pub stats: Stats,
@@ -70,7 +70,7 @@ pub struct PhotonMap<const N: usize, P: Polarization<N> = Polarized> {
 /// Sets these random numbers apart from the others.
 const SEED: u64 = 0x6d61_7073;
 
-/// What is kept of a photon where it lands.
+/// What is stored of a photon where it lands.
 pub enum PhotonRecord<const N: usize, L = Polarized> {
     JointLanes(StoredPhoton<JointLanes<N>, L>),
     SingleLane(StoredPhoton<SingleLane, L>),
@@ -104,7 +104,7 @@ pub fn photons<const N: usize, P: Polarization<N>>(world: &World, pass: &Pass) -
     Some(PhotonMap { together, alone, crosses, kernel, half, sent, stats })
 }
 
-/// Keeps a photon where it lands.
+/// Stores a photon where it lands.
 pub fn store_photon<const N: usize, P: Polarization<N>>(
     Walker { world, .. }: &Walker<N, P>,
     photon_hit: &PhotonHit<N, P>,
@@ -145,7 +145,7 @@ impl<L> StoredPhoton<(), L> {
 }
 
 impl<const N: usize, P: Polarization<N>> PhotonMap<N, P> {
-    /// How many photons lie within a radius of a place.
+    /// Returns the number of photons within a radius of a place.
     pub fn count_near(&self, place: DVec3, radius: f64) -> u64 {
         let mut count = 0;
         self.together.near(place, radius, &mut |_, _| count += 1);

@@ -1,4 +1,4 @@
-//! Photons that are shown: where one lands and the camera sees it, it adds to the pixels.
+//! Photons that are splatted: where one lands and the camera sees it, it adds to the pixels.
 
 use std::sync::Arc;
 
@@ -17,20 +17,20 @@ use crate::trace::walk::{
     DYE, Interaction, Occluders, Polarization, SeenPhoton, SeenThrough, VisibilityTest, Walker, parts, shading,
 };
 
-/// Use of the random numbers where a photon is seen: the point of the lens.
+/// Use of the random numbers where the camera sees a photon: the point of the lens.
 const LENS: u32 = 3;
 
 /// What a photon adds to a pixel of the film.
 #[derive(Clone, Debug)]
 pub struct Splat {
-    /// By what share polarization may change it.
+    /// The share by which polarization may change it.
     pub change: f32,
     pub rgb: [f64; 3],
-    /// S1, S2 and S3 if they are asked for, times a factor.
+    /// S1, S2 and S3, if requested, to be multiplied by `weight`.
     pub stokes: Option<Arc<[[f64; 3]; 3]>>,
-    /// What it adds to the numbers of a spectral image if one is asked for, times a factor.
+    /// What it adds to the numbers of a spectral image, if requested, to be multiplied by `weight`.
     pub bands: Option<Arc<[f32]>>,
-    /// That factor.
+    /// The factor of `stokes` and `bands`.
     pub weight: f64,
     pub light: LightId,
     /// How often surfaces scattered, mirrored or refracted it on its way.
@@ -41,35 +41,35 @@ pub struct Splat {
     pub early: bool,
     /// Whether it landed on a shadow catcher.
     pub caught: bool,
-    /// By which lobe that surface sends it to the camera, if layers tell that apart.
+    /// The lobe by which that surface scatters it to the camera, if layers tell lobes apart.
     pub first: Option<FirstLobe>,
 }
 
 impl Splat {
-    /// So many times as bright.
+    /// Scales it by a factor.
     pub fn times(self, factor: f64) -> Self {
         Self { rgb: self.rgb.map(|x| x * factor), weight: self.weight * factor, ..self }
     }
 }
 
-/// What a photon adds to the film around a place. It is kept whole: a wide filter spreads it over a thousand pixels.
+/// What a photon adds to the film around a place. It is stored whole: a wide filter spreads it over a thousand pixels.
 #[derive(Clone, Debug)]
 pub struct PlacedSplat {
     /// In pixels of the film.
     place: DVec2,
-    /// As a filter of value 1 would have it.
+    /// As weighted by a filter value of 1.
     splat: Splat,
 }
 
 impl PlacedSplat {
-    /// Hands over what each pixel of the window gets, as the filter weighs them.
+    /// Calls `take` with what each pixel of the window receives, weighted by the filter.
     pub fn spread(&self, film: FilmSettings, take: &mut dyn FnMut(u32, Splat)) {
         for (pixel, weight) in self.pixels(film) {
             take(pixel, self.splat.clone().times(weight));
         }
     }
 
-    /// The pixels around it, each with the filter's weight.
+    /// Returns the pixels around it, each with the filter's weight.
     fn pixels(&self, film: FilmSettings) -> impl Iterator<Item = (u32, f64)> {
         let (place, window, reach) = (self.place, film.window(), film.filter.reach());
         let [first, end] = window.ends();
@@ -94,9 +94,9 @@ struct CameraConnection<'v, 'a, const N: usize, P: Polarization<N>> {
     walker: &'v Walker<'a, N, P>,
     photon_hit: &'v PhotonHit<'v, N, P>,
     seen: Seen,
-    /// Where on the film, near enough to the window.
+    /// Places on the film that are near enough to the window.
     places: Vec<DVec2>,
-    /// Whether the camera is on the side where the photon has arrived; the surface as it sees it.
+    /// Whether the camera is on the side where the photon arrived, and the surface as the camera sees it.
     same: bool,
     viewed: Interaction<'v, N>,
     seen_through: SeenThrough,
@@ -127,7 +127,7 @@ pub fn splat_photon<const N: usize, P: Polarization<N>>(
 }
 
 impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> {
-    /// None where the camera does not see the place.
+    /// Returns `None` where the camera does not see the place.
     fn new(
         walker: &'v Walker<'a, N, P>,
         photon_hit: &'v PhotonHit<'v, N, P>,
@@ -152,7 +152,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         Some(Self { walker, photon_hit, seen, places, same, viewed, seen_through })
     }
 
-    /// What of light reaches the camera that leaves the place toward it, and how it is polarized on its way.
+    /// Returns what reaches the camera of light that leaves the place toward it, and how it is polarized on its way.
     fn arriving(
         &self,
         draw: &Draw<N>,
@@ -178,12 +178,12 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         Some((arriving * media::change_of_radiance(&world.scene, draw, [inside, there]), polarization))
     }
 
-    /// The ray of the camera that sees the place.
+    /// Returns the camera ray that sees the place.
     fn back(&self) -> Ray {
         Ray { origin: self.seen.start, direction: -self.seen.direction }
     }
 
-    /// What the pixels get of light that leaves the place toward the camera.
+    /// Returns the factor from light that leaves the place toward the camera to what the pixels receive.
     fn factor(&self) -> f64 {
         let Interaction { context, flat, .. } = self.photon_hit.at;
         let cosines = self.seen.direction.dot(*flat).abs() / context.wo.dot(*flat).abs();
@@ -194,7 +194,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
             * filter.map_or(1.0, |filter| filter.transmittance())
     }
 
-    /// What the surface scatters toward the camera.
+    /// Returns what the surface scatters toward the camera.
     fn scattered(&self) -> Option<Splat> {
         let Self { photon_hit, viewed, same, .. } = self;
         let PhotonHit { path, at, .. } = photon_hit;
@@ -214,7 +214,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         Some(self.splat(&received, &polarized, parted, first))
     }
 
-    /// What a dye, one of its material by a number, shines toward the camera.
+    /// Returns what a dye emits toward the camera; `number` counts the dyes of the material.
     fn shone_by(&self, dyes: &Dyes, dye: usize, number: usize) -> Option<Splat> {
         let Self { photon_hit, viewed, .. } = self;
         let PhotonHit { path, at, photon } = photon_hit;
@@ -227,7 +227,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         let parted = path.parted;
         let brightness =
             dyes.excited(dye, &ReceivedLight { source: photon.light, draw: at.context.draw, lanes, parted });
-        // Its light is of other wavelengths than that of the photon, whose lanes may have parted.
+        // The dye emits other wavelengths than those of the photon, whose lanes may have parted.
         let draw = &world.method.basis.draw(photon.sampler.four_plain(path.key.child(DYE + dye), LENS)[0]);
         let mut shares = Vec::new();
         at.material.shares_of_dyes(&ScatterContext { draw, ..viewed.context }, Lanes::ONE, &mut shares);
@@ -244,7 +244,7 @@ impl<'v, 'a, const N: usize, P: Polarization<N>> CameraConnection<'v, 'a, N, P> 
         Some(self.splat(&received, &polarized, parted, first))
     }
 
-    /// Of light that arrives at the camera.
+    /// Returns the splat of light that arrives at the camera.
     fn splat(
         &self,
         received: &ReceivedLight<N>,

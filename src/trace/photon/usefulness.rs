@@ -1,4 +1,4 @@
-//! Which light vertices are seen from surfaces that the camera sees: of those behind walls, fewer need to be tried.
+//! Which light vertices are visible from surfaces that the camera sees: those behind walls need to be tried less often.
 
 use std::cell::Cell;
 
@@ -9,22 +9,22 @@ use crate::trace::World;
 
 /// Camera rays along each side of the image.
 const SIDE: u32 = 24;
-/// Neighboring vertices that are seen alike, and how many looks at them are tried.
+/// Neighboring vertices that are tested together, and visibility tests of each group.
 const ALIKE: usize = 64;
 const LOOKS: u32 = 32;
-/// What vertices of which no look saw any may bring, of what all bring, at most.
+/// Most that vertices that no test reached may contribute, relative to those that were reached.
 const UNSEEN: f64 = 0.05;
 /// Sets these random numbers apart from the others.
 const SEED: u64 = 0x6c6f_6f6b;
 
-/// A place on a diffuse surface that the camera sees straight.
+/// A place on a diffuse surface that the camera sees directly.
 pub struct DiffusePlace {
     point: SurfacePoint,
     primitive: Primitive,
 }
 
-/// For each vertex, how often places that the camera sees also see its neighborhood: above 0 to 1. Vertices that follow
-/// each other are neighbors, and each has the power of what leaves it. The whole image counts, whatever part is made.
+/// Returns for each vertex how often places that the camera sees also see its neighborhood: above 0, at most 1.
+/// Vertices in sequence are neighbors, and `powers` holds what leaves them. Uses the whole image, whatever is rendered.
 pub fn usefulness(world: &World, places: &[DiffusePlace], vertices: &[DVec3], powers: &[f64]) -> Vec<f32> {
     if places.is_empty() {
         return vec![1.0; vertices.len()];
@@ -39,29 +39,29 @@ pub fn usefulness(world: &World, places: &[DiffusePlace], vertices: &[DVec3], po
         std::iter::repeat_n(seen.count(), group.len())
     };
     let seen: Vec<usize> = vertices.chunks(ALIKE).enumerate().flat_map(of_group).collect();
-    // One look more that sees: what was never seen by chance must not be left out.
+    // Count one more test that succeeds: a vertex that chance alone kept from being seen must not be left out.
     let share = |seen: usize| (seen + 1) as f64 / f64::from(LOOKS + 1);
     let mut sums = [0.0; 2];
     seen.iter().zip(powers).for_each(|(&seen, power)| sums[usize::from(seen > 0)] += share(seen) * power);
     let [unseen, of_seen] = sums;
-    // Above 0: what is tried never is left out.
+    // Stay above 0: a vertex that is never tried is left out.
     let fewer = if of_seen > 0.0 { (UNSEEN * of_seen / unseen).clamp(f64::from(f32::EPSILON), 1.0) } else { 1.0 };
     seen.into_iter().map(|seen| (share(seen) * if seen > 0 { 1.0 } else { fewer }) as f32).collect()
 }
 
-/// Whether one of a few looks from places that the camera sees sees a vertex. `key` sets their random numbers apart.
+/// Whether one of a few tests from places that the camera sees reaches a vertex. `key` sets their random numbers apart.
 pub fn is_seen(world: &World, places: &[DiffusePlace], vertex: DVec3, key: [u32; 2]) -> bool {
     let last_occluder = Cell::new(None);
     let looks = Sampler::new(world.method.seed ^ SEED, key, LOOKS).four(BranchKey::CAMERA, 0);
     places.is_empty() || looks.iter().any(|&u| sees(world, chosen(places, u), vertex, &last_occluder))
 }
 
-/// One of some, each as likely, for a random number.
+/// Returns one of some elements, each equally likely, for a random number.
 fn chosen<T>(some: &[T], u: f64) -> &T {
     &some[((u * some.len() as f64) as usize).min(some.len() - 1)]
 }
 
-/// Some such places, all over the image.
+/// Returns some of the diffuse places that the camera sees, all over the image.
 pub fn places(world: &World) -> Vec<DiffusePlace> {
     let (scene, film) = (&world.scene, world.scene.film);
     let place = |number: u32| {
@@ -75,7 +75,7 @@ pub fn places(world: &World) -> Vec<DiffusePlace> {
     (0..SIDE * SIDE).filter_map(place).collect()
 }
 
-/// Whether nothing stands between a place and a vertex; on which sides of their surfaces is not asked.
+/// Whether nothing blocks the way from a place to a vertex. The sides of their surfaces do not matter.
 fn sees(world: &World, place: &DiffusePlace, vertex: DVec3, last_occluder: &Cell<Option<u32>>) -> bool {
     let way = vertex - place.point.position;
     let Some(direction) = way.try_normalize() else { return true };
@@ -85,5 +85,5 @@ fn sees(world: &World, place: &DiffusePlace, vertex: DVec3, last_occluder: &Cell
     !world.scene.is_occluded_by(&ray, way.length() * NEARLY, ends, last_occluder, &counts)
 }
 
-/// Looks end a little before the vertex: they only guide.
+/// Tests end a little before the vertex: they only guide.
 const NEARLY: f64 = 1.0 - 1e-6;

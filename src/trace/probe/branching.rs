@@ -1,4 +1,4 @@
-//! How many ways light has where all of them are followed.
+//! Estimates how many rays a camera sample takes when all branches are followed.
 
 use crate::material::Lobes;
 use crate::math::{DVec2, DVec3, Sampler};
@@ -6,23 +6,23 @@ use crate::trace::World;
 use crate::trace::camera::PathTracer;
 use crate::trace::width::in_lanes;
 
-/// What following all branches takes.
+/// The cost of following all branches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branching {
-    /// Surfaces that a mean camera sample hits.
+    /// Number of surfaces that a camera sample hits on average.
     Affordable(f64),
-    /// More than was asked for, seen from a pixel.
+    /// More surfaces than allowed, and the pixel where this was found.
     Beyond([i32; 2]),
 }
 
-/// Pixels along each side of the image that are asked.
+/// Pixels along each side of the image that are tested.
 const SIDE: u32 = 16;
-/// Objects that are looked at one by one.
+/// Most objects that are tested one by one.
 const OBJECTS: usize = 64;
 
-/// Follows all branches in pixels all over the image, and where the camera would see objects of several ways if nothing
-/// were before them, until it is known whether a mean sample hits more than `most` surfaces. A sample that had to go
-/// on by chance is beyond that whatever the mean is.
+/// Follows all branches in pixels spread over the image, and in pixels where the camera would see transmissive objects
+/// if nothing were in front of them. Stops as soon as it is known whether a mean sample hits more than `most` surfaces.
+/// A sample that had to continue by chance exceeds the limit, whatever the mean is.
 pub fn branching(world: &World, most: f64) -> Branching {
     in_lanes!(&world.method.basis, N => ask::<N>(world, most))
 }
@@ -50,7 +50,8 @@ fn ask<const N: usize>(world: &World, most: f64) -> Branching {
     }
 }
 
-/// Pixels in which the camera would see objects of some materials alone: their middles, and toward their corners.
+/// Returns the pixels in which the camera would see objects of some materials if nothing hid them: at the center of
+/// their bounds and toward their corners.
 pub fn pixels_of_objects(world: &World, counts: impl Fn(Lobes) -> bool) -> Vec<[i32; 2]> {
     let scene = &world.scene;
     let wanted = |object: &u32| counts(scene.material_of(*object).lobes());

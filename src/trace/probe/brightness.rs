@@ -1,4 +1,4 @@
-//! What lights a room, learned from a few camera samples.
+//! Learns from a few camera samples what lights a room.
 
 use super::clusters::{Cluster, Rectangle, clusters};
 use super::findings::found_all_over;
@@ -12,13 +12,13 @@ use crate::trace::photon::few_vertices;
 use crate::trace::width::in_lanes;
 use crate::trace::{Transport, World};
 
-/// Camera samples along each side of the image: few that look for a room, and those that look what lights it.
+/// Camera samples along each side of the image: a few to detect a room, and more to learn what lights it.
 const FEW: u32 = 24;
 const SIDE: u32 = 48;
-/// Of the way to a place, how far a bounce must go to have found what is there.
+/// Share of the way to a place that a bounce must travel to have reached what is there.
 const NEARLY: f64 = 0.9;
-/// Bounces of equal light that tell what lights a room. Where there are fewer, or nearly all light is in as few, more
-/// rays look for openings, by pieces.
+/// Number of equally bright bounces that tell what lights a room. With fewer, or with nearly all light in as few, more
+/// rays search for openings, in at most `MOST_PIECES` pieces of work.
 const OFTEN: f64 = 32.0;
 const MOST_PIECES: usize = 64;
 /// Sets these random numbers apart from those of the image.
@@ -27,17 +27,17 @@ const SEED: u64 = 0x6272_6967;
 /// What lights a room that the camera sees.
 #[derive(Default)]
 pub struct RoomLight {
-    /// Where bounces found most light, if anything stands out.
+    /// The places where bounces found most light, if any stand out.
     pub places: Option<BrightPlaces>,
-    /// Its openings to the sky, if they do.
+    /// Its openings to the sky, if they stand out.
     pub openings: Option<BrightPlaces>,
-    /// Whether bounces found hardly any light, so that how they vary tells nothing.
+    /// Whether too few bounces found light for their variance to mean anything.
     pub is_rare: bool,
 }
 
-/// Where light comes from inside a room that the sky lights; nowhere, if the camera sees no room.
+/// Finds where light comes from inside a room that the sky lights. The result is empty if the camera sees no room.
 ///
-/// All of the image counts, also where only a part of it is made, so that all parts are made alike.
+/// Uses the whole image even when only a part of it is rendered, so that all parts are rendered the same way.
 pub fn room_light(world: &World) -> RoomLight {
     let is_random = matches!(world.method.transport, Transport::Random { .. });
     if world.scene.infinite_lights.is_empty() || !is_random || world.method.diffuse_bounces == 0 {
@@ -47,7 +47,7 @@ pub fn room_light(world: &World) -> RoomLight {
 }
 
 fn of_room(world: &World) -> Option<RoomLight> {
-    // A few tell whether there is a room at all.
+    // A few samples tell whether there is a room at all.
     Room::of(world, bounces(world, FEW), SEED)?;
     let room = Room::of(world, bounces(world, SIDE), SEED)?;
     let is_rare = !is_lit_often(&room);
@@ -56,7 +56,7 @@ fn of_room(world: &World) -> Option<RoomLight> {
     Some(RoomLight { places: learned(&room), openings, is_rare })
 }
 
-/// What the bounces of so many camera samples along each side of the image found, as far as there are rays for them.
+/// Traces `side` x `side` camera samples over the image, or fewer if the rays run out, and returns their bounces.
 pub(super) fn bounces(world: &World, side: u32) -> Vec<Bounce> {
     let bounce = |finding: SensorEvent| if let SensorEvent::Bounce(bounce) = finding { Some(bounce) } else { None };
     in_lanes!(&world.method.basis, N => {
@@ -64,31 +64,31 @@ pub(super) fn bounces(world: &World, side: u32) -> Vec<Bounce> {
     })
 }
 
-/// Whether what lights a room was found often enough to tell what it is.
+/// Whether bounces found light often enough to tell what lights the room.
 fn is_lit_often(room: &Room) -> bool {
     let sum = |power: i32| room.bounces.iter().map(|bounce| bounce.light.powi(power)).sum::<f64>();
     sum(1).powi(2) > OFTEN * sum(2)
 }
 
-/// The bright places among those that bounces found.
+/// Returns the bright places among those that bounces found.
 fn learned(room: &Room) -> Option<BrightPlaces> {
     let lit = room.bounces.iter().filter(|bounce| bounce.light > 0.0);
     let points: Vec<(DVec3, f64)> = lit.map(|bounce| (room.end_of(bounce), bounce.light)).collect();
     bright_of(room, clusters(points, MOST).iter().map(Cluster::rectangle))
 }
 
-/// Those openings through which most light comes. All within the walls aim at them.
+/// Returns the openings through which most light comes. Bounces from anywhere within the walls are aimed at them.
 fn bright_openings(world: &World, Openings { walls, rectangles }: &Openings) -> Option<BrightPlaces> {
     let place = |&Rectangle { center, half }: &Rectangle| BrightPlace { center, half, radiance: 1.0 };
     let places = rectangles.iter().map(place).collect();
-    // What light comes through them, bounces tell that are aimed at them.
+    // Bounces aimed at the openings tell how much light comes through them.
     let aimed = BrightPlaces { within: *walls, places, elsewhere: 0.0, missed: 0.0, are_openings: true };
     let world = world.with_bright(Some(aimed));
     let room = Room::of(&world, bounces(&world, SIDE), SEED)?;
     Some(BrightPlaces { within: *walls, are_openings: true, ..bright_of(&room, rectangles.iter().copied())? })
 }
 
-/// Those of some rectangles from or through which more light comes than from elsewhere.
+/// Keeps those rectangles from or through which more light comes than from elsewhere.
 fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option<BrightPlaces> {
     let mut places: Vec<LearnedPlace> = rectangles.filter_map(LearnedPlace::of).collect();
     let mut elsewhere = Squares::default();
@@ -98,7 +98,7 @@ fn bright_of(room: &Room, rectangles: impl Iterator<Item = Rectangle>) -> Option
         let mut any = false;
         for place in &mut places {
             let Some(intersection) = place.shape.intersect(&ray, f64::INFINITY) else { continue };
-            // What is hidden before the place is as much its own as what lies beyond it.
+            // A bounce that ends in front of the place counts for it as much as one that goes beyond.
             place.squares.add(bounce);
             any |= bounce.distance > NEARLY * intersection.t;
         }
@@ -146,7 +146,7 @@ impl LearnedPlace {
     }
 }
 
-/// Sums for the root of a mean square of radiance, weighed by how much it counts.
+/// Sums for the root mean square of the radiance, weighted by the throughput.
 #[derive(Clone, Copy, Default)]
 struct Squares {
     light: f64,

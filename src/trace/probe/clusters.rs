@@ -1,24 +1,24 @@
-//! Points of light are gathered into few rectangles that fill their planes.
+//! Gathers points of light into a few rectangles that fill their planes.
 
 use std::f64::consts::FRAC_PI_2;
 
 use crate::math::{Bounds, DVec3, Frame};
 
-/// A rectangle, about weighted points or on its own.
+/// A rectangle, around weighted points or standalone.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     pub center: DVec3,
-    /// Half edges at right angles.
+    /// Perpendicular half edges.
     pub half: [DVec3; 2],
 }
 
-/// Weighted points about a rectangle.
+/// Weighted points and the rectangle around them.
 #[derive(Clone, Debug)]
 pub struct Cluster {
     points: Vec<(DVec3, f64)>,
     cost: f64,
     center: DVec3,
-    /// Half edges at right angles, and half of the thickness.
+    /// Perpendicular half edges, and half of the thickness.
     half: [DVec3; 3],
 }
 
@@ -26,23 +26,23 @@ pub struct Cluster {
 const OUTSIDE: f64 = 0.02;
 /// Share of the weight that may lie beyond each side of a box.
 const BEYOND: f64 = 0.01;
-/// Directions of a rectangle's edge that are tried, over a right angle.
+/// Edge directions of a rectangle that are tried over a right angle.
 const TURNS: u32 = 12;
-/// Steps in which the least of all is found, each half as large as the one before.
+/// Steps that refine the smallest rectangle, each half as large as the one before.
 const REFINED: u32 = 24;
-/// Planes between which points may be split, along each axis.
+/// Planes along each axis at which points may be split.
 const CUTS: usize = 7;
-/// What a split must save of all weights times areas.
+/// Share of the total cost, the sum of weights times areas, that a split must save.
 const WORTH: f64 = 0.05;
-/// Most points that are looked at.
+/// Most points that are used.
 const POINTS: usize = 2048;
 /// Fewest points of a cluster.
 const FEWEST: usize = 8;
-/// Steps in which the longest direction of points is found.
+/// Steps of the iteration that finds the direction in which points vary most.
 const STEPS: u32 = 24;
 
-/// The rectangles, at most so many: those that make the sum of weights times areas least, found by splitting in two. Of
-/// very many points, some tell enough.
+/// Gathers points into at most `most` rectangles, by repeated splitting in two. Each split minimizes the sum of weights
+/// times areas. Of very many points, a subset suffices.
 pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
     let step = points.len().div_ceil(POINTS).max(1);
     let points = points.into_iter().step_by(step).collect();
@@ -66,25 +66,25 @@ pub fn clusters(points: Vec<(DVec3, f64)>, most: usize) -> Vec<Cluster> {
 }
 
 impl Rectangle {
-    /// So many times as long and wide.
+    /// Scales its length and width by a factor.
     pub fn times(self, factor: f64) -> Self {
         Self { half: self.half.map(|half| half * factor), ..self }
     }
 
-    /// Half edges times each other.
+    /// Returns the product of the half edges.
     pub fn area(&self) -> f64 {
         self.half[0].length() * self.half[1].length()
     }
 }
 
 impl Cluster {
-    /// A rectangle about most of the points.
+    /// Returns the rectangle around most of the points.
     pub fn rectangle(&self) -> Rectangle {
         let [u, v, _] = self.half;
         Rectangle { center: self.center, half: [u, v] }
     }
 
-    /// The least about all of them, seen along its thickness.
+    /// Returns the smallest rectangle around all of the points, seen along the cluster's thickness.
     pub fn around_all(&self) -> Rectangle {
         let [u, v, normal] = self.half.map(DVec3::normalize_or_zero);
         let normal = if normal == DVec3::ZERO { u.cross(v) } else { normal };
@@ -116,7 +116,7 @@ impl Cluster {
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
-    /// About the points of both.
+    /// Returns the cluster of the points of both.
     pub fn joined(&self, other: &Self) -> Option<Self> {
         Self::around([self.points.as_slice(), &other.points].concat())
     }
@@ -146,7 +146,7 @@ impl Cluster {
         Some(Self { points, cost, center, half })
     }
 
-    /// The best two parts.
+    /// Returns the best split into two parts.
     fn split(&self) -> Option<[Self; 2]> {
         let mut best: Option<(f64, DVec3, f64)> = None;
         for axis in self.half {
@@ -170,7 +170,7 @@ impl Cluster {
     }
 }
 
-/// How far weighted points are spread.
+/// Moments of weighted points, which tell how far they are spread.
 #[derive(Clone, Copy, Default)]
 struct PointSpread {
     count: usize,
@@ -196,9 +196,9 @@ impl PointSpread {
         self.products += DVec3::new(point.y * point.z, point.z * point.x, point.x * point.y) * weight;
     }
 
-    /// Weight times area: how much of what is aimed is aimed in vain.
+    /// Returns weight times area, a measure of how much of the aiming is in vain.
     ///
-    /// The sum of the products of two eigenvalues of the covariance, its second invariant, goes as the area squared.
+    /// The sum of the products of two eigenvalues of the covariance, its second invariant, grows as the squared area.
     fn cost(&self) -> f64 {
         if self.weight <= 0.0 {
             return 0.0;
@@ -212,8 +212,9 @@ impl PointSpread {
     }
 }
 
-/// The direction in which points vary least. That in which they vary most is found by squaring; it may be any of the
-/// plane where they vary alike in all of it. A matrix of 2 x 2 is left, so that a narrow slit has its own plane.
+/// Returns the direction in which points vary least. First finds the direction in which they vary most by power
+/// iteration; if they vary equally in a whole plane, this may be any direction of that plane. A 2 x 2 matrix is left,
+/// so that a narrow slit has its own plane.
 fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     let middle = points.iter().fold(DVec3::ZERO, |sum, (point, share)| sum + *point * (share / weight));
     let times = |x: DVec3| {
@@ -235,13 +236,13 @@ fn normal_of(points: &[(DVec3, f64)], weight: f64) -> DVec3 {
     b * cos - a * sin
 }
 
-/// A box around weighted points, but for a few beyond each side of it.
+/// Returns a box around weighted points, except for a few beyond each of its sides.
 pub fn bounds_of_most(points: &[(DVec3, f64)], weight: f64) -> Bounds {
     let [x, y, z] = DVec3::AXES.map(|axis| span(points, weight, axis, BEYOND));
     Bounds { min: DVec3::new(x[0], y[0], z[0]), max: DVec3::new(x[1], y[1], z[1]) }
 }
 
-/// From where to where weighted points reach along an axis, without a share of all their weight at each end.
+/// Returns the interval that weighted points span along an axis, without the given share of the weight at each end.
 fn span(points: &[(DVec3, f64)], weight: f64, axis: DVec3, outside: f64) -> [f64; 2] {
     let mut along: Vec<(f64, f64)> = points.iter().map(|(point, share)| (point.dot(axis), *share)).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,4 +1,4 @@
-//! What polarization changes, measured on some hundred camera samples and some thousand photons.
+//! Measures what polarization changes, with a few hundred camera samples and a few thousand photons.
 
 use super::seen_light::{Amount, SIDE, for_each_light, with_fewer_photons};
 use crate::film::Window;
@@ -6,12 +6,12 @@ use crate::trace::World;
 use crate::trace::method::Polarizing;
 use crate::trace::width::in_lanes_of;
 
-/// The relative RMS error of light that is taken for unpolarized at every surface, over small cells of the image, over
-/// large ones, or of all light together, whichever is most: so few photons may light an image that no cell has two.
+/// Returns the relative RMS error of treating light as unpolarized at every surface: the largest of those over small
+/// cells of the image, over large cells, and of all light, since photons may be so few that no cell gets two.
 ///
-/// The same paths are followed with and without: each lane is told what polarization makes of it, and only the
-/// difference is noisy. Two copies of each cell know nothing of each other, so the mean of their product has no part of
-/// that noise, as a square would have; one standard error is added for what they have not hit.
+/// Each path is traced once for both cases: each lane carries what polarization makes of it, so only the difference is
+/// noisy. The two copies of each cell are independent, so the mean of their product is free of that noise, unlike a
+/// square. One standard error is added for what the copies missed.
 pub fn polarization_error(world: &World) -> f64 {
     let world = with_fewer_photons(world).with_polarization(Polarizing::Compared);
     let mut grids = SIDES.map(|side| Cells::new(world.scene.film.window(), side));
@@ -26,10 +26,10 @@ pub fn polarization_error(world: &World) -> f64 {
     grids.iter().map(Cells::error).fold(of_all, f64::max)
 }
 
-/// Cells along each side of the image: of one sample each, and so large that thin beams bring photons to both copies.
+/// Cells along each side of the image: of one sample each, and so large that thin beams send photons to both copies.
 const SIDES: [u32; 2] = [SIDE, SIDE / 4];
 
-/// What cells of the image show in both copies.
+/// The light in each cell of the image, in both copies.
 struct Cells {
     window: Window,
     side: u32,
@@ -53,7 +53,7 @@ impl Cells {
             spread += error * error;
             squares += (a.light + a.change) * (b.light + b.change);
         }
-        // Of an image with fewer pixels, cells are empty.
+        // An image with fewer pixels than cells leaves some cells empty.
         let count = f64::from(self.window.width.min(self.side) * self.window.height.min(self.side));
         let chance = f64::sqrt((spread - errors * errors / count).max(0.0));
         if squares > 0.0 { f64::sqrt((f64::max(errors, 0.0) + chance) / squares) } else { 0.0 }

@@ -1,4 +1,4 @@
-//! A few hundred camera samples, traced ahead so that the plan can speak in numbers.
+//! Traces a few hundred camera samples ahead, so that the plan can predict costs in numbers.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -16,30 +16,30 @@ use crate::trace::walk::{Polarization, Polarized};
 use crate::trace::width::{in_lanes, in_lanes_of};
 use crate::trace::{MapPasses, RAYS_OF_A_LOOK, World};
 
-/// What a probe found, per camera sample.
+/// What a probe measured, per camera sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
-    /// Rays followed, without those to lights.
+    /// Rays traced, without shadow rays.
     pub rays: f64,
     /// Share of the samples whose lanes parted.
     pub parted: f64,
-    /// Processor time, with that of gathering photons.
+    /// Processor time, including that of gathering photons.
     pub time: Duration,
-    /// Processor time of light paths, if any are followed, for one sample of every pixel.
+    /// Processor time of light paths, if any are traced, for one sample of every pixel.
     pub light_paths: Duration,
 }
 
-/// Processor time per photon; none where there are no such photons.
+/// Processor time per photon; zero where there are no photons of a kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhotonTimes {
-    /// Of one of the light pass.
+    /// For a photon of the light pass.
     pub splatted: Duration,
-    /// Of one of a map.
+    /// For a photon of a map.
     pub stored: Duration,
 }
 
 impl PhotonTimes {
-    /// How many camera samples a photon counts as, if a sample takes so long.
+    /// Returns how many camera samples a photon counts as, if a sample takes the given time.
     pub fn in_samples(&self, sample: Duration) -> PhotonCost {
         let sample = sample.max(Duration::from_nanos(1)).as_secs_f64();
         let of = |photon: Duration| (photon.as_secs_f64() / sample).round().clamp(1.0, MOST_COST) as u64;
@@ -47,32 +47,32 @@ impl PhotonTimes {
     }
 }
 
-/// More is a sample that was not measured well.
+/// A larger ratio means that the sample was not measured well.
 const MOST_COST: f64 = 100.0;
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
 /// Samples that are timed together.
 const BATCH: u32 = 16;
-/// What takes so many times as long as the median is timed again.
+/// A batch is timed again if its rays take this many times the median.
 const SLOW: f64 = 2.0;
-/// Photons that are timed together, and how often.
+/// Photons that are timed together, and the most batches of them.
 const FEW: u64 = 64;
 const TIMES: u64 = 64;
-/// Most photons of the map that is gathered from.
+/// Most photons of the map from which samples gather.
 const GATHERED: u64 = 4096;
-/// Time after which enough camera samples have been seen.
+/// Time after which no more camera samples are traced.
 const ENOUGH: Duration = Duration::from_millis(300);
-/// Time after which enough photons have been followed, which differ less.
+/// Time after which no more photons are traced; they vary less.
 const ENOUGH_PHOTONS: Duration = Duration::from_millis(100);
 
-/// Traces single samples of pixels spread over the part of the image that is made.
+/// Traces single samples of pixels spread over the part of the image that is rendered.
 pub fn probe(world: &World) -> Probe {
     in_lanes_of!(world, N, P => probe_lanes::<N, P>(world))
 }
 
 fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     let places: Vec<_> = world.scene.film.window().middles_of_cells(SIDE).collect();
-    // Tables that are computed when first needed are no part of a sample's time.
+    // Tables that are computed on first use must not count toward the time of a sample.
     let rough = |id: u32| world.scene.material_of(id).roughness().is_some_and(|roughness| roughness.value() > 0.0);
     if (0..world.scene.objects.len()).any(|object| rough(object as u32)) {
         let mut tracer = PathTracer::<N, P>::new(world);
@@ -110,15 +110,15 @@ fn probe_lanes<const N: usize, P: Polarization<N>>(world: &World) -> Probe {
     Probe { rays, parted: f64::from(parted) * per_sample, time: time.mul_f64(per_sample), light_paths }
 }
 
-/// What some work took.
+/// What a batch took.
 #[derive(Clone, Copy)]
 struct Timed {
     time: Duration,
     rays: u64,
 }
 
-/// The time of all batches. Those whose rays took much longer than the median are timed again: where only something
-/// else kept the processor, they are faster.
+/// Returns the total time of all batches. Batches whose rays took much longer than the median are timed again: they are
+/// faster if only another process had kept the processor busy.
 fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Duration {
     let per_ray = |batch: &Timed| batch.time.as_secs_f64() / batch.rays.max(1) as f64;
     let slow = median(batches.iter().map(per_ray).collect()).map_or(f64::INFINITY, |median| SLOW * median);
@@ -129,7 +129,7 @@ fn undisturbed(batches: Vec<Timed>, mut again: impl FnMut(usize) -> Timed) -> Du
     batches.iter().enumerate().map(time).sum()
 }
 
-/// A world whose map has few photons, of which as many are gathered around a place as of all, and its map.
+/// Returns a world whose map has few photons, and this map. As many are gathered around a place as from the full map.
 pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World, Option<PhotonMap<N, P>>) {
     let most = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(FEW, GATHERED);
     let fewer = |map: MapPasses| {
@@ -142,7 +142,8 @@ pub fn few_photons<const N: usize, P: Polarization<N>>(world: &World) -> (World,
     (world, photons)
 }
 
-/// How many photons follow so many rays, about, by what a few follow: in a heap of glass balls, each follows hundreds.
+/// Estimates how many photons can be traced with `rays` rays, from a few of them. In a heap of glass balls, each takes
+/// hundreds of rays.
 pub fn photons_within(world: &World, rays: f64) -> u64 {
     let [splatted, stored] = of_both(world, &|targets, follow| {
         let of_photon = |number: usize| {
@@ -156,7 +157,7 @@ pub fn photons_within(world: &World, rays: f64) -> u64 {
 
 type Follow<'a> = &'a (dyn Fn(Batch) -> Stats + Sync);
 
-/// What is found by the photons of the light pass, and by those of a map, where there are any.
+/// Returns what `find` returns for the photons of the light pass and for those of a map, or defaults without them.
 fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T) -> [T; 2] {
     in_lanes!(&world.method.basis, N => {
         let film = world.scene.film;
@@ -171,7 +172,7 @@ fn of_both<T: Default>(world: &World, find: &dyn Fn(&PhotonTargets, Follow) -> T
     })
 }
 
-/// Sends some photons of those targets that send most.
+/// Times some photons, of targets chosen in proportion to the photons they send.
 pub fn photon_times(world: &World) -> PhotonTimes {
     let [splatted, stored] = of_both(world, &|targets, follow| photon_time(targets, world.method.seed, follow));
     PhotonTimes { splatted, stored }
@@ -179,7 +180,7 @@ pub fn photon_times(world: &World) -> PhotonTimes {
 
 fn photon_time(targets: &PhotonTargets, seed: u64, follow: Follow) -> Duration {
     let take = |number: u64| {
-        // Far ones first, as some are enough where photons take long.
+        // Visit distant numbers first: where photons take long, time runs out after a few batches.
         let number = (number * 29) % TIMES;
         let target = targets.of_photon((2 * number + 1) * targets.photons() / (2 * TIMES));
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! Where the noise of an image is, and what adaptive sampling is worth: a pilot of some thousand camera samples.
+//! Learns where the noise of an image is and what adaptive sampling is worth, from a few thousand camera samples.
 
 use std::ops::Range;
 
@@ -17,42 +17,42 @@ use crate::trace::{RAYS_OF_A_LOOK, World};
 /// What adaptive sampling is worth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Adaptive {
-    /// Where.
+    /// Where more samples are taken, and where fewer.
     pub density: SampleDensity,
-    /// How many times as long an equal error takes with as many samples everywhere.
+    /// How many times as long uniform sampling takes to the same error.
     pub gain: f64,
-    /// How many times as many rays it takes as so many samples everywhere.
+    /// The ratio of its rays to those of uniform sampling.
     pub rays: f64,
 }
 
-/// Pixels that are looked at in a cell, how often each, and samples of each look. Samples of a look are spread evenly,
-/// as those of an image are: how far looks are apart tells what noise that leaves.
+/// Pixels tested in each cell, looks at each pixel, and samples of each look. The samples of a look are spread evenly,
+/// like those of an image, so that the difference between two looks shows the noise that this leaves.
 const PIXELS: u32 = 2;
 const LOOKS: u32 = 2;
 const SAMPLES: u32 = 4;
 const OF_A_CELL: f64 = (PIXELS * LOOKS * SAMPLES) as f64;
-/// Fewest pixels of a cell, and most cells: the same for any number of samples, so that an image may go on with more.
+/// Fewest pixels of a cell, and most cells: independent of the number of samples, so that more can be added later.
 const PIXELS_OF_A_CELL: f64 = 32.0;
 const MOST_CELLS: f64 = 4096.0;
-/// Cells that tell how many rays a cell takes, and as how many other looks all take: with half of it,
-/// `scenes/prism.toml` took 1.18 times as many rays to an equal error.
+/// Cells of the first look, which tell how many rays a cell takes, and the ray budget of all cells, in ordinary looks.
+/// With half of it, `scenes/prism.toml` took 1.18 times as many rays to the same error.
 const FEW_CELLS: f64 = 16.0;
 const AS_MANY_LOOKS: f64 = 4.0;
-/// Cells to each side that tell the noise of a cell.
+/// Cells to each side that are averaged for the noise of a cell.
 const AROUND: i64 = 2;
-/// What all that belongs to a sample takes in rays of a path.
+/// The fixed cost of a sample, in rays of a path.
 const SAMPLE: f64 = 0.5;
-/// Steps of a scale to twice as much, the least, and one beyond the largest.
+/// Steps of the scale per factor of two, the least step, and one beyond the largest.
 const STEPS: i32 = 16;
 const LEAST_STEP: i32 = -4 * STEPS;
 const MOST_STEP: i32 = 64 * STEPS;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6465_6e73;
 
-/// Where an image takes more samples and where fewer, and what that is worth; none where there is no noise.
+/// Finds where an image should take more samples and where fewer, and what that is worth; `None` if there is no noise.
 ///
-/// Errors are relative to each pixel, or to the image if it [is judged as a whole](crate::trace::Method). Rays followed
-/// stand for time, so that the answer is the same everywhere; the whole format counts, whatever part of it is made.
+/// Errors are relative to each pixel, or to the image if it [is judged as a whole](crate::trace::Method). Rays stand
+/// for time, so that the answer is the same on every machine. The whole format is used, also where a part is rendered.
 pub fn adaptive(world: &World) -> Option<Adaptive> {
     let format = [world.scene.film.width, world.scene.film.height];
     let pixels = world.scene.film.whole().pixels() as f64;
@@ -62,33 +62,34 @@ pub fn adaptive(world: &World) -> Option<Adaptive> {
     };
     let (cells, found) = in_lanes_of!(world, N, P => look::<N, P>(world, &cells));
     let of = |pixels: Range<usize>| smoothed(cells, &found, pixels, world.method.judges_the_whole());
-    // What one pixel of each cell asks for is judged by the other: what is chosen by its own noise looks too good.
+    // The choice from one pixel of each cell is judged by the other: judged by its own noise, it would look too good.
     let [gain, rays] = worth(&powers(&of(0..1))?, &of(1..2));
     Some(Adaptive { density: SampleDensity { cells, powers: powers(&of(0..2))? }, gain, rays })
 }
 
-/// What a pixel of a cell showed in film channels: the mean of its samples, and the variance of one spread evenly.
+/// Statistics of a pixel in film channels: the mean of its samples, and the variance of one of a set spread evenly.
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelMoments {
     mean: [f64; 3],
     variance: [f64; 3],
 }
 
-/// What the pixels of a cell showed, and the rays of all their samples.
+/// Statistics of the pixels of a cell, and the rays of all their samples.
 #[derive(Clone, Copy, Debug, Default)]
 struct CellSamples {
     pixels: [PixelMoments; PIXELS as usize],
     rays: f64,
 }
 
-/// Variance of a sample of a cell, and the rays of one.
+/// The relative variance and the rays of a cell, averaged over its neighbors.
 #[derive(Clone, Copy, Debug)]
 struct CellNoise {
     variance: f64,
     rays: f64,
 }
 
-/// Looks at as many cells as it may, by what few of them take. `cells` tells how many there are of at most so many.
+/// Looks at a few cells first, then at as many as the ray budget allows. `cells` returns the numbers of columns and
+/// rows for at most a given number of cells.
 fn look<const N: usize, P: Polarization<N>>(
     world: &World,
     cells: &dyn Fn(f64) -> [u32; 2],
@@ -148,7 +149,7 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
         let mut mean = [0.0; 3];
         for number in 0..SAMPLES {
             let mut rgb = tracer.sample(&Sampler::of_pixel(seed, pixel, number), pixel).rgb;
-            // A shadow catcher shows shadows alone, however noisy its light is.
+            // A shadow catcher shows only shadows, however noisy its light is.
             let shadow = tracer.layers().map(|layers| world.layers.changed(layers.left().row));
             shadow.iter().for_each(|shadow| add(&mut rgb, *shadow));
             (0..3).filter(|&i| rgb[i].is_finite()).for_each(|i| mean[i] += rgb[i] / f64::from(SAMPLES));
@@ -161,7 +162,7 @@ fn look_at_pixel<const N: usize, P: Polarization<N>>(
     PixelMoments { mean, variance: std::array::from_fn(variance) }
 }
 
-/// Of each cell, the mean over the 5 x 5 cells around it.
+/// Returns the noise of each cell, averaged over the 5 x 5 cells around it.
 fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_absolute: bool) -> Vec<CellNoise> {
     let means = || found.iter().flat_map(|found| found.pixels).flat_map(|pixel| pixel.mean);
     let dark =
@@ -184,7 +185,7 @@ fn smoothed(cells: [u32; 2], found: &[CellSamples], pixels: Range<usize>, is_abs
     (0..columns * rows).map(around).collect()
 }
 
-/// The powers of two that make the error least for as many rays as even samples take; none without noise.
+/// Returns the powers of two that minimize the error for no more rays than uniform samples take; `None` without noise.
 fn powers(found: &[CellNoise]) -> Option<Vec<i8>> {
     let wanted: Vec<f64> = found.iter().map(|cell| (cell.variance / cell.rays).sqrt()).collect();
     let most = wanted.iter().copied().fold(0.0, f64::max);
@@ -198,7 +199,7 @@ fn powers(found: &[CellNoise]) -> Option<Vec<i8>> {
     };
     let all = rays(found, &vec![0; found.len()]);
     let affordable = |step: i32| Some(of_scale(step)).filter(|powers| rays(found, powers) <= all);
-    // The largest scale that takes no more rays: a larger one never takes fewer.
+    // Find the largest scale that takes no more rays: a larger one never takes fewer.
     let (mut from, mut to) = (LEAST_STEP, MOST_STEP);
     let mut best = affordable(from)?;
     while to - from > 1 {
@@ -215,7 +216,7 @@ fn rays(found: &[CellNoise], powers: &[i8]) -> f64 {
     found.iter().zip(powers).map(|(cell, &power)| cell.rays * SampleDensity::times(power)).sum()
 }
 
-/// How many times as long an equal error takes with even samples, and how many times as many rays are followed.
+/// Returns how many times as long uniform samples take to the same error, and the ratio of the rays.
 fn worth(powers: &[i8], found: &[CellNoise]) -> [f64; 2] {
     let rays = rays(found, powers) / rays(found, &vec![0; found.len()]);
     let before: f64 = found.iter().map(|cell| cell.variance).sum();

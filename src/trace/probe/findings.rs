@@ -1,4 +1,4 @@
-//! What paths from the camera find, all over the image.
+//! Collects what paths from the camera find, all over the image.
 
 use std::cell::RefCell;
 
@@ -7,8 +7,8 @@ use crate::trace::camera::{PathTracer, SensorEvent};
 use crate::trace::photon::LightVertices;
 use crate::trace::{RAYS_OF_A_LOOK, World};
 
-/// What `wanted` keeps of that which so many camera samples along each side of the image find, as far as there are rays
-/// for them. `seed` sets their random numbers apart.
+/// Traces `side` x `side` camera samples over the image, or fewer if the ray budget runs out, and collects what
+/// `wanted` keeps of their events. `seed` keeps their random numbers apart from others.
 pub fn found_all_over<const N: usize, T>(
     world: &World,
     side: u32,

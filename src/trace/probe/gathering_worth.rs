@@ -1,4 +1,4 @@
-//! What the photons of a map are worth, learned from a few.
+//! Estimates from a few photons what the photons of a map are worth.
 
 use std::cell::Cell;
 
@@ -14,42 +14,43 @@ use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{MapPasses, RAYS_OF_A_LOOK, World};
 
-/// What a map's photons add to the noise, and the camera samples that gather them.
+/// The noise from a map's photons, and from the camera samples that gather them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GatheredWorth {
-    /// Variance of an image by n photons, summed over pixels and channels of XYZ, times n.
+    /// Variance of an image from n photons, summed over pixels and channels of XYZ, times n.
     pub variance: f64,
-    /// Rays that a photon follows.
+    /// Rays traced per photon.
     pub rays: f64,
-    /// How many photons a pass needs: more would only cost time.
+    /// Number of photons that a pass needs; more would only cost time.
     pub enough: f64,
-    /// Second moment of what a camera sample gathers, scaled as the variance of camera samples is.
+    /// Second moment of what a camera sample gathers, scaled like the variance of camera samples.
     pub second_moment: f64,
-    /// What else camera samples bring.
+    /// What else camera samples contribute.
     pub samples: SampleWorth,
 }
 
-/// Photons that are looked through at a place, on average, in a pass that has enough: their noise then is small beside
-/// that of paths that lead there, and to look through them takes as long as a few rays.
+/// Mean number of photons examined per gathering point in a pass that has enough. Their noise is then small compared
+/// with that of paths that lead there, and examining them takes as long as a few rays.
 const ENOUGH: f64 = 16.0;
 /// Maps that are compared.
 const MAPS: u64 = 2;
-/// Pixels along each side of the image that gather from them, and how many samples of each.
+/// Pixels along each side of the image that gather from the maps, and samples of each.
 const SIDE: u32 = 20;
 const SAMPLES: u32 = 4;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6761_7468;
 
-/// Gathers photons of two maps by the same paths: what differs is noise of the photons. It is overestimated where a
-/// pixel of many samples gathers at more places than these few, so that too many photons are sent rather than too few.
+/// Gathers photons of two maps along the same paths, so that the difference is noise of the photons. It is
+/// overestimated where a pixel's many samples gather at more places than these few, which errs toward more photons.
 ///
-/// All of the image counts, also where only a part of it is made, so that all parts are made alike. None if no photon
-/// lies near places that paths from the camera [reach](super::reached_places), or only among them and none is gathered.
+/// Uses the whole image even when only a part of it is rendered, so that all parts are rendered the same way. Returns
+/// `None` if no photon lies near places that paths from the camera [reach](super::reached_places), or if photons lie
+/// only among these places and none is gathered.
 pub fn gathered_worth(world: &World, places: &[DVec3]) -> Option<GatheredWorth> {
     in_lanes!(&world.method.basis, N => gather::<N>(world, places))
 }
 
-/// Sums of some values and of their squares.
+/// Sums of values and of their squares, for each channel.
 #[derive(Clone, Copy, Default)]
 struct Moments([[f64; 2]; 3]);
 
@@ -60,19 +61,19 @@ impl Moments {
         }
     }
 
-    /// Variances of so many values, summed over channels.
+    /// Returns the variance of `count` values, summed over channels.
     fn variance(&self, count: f64) -> f64 {
         self.0.iter().map(|[sum, squares]| ((squares - sum * sum / count) / (count - 1.0)).max(0.0)).sum()
     }
 }
 
-/// A first map of photons, and a world whose maps have no more photons than are enough.
+/// A first photon map, and a world whose maps have no more photons than enough.
 struct FirstMap<const N: usize> {
     enough: f64,
-    /// Whether any photon lies within a pixel of where paths lead.
+    /// Whether any photon lies within a coarse pixel of where paths lead.
     is_near: bool,
     world: World,
-    /// None if it had more.
+    /// The map, or `None` if it has more photons than enough.
     photons: Option<PhotonMap<N>>,
 }
 

@@ -1,4 +1,4 @@
-//! What is found out before an image is made: by a few paths, for the plan and for those that follow.
+//! Measurements made with a few paths before the render, for the plan and for the paths that follow.
 
 mod branching;
 mod brightness;

@@ -9,37 +9,38 @@ use crate::trace::bright::MOST;
 use crate::trace::camera::Bounce;
 use crate::trace::parallel::in_parallel;
 
-/// Rays of a piece of work: first one piece looks for ways out of the room, then twice as many each time.
+/// Rays per piece of work. The search for ways out of the room starts with one piece and keeps doubling their number.
 const RAYS: u32 = 1 << 14;
-/// Ways out that tell where to look closely.
+/// Number of ways out that tell where to look closely.
 const ENOUGH: usize = 64;
-/// Rounds in which rays do: each begins at what the one before has found, so that slits are found from end to end.
+/// Rounds of close looks. Each begins at what the one before has found, so that slits are found from end to end.
 const ROUNDS: usize = 4;
-/// How much larger than what they found is looked at evenly.
+/// Factor by which the rectangles found are enlarged before they are sampled uniformly.
 const ABOUT: f64 = 1.5;
-/// The numbers of the first piece that looks closely, of that which looks evenly and of that which looks for walls.
+/// Numbers of the first piece that looks closely, of the one that samples uniformly, and of the one that finds walls.
 const CLOSELY: usize = 1 << 16;
 const EVENLY: usize = CLOSELY + ROUNDS;
 const WALLS: usize = EVENLY + 1;
-/// How far beside a way out rays look closely, in sizes of the room: a power of two, from the first to the last alike.
+/// Close looks aim at a distance from a way out, in sizes of the room, whose exponent of two is drawn uniformly in this
+/// range.
 const BESIDE: [f64; 2] = [-14.0, -3.0];
-/// Nearer places, in squares of the size of the room, weigh no less.
+/// Least weight of a place, in squares of the room's size: places nearer to a way out do not weigh less.
 const LEAST: f64 = 1.0 / (1 << 28) as f64;
-/// An opening is taken as so many times as large as was found: the rest, hit by chance alone, would be too bright.
+/// Factor by which an opening is enlarged: the part that was not found, hit only by chance, would be too bright.
 const MARGIN: f64 = 1.03;
-/// Two parts are one opening if a rectangle about both is no more than so many times as large as theirs.
+/// Two parts are one opening if a rectangle around both is at most this many times as large as the two.
 const ONE: f64 = 1.3;
-/// Uses of random numbers; those of looks around come before.
+/// The use of random numbers that draws rays; looks around a place have smaller numbers.
 const DRAW: u32 = 16;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6f70_656e;
 
-/// The direction of a ray from where a bounce began, of any length.
+/// The direction, of any length, of a ray from the start of a bounce.
 type Toward<'a> = &'a (dyn Fn(&Bounce, u32, [f64; 4]) -> DVec3 + Sync);
-/// What is kept of it.
+/// The point that is kept of a ray, if any.
 type Keep<'a> = &'a (dyn Fn(&Bounce, DVec3, &Sampler) -> Option<DVec3> + Sync);
 
-/// Openings of a room to where the sky is seen.
+/// Openings of a room through which the sky is seen.
 pub struct Openings {
     /// A box around the walls of the room.
     pub walls: Bounds,
@@ -47,7 +48,7 @@ pub struct Openings {
 }
 
 impl Openings {
-    /// Those of a room, if it has some. So many pieces of work look for them, or fewer if they find any.
+    /// Finds the openings of a room, if it has some, with `pieces` pieces of work, or fewer if they find enough.
     pub fn of(room: &Room, pieces: usize) -> Option<Self> {
         let search = OpeningSearch { room, walls: walls(room)? };
         let mut ways_out = search.ways_out(pieces);
@@ -75,7 +76,7 @@ struct OpeningSearch<'a> {
 }
 
 impl OpeningSearch<'_> {
-    /// Where some of the rays that bounces might take leave the room.
+    /// Returns where some of the rays that bounces might take leave the room.
     fn ways_out(&self, most: usize) -> Vec<DVec3> {
         let (mut found, mut pieces) = (self.found(0..1, &by_cosine), 1);
         while pieces < most && found.len() < ENOUGH {
@@ -86,7 +87,8 @@ impl OpeningSearch<'_> {
         found
     }
 
-    /// Where rays leave the room beside ways out, weighted by how few fall there: by the square of the distance.
+    /// Returns where rays beside known ways out leave the room. They are weighted by the squared distance, since fewer
+    /// rays fall farther away.
     fn beside(&self, ways_out: &[DVec3], piece: usize) -> Vec<(DVec3, f64)> {
         let size = self.walls.size().length();
         let toward = |bounce: &Bounce, number: u32, [exponent, a, b, _]: [f64; 4]| {
@@ -101,7 +103,7 @@ impl OpeningSearch<'_> {
         self.found(piece..piece + 1, &toward).into_iter().map(|place| (place, weight(place))).collect()
     }
 
-    /// Where rays leave the room that fall evenly on rectangles.
+    /// Returns where rays that are aimed uniformly at rectangles leave the room.
     fn evenly(&self, about: &[Rectangle]) -> Vec<DVec3> {
         let toward = |bounce: &Bounce, number: u32, [a, b, ..]: [f64; 4]| {
             let Rectangle { center, half: [u, v] } = about[number as usize % about.len()];
@@ -110,7 +112,7 @@ impl OpeningSearch<'_> {
         self.found(EVENLY..EVENLY + 1, &toward)
     }
 
-    /// Where rays leave the room.
+    /// Returns where rays leave the room.
     fn found(&self, pieces: Range<usize>, toward: Toward) -> Vec<DVec3> {
         looked(self.room, pieces, toward, &|bounce, direction, sampler| {
             self.room.way_out(&self.walls, bounce, direction, sampler)
@@ -118,7 +120,7 @@ impl OpeningSearch<'_> {
     }
 }
 
-/// A box around the walls of a room, by where bounces began and where rays end inside.
+/// Returns a box around the walls of a room, from where bounces begin and where rays end inside.
 fn walls(room: &Room) -> Option<Bounds> {
     let ends = looked(room, WALLS..WALLS + 1, &by_cosine, &|bounce, direction, sampler| {
         room.end_inside(bounce, direction, sampler)
@@ -131,12 +133,12 @@ fn walls(room: &Room) -> Option<Bounds> {
     Some(box_around(&points, points.len() as f64))
 }
 
-/// As a bounce from a matte surface would go on.
+/// Draws a direction as a bounce from a matte surface would.
 fn by_cosine(bounce: &Bounce, _: u32, [a, b, ..]: [f64; 4]) -> DVec3 {
     cosine_about(bounce.normal, [a, b])
 }
 
-/// What is kept of the rays of some pieces of work.
+/// Returns what `keep` keeps of the rays of some pieces of work.
 fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<DVec3> {
     let of_piece = |piece: usize| -> Vec<DVec3> {
         let kept = |number: u32| {
@@ -152,12 +154,12 @@ fn looked(room: &Room, pieces: Range<usize>, toward: Toward, keep: Keep) -> Vec<
     in_parallel(pieces.len(), &of_piece).concat()
 }
 
-/// The rectangles that hold some weighted points of openings.
+/// Returns the rectangles that hold weighted points of openings.
 fn rectangles(points: Vec<(DVec3, f64)>) -> Vec<Rectangle> {
     joined(clusters(points, MOST)).iter().map(Cluster::around_all).collect()
 }
 
-/// Clusters of which those that lie side by side are one.
+/// Joins clusters that lie side by side.
 fn joined(mut clusters: Vec<Cluster>) -> Vec<Cluster> {
     let area = |cluster: &Cluster| cluster.rectangle().area();
     let pair = |clusters: &[Cluster]| {

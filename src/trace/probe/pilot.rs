@@ -1,4 +1,4 @@
-//! What photons are worth, learned from a few; in XYZ, so that it is the same in every color space.
+//! Estimates from a few photons what photons are worth; in XYZ, so that the result is the same in every color space.
 
 use super::cost::photons_within;
 use crate::light::LightId;
@@ -9,40 +9,40 @@ use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, Smoothness, World};
 
-/// What one light's photons bring to the whole image, or those of several.
+/// What the photons of one light, or of several, contribute to the whole image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotonWorth {
     /// The lights that send them.
     pub lights: Vec<LightId>,
-    /// How smooth what they are sent to is.
+    /// How smooth the objects are that they are sent to.
     pub to: Smoothness,
-    /// XYZ, summed over all pixels, of all light that they bring.
+    /// All light that they contribute, in XYZ, summed over all pixels.
     pub brings: [f64; 3],
-    /// Variance of an image by n photons, summed over pixels and channels, times n.
+    /// Variance of an image from n photons, summed over pixels and channels, times n.
     pub variance: f64,
-    /// Rays that one follows.
+    /// Rays traced per photon.
     pub rays: f64,
     /// What they show in the pixels of each cell of the format.
     pub(super) cells: Vec<CellStatistics>,
 }
 
-/// X + Y + Z in a pixel of a cell, on average: its mean, and its variance in an image by n photons, times n.
+/// X + Y + Z in an average pixel of a cell: its mean, and its variance in an image from n photons, times n.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CellStatistics {
     pub(super) mean: f64,
     pub(super) variance: f64,
 }
 
-/// What camera samples bring beside photons.
+/// What camera samples contribute besides photons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleWorth {
-    /// Variance of an image of n camera samples, summed over pixels and channels but the noisiest hundredth, times n.
+    /// Variance of an image of n camera samples, summed over channels and pixels but the noisiest hundredth, times n.
     pub variance: f64,
-    /// Rays that one follows, without those to lights.
+    /// Rays traced per sample, without shadow rays.
     pub rays: f64,
 }
 
-/// Photons of some lights in one image of a pilot, of all lights together, and how many images there are.
+/// Most photons of a group of lights in one image of a pilot, photons of all groups together, and number of images.
 const PHOTONS: u64 = 4096;
 const ALL: u64 = 4 * PHOTONS;
 const IMAGES: u64 = 4;
@@ -51,10 +51,10 @@ pub(super) const SIDE: u32 = 24;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7069_6c6f;
 
-/// What photons of each of the pass's lights are worth, where photons of the light are seen, those to what is wholly
-/// smooth and those to the rest each for themselves; many lights are weighed in groups.
+/// Estimates what photons of each of the pass's lights are worth, for lights whose photons are seen. Photons to each
+/// kind of smoothness are weighed separately; many lights are weighed in groups.
 ///
-/// The format counts, also where a part of it or more is made, so that all parts are made alike.
+/// Uses the format, even when a crop or overscan is rendered, so that all parts are rendered the same way.
 pub fn photons_worth(world: &World) -> Vec<PhotonWorth> {
     in_lanes!(&world.method.basis, N => weigh_photons::<N>(world))
 }
@@ -71,7 +71,7 @@ fn weigh_photons<const N: usize>(whole: &World) -> Vec<PhotonWorth> {
     groups.into_iter().filter_map(|(lights, to)| weigh::<N>(whole, &mut world, lights, to, photons)).collect()
 }
 
-/// What so many photons of some lights to what is so smooth are worth, in a world whose targets are replaced.
+/// Weighs about `each` photons of some lights to objects of one smoothness. Replaces the targets and seed of `world`.
 fn weigh<const N: usize>(
     whole: &World,
     world: &mut World,
@@ -119,14 +119,14 @@ fn weigh<const N: usize>(
 
 fn sizes_of_cells(film: FilmSettings) -> Vec<f64> {
     let of_side = |size: u32| {
-        // The first pixel of a cell, counted also where a cell has none.
+        // The first pixel of a cell, defined even where a cell has none.
         let first = move |cell: u32| (u64::from(cell) * u64::from(size)).div_ceil(u64::from(SIDE));
         (0..SIDE).map(move |cell| (first(cell + 1) - first(cell)) as f64)
     };
     of_side(film.height).flat_map(|rows| of_side(film.width).map(move |columns| rows * columns)).collect()
 }
 
-/// The sums of what falls on each pixel, of those pixels that anything falls on: never more than there are values.
+/// Sums the values of each pixel that has any. The result is never longer than the list of values.
 fn summed<const COUNT: usize>(mut values: Vec<(u32, [f64; COUNT])>) -> Vec<(u32, [f64; COUNT])> {
     values.sort_by_key(|value| value.0);
     values.dedup_by(|next, sum| {
@@ -139,7 +139,7 @@ fn summed<const COUNT: usize>(mut values: Vec<(u32, [f64; COUNT])>) -> Vec<(u32,
     values
 }
 
-/// The mean of some values, and the variance of one; 0 where there are too few to tell.
+/// Returns the mean of some values and the variance of one, 0 where there are too few to tell.
 pub(super) fn mean_and_variance(values: impl ExactSizeIterator<Item = f64> + Clone) -> [f64; 2] {
     let count = values.len();
     let mean = values.clone().sum::<f64>() / count.max(1) as f64;
@@ -148,7 +148,7 @@ pub(super) fn mean_and_variance(values: impl ExactSizeIterator<Item = f64> + Clo
 }
 
 impl SampleWorth {
-    /// Of the variances of single samples in some of an image's pixels, summed over channels.
+    /// Combines the variances of single samples, summed over channels, in some of an image's pixels.
     pub fn of(mut variances: Vec<f64>, pixels: f64, rays: f64) -> Self {
         variances.sort_by(f64::total_cmp);
         let common = variances.len() - variances.len().div_ceil(100);

@@ -1,9 +1,8 @@
-//! Which of two ways to render a scene takes less time to an equal error, learned from some thousand camera samples of
-//! each.
+//! Learns which of two ways to render a scene takes less time to the same error, from a few thousand samples of each.
 //!
-//! An image of n_p camera samples, and n_i photons of light i that it sees, has the variance A / n_p + sum B_i / n_i in
-//! the time C_p n_p + sum C_i n_i; their product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where it is (sqrt(A
-//! C_p) + sum sqrt(B_i C_i))^2. Rays followed stand for time, so that the answer is the same everywhere.
+//! An image of n_p camera samples, and n_i photons of each light i that it sees, has the variance A / n_p + sum B_i /
+//! n_i and takes the time C_p n_p + sum C_i n_i. Their product is least for n_i / n_p = sqrt(B_i C_p / (A C_i)), where
+//! it is (sqrt(A C_p) + sum sqrt(B_i C_i))^2. Rays stand for time, so that the answer is the same on every machine.
 
 use super::cost::few_photons;
 use super::pilot::{PhotonWorth, SIDE, mean_and_variance};
@@ -15,21 +14,21 @@ use crate::trace::walk::Polarized;
 use crate::trace::width::in_lanes;
 use crate::trace::{RAYS_OF_A_LOOK, World};
 
-/// Samples of a pixel in the middle of each cell of the format.
+/// Samples of the pixel in the middle of each cell of the format.
 const SAMPLES: u32 = 8;
-/// The vertices that a path looks at take as long as so many rays of the path with all that belongs to them.
+/// Cost of looking at light vertices from one surface, in rays of a path with all that belongs to them.
 pub(super) const LOOKING: f64 = 0.6;
-/// Darker pixels than this share of the squared mean count as if they were as bright: errors in them are hardly seen.
+/// Share of the squared mean that is added to the square of a pixel: errors in darker pixels are hardly seen.
 pub(super) const DARK: f64 = 0.1;
-/// A gain below this is none: a pilot does not know better, and a photon map may come with photons.
+/// A smaller gain counts as none: a pilot is not more precise, and a photon map may come with photons.
 const CLEARLY: f64 = 1.25;
-/// A way may take so many times as long to the error of the whole and be better for what it makes of each pixel.
+/// A way may take this many times as long to the error of the whole, and still be better for its error in each pixel.
 const HARDLY_LONGER: f64 = 1.1;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7265_7361;
 
-/// The noise of up to some thousand camera samples all over the image, with few photons, and with light vertices if the
-/// method asks for them. All of the image counts, also where only a part of it is made.
+/// Measures the noise of up to a few thousand camera samples all over the image, with few photons, and with light
+/// vertices if the method has them. Uses the whole image even when only a part of it is rendered.
 pub fn pilot_noise(world: &World) -> PilotNoise {
     in_lanes!(&world.method.basis, N => {
         let vertices = few_vertices::<N>(world);
@@ -42,63 +41,63 @@ pub fn pilot_noise(world: &World) -> PilotNoise {
     })
 }
 
-/// Of some samples of a pixel, the mean of X + Y + Z, the variance of one, and the pixel's cell of the format.
+/// For some samples of a pixel: the mean of X + Y + Z, the variance of one, and the pixel's cell of the format.
 struct PixelNoise {
     mean: f64,
     variance: f64,
     cell: usize,
 }
 
-/// Work to an error, or how many times as much of it one way takes as another.
+/// The work to reach an error, or the ratio of the work of two ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// To an error of each pixel, relative to its brightness.
+    /// For an error of each pixel, relative to its brightness.
     pub of_pixels: f64,
-    /// To an error of the whole image, where that is asked for.
+    /// For an error of the whole image, where the method judges it.
     pub of_whole: Option<f64>,
 }
 
 impl Effort {
-    /// What decides: where the error of the whole is asked for both count, as that is mostly made where the image is
-    /// bright, and it is looked at as well.
+    /// Returns the value that decides. Where the error of the whole is judged, both count: that error arises mostly
+    /// where the image is bright, and the image is looked at as well.
     pub fn judged(self) -> f64 {
         self.of_whole.map_or(self.of_pixels, |of_whole| (of_whole * self.of_pixels).sqrt())
     }
 
-    /// Whether another way is clearly better, if this one takes so many times as much: well over 1, and hardly less
+    /// Whether this ratio of one way to another shows that the other is clearly better: well over 1, and hardly less
     /// than 1 to the error of the whole.
     pub fn is_clear(self) -> bool {
         self.judged() > CLEARLY && self.of_whole.is_none_or(|of_whole| of_whole * HARDLY_LONGER > 1.0)
     }
 
-    /// Whether the two ways take the same but for so small a share.
+    /// Whether the two ways take the same work, up to a share of `but`.
     pub fn is_equal(self, but: f64) -> bool {
         [Some(self.of_pixels), self.of_whole].into_iter().flatten().all(|times| (times - 1.0).abs() <= but)
     }
 
-    /// How many times as much the other way takes, of how many times as much this one does.
+    /// Returns the ratio with the two ways exchanged.
     pub fn inverse(self) -> Self {
         Self { of_pixels: self.of_pixels.recip(), of_whole: self.of_whole.map(f64::recip) }
     }
 
-    /// How many times that of another it is.
+    /// Returns the ratio of this work to another.
     pub fn over(self, other: Self) -> Self {
         let of_whole = self.of_whole.zip(other.of_whole).map(|(own, other)| own / other);
         Self { of_pixels: self.of_pixels / other.of_pixels, of_whole }
     }
 }
 
-/// What samples of pixels all over the image are.
+/// The noise of sampled pixels all over the image.
 pub struct PilotNoise {
     pixels: Vec<PixelNoise>,
     is_whole: bool,
-    /// Pixels of the format.
+    /// Number of pixels of the format.
     format: f64,
-    /// Rays of one sample, and its part of those of photons that are gathered.
+    /// Rays per sample, including its part of those of gathered photons.
     rays: f64,
 }
 
-/// Variances in the mean of the pixels, times the rays they take: of a camera sample, and of a photon of each light.
+/// Variances, averaged over the pixels, times the rays they take: of a camera sample, and of a photon of each light.
 struct Work {
     samples: f64,
     photons: Vec<f64>,
@@ -134,7 +133,8 @@ fn weigh<const N: usize>(
 }
 
 impl PilotNoise {
-    /// How many times as long an equal error takes with other samples, both with their best photons; none if no noise.
+    /// Returns how many times as long other samples take to the same error, both with their best photons. Returns
+    /// `None` without noise.
     pub fn gain_over(&self, others: &Self, photons: &[PhotonWorth]) -> Option<Effort> {
         let mean = others.mean(photons);
         let least = |noise: &Self| noise.effort(photons, photons.len(), |_| 0.0, mean);
@@ -142,8 +142,8 @@ impl PilotNoise {
         gain.judged().is_finite().then_some(gain)
     }
 
-    /// The least product of time and variance where the first few of some photons are sent, and light of the others is
-    /// left to chance. Camera samples find it in spikes: its second moment is so many times the mean photons bring.
+    /// Returns the least product of time and variance where only the first `sent` photons are sent. Camera samples find
+    /// the light of the others by chance, in spikes, whose second moment is `spikes` times the mean of these photons.
     pub fn least_work(&self, photons: &[PhotonWorth], spikes: &[f64], sent: usize) -> Effort {
         let left = || photons.iter().zip(spikes).skip(sent);
         if left().any(|(_, spike)| spike.is_infinite()) {
@@ -154,9 +154,9 @@ impl PilotNoise {
         self.effort(photons, sent, by_chance, self.mean(photons))
     }
 
-    /// The least product of time and variance where the first few of some photons are sent, in an image of such a mean.
+    /// Returns the least product of time and variance where the first `sent` photons are sent, given the image's mean.
     ///
-    /// Errors of pixels leave out the hundredth of them in which samples vary most beside photons: no photon mends it.
+    /// Errors of pixels leave out the hundredth of them in which samples vary most: no photon improves that.
     fn effort(&self, photons: &[PhotonWorth], sent: usize, chance: impl Fn(&PixelNoise) -> f64, mean: f64) -> Effort {
         let of_pixel = |pixel: &PixelNoise| pixel.seen(photons).powi(2) + DARK * mean * mean;
         let of_whole = |_: &PixelNoise| mean * mean;
@@ -167,8 +167,8 @@ impl PilotNoise {
         }
     }
 
-    /// How many photons for each of the samples make the time to an error least. Variances are never relative: else
-    /// what photons show, which is bright, would be noisier than all around it.
+    /// Returns the number of photons per sample that takes the least time to an error. Variances are never relative:
+    /// otherwise, what photons show, which is bright, would be noisier than its surroundings.
     pub fn photons_of_a_sample(&self, photons: &[PhotonWorth]) -> f64 {
         let without = |left_out: usize| self.work(photons, |_| 0.0, |_| 1.0, left_out);
         let work = without(self.worst());
@@ -180,18 +180,18 @@ impl PilotNoise {
         photons.iter().zip(&work.photons).map(of_light).sum()
     }
 
-    /// A hundredth of the pixels.
+    /// The number of pixels that are left out, a hundredth of all.
     fn worst(&self) -> usize {
         self.pixels.len().div_ceil(100)
     }
 
-    /// The mean of the pixels with what photons show.
+    /// Returns the mean of the pixels, including what photons show.
     fn mean(&self, photons: &[PhotonWorth]) -> f64 {
         self.pixels.iter().map(|pixel| pixel.seen(photons)).sum::<f64>() / self.pixels.len() as f64
     }
 
-    /// Variances over squares of pixels, with what is found by chance in those of samples. So many of the pixels in
-    /// which samples vary most beside photons are left out of theirs.
+    /// Sums up variances relative to the squares of pixels, those of samples including what they find by chance. Leaves
+    /// out the `left_out` pixels in which samples vary most, but only from the variance of samples.
     fn work(
         &self,
         photons: &[PhotonWorth],
@@ -204,7 +204,7 @@ impl PilotNoise {
         let mut of_samples: Vec<[f64; 2]> = self.pixels.iter().map(of_pixel).collect();
         of_samples.sort_by(|[a, _], [b, _]| a.total_cmp(b));
         let most = of_samples.len() - left_out;
-        // Of n samples, each pixel has as many times fewer as there are pixels.
+        // Of n samples, each pixel gets n divided by the number of pixels.
         let count = of_samples.len() as f64;
         let samples = of_samples[..most].as_flattened().iter().sum::<f64>() / count * self.rays * self.format;
         let of_light = |photons: &PhotonWorth| {
@@ -216,7 +216,7 @@ impl PilotNoise {
 }
 
 impl Work {
-    /// The least product of time and variance.
+    /// Returns the least product of time and variance.
     fn least(&self) -> f64 {
         let of_photons: f64 = self.photons.iter().map(|of_light| of_light.sqrt()).sum();
         (self.samples.sqrt() + of_photons).powi(2)
@@ -224,7 +224,7 @@ impl Work {
 }
 
 impl PixelNoise {
-    /// Its mean with what photons show.
+    /// Returns its mean, including what photons show.
     fn seen(&self, photons: &[PhotonWorth]) -> f64 {
         self.mean + photons.iter().map(|photons| photons.cells[self.cell].mean).sum::<f64>()
     }

@@ -1,4 +1,4 @@
-//! A room, as bounces know it that begin inside.
+//! A room, as known from the bounces that begin inside it.
 
 use super::clusters::bounds_of_most;
 use crate::math::{Bounds, BranchKey, DVec3, Ray, Sampler, cosine_about};
@@ -9,22 +9,22 @@ use crate::trace::camera::Bounce;
 /// Rays that look for the sky from a place, and how many may see it from inside a room: a quarter.
 const LOOKS: u32 = 4;
 const INSIDE: usize = 1;
-/// Share of the bounces' weight inside rooms from which on it is a picture of a room.
+/// Share of the bounces' weight inside rooms above which the image shows a room.
 const ENOUGH: f64 = 0.25;
-/// How much is added around a box; and how many times as far as to its side a ray must go to have left it.
+/// Margin around a box, relative to its size; and the multiple of the way to its side beyond which a ray has left it.
 const MARGIN: f64 = 1e-6;
 const BEYOND: f64 = 1.0 + 1e-6;
 
 /// A room in which bounces begin.
 pub struct Room<'a> {
     pub world: &'a World,
-    /// The box in which they do, but for a few.
+    /// The box in which they begin, except for a few.
     pub bounds: Bounds,
     pub bounces: Vec<Bounce>,
 }
 
 impl<'a> Room<'a> {
-    /// The bounces that began inside a room, if they are many. `seed` sets random numbers apart.
+    /// Returns the room of those bounces that begin inside one, if they are enough. `seed` sets random numbers apart.
     pub fn of(world: &'a World, bounces: Vec<Bounce>, seed: u64) -> Option<Self> {
         let all = weight(&bounces);
         let is_inside = |(number, bounce): (u32, &Bounce)| {
@@ -42,19 +42,20 @@ impl<'a> Room<'a> {
         Some(Self { world, bounds, bounces })
     }
 
-    /// Where a bounce ends, or where it leaves the box.
+    /// Returns where a bounce ends, or where it leaves the box if that is nearer.
     pub fn end_of(&self, bounce: &Bounce) -> DVec3 {
         let leaves = distance_out(&self.bounds, bounce.from, bounce.direction);
         bounce.from + bounce.direction * bounce.distance.min(leaves)
     }
 
-    /// Where a ray from where a bounce began ends, if that is inside.
+    /// Returns where a ray from the start of a bounce ends, if that is inside.
     pub fn end_inside(&self, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
         let met = WallHit::of(self.world, &leaving(bounce, direction))?;
         is_inside(self.world, met.position, met.normal, sampler).then_some(met.position)
     }
 
-    /// Where such a ray leaves a box around the room, if it comes to the sky or to a place that is not inside.
+    /// Returns where a ray from the start of a bounce leaves a box around the room, if it reaches the sky or a place
+    /// beyond the box that is not inside.
     pub fn way_out(&self, walls: &Bounds, bounce: &Bounce, direction: DVec3, sampler: &Sampler) -> Option<DVec3> {
         let ray = leaving(bounce, direction);
         let leaves = distance_out(walls, ray.origin, direction);
@@ -64,11 +65,11 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Where a ray hits a surface that ends it.
+/// The point where a ray hits a surface that stops it.
 struct WallHit {
     t: f64,
     position: DVec3,
-    /// Toward where it came from.
+    /// On the side that the ray came from.
     normal: DVec3,
 }
 
@@ -82,14 +83,14 @@ impl WallHit {
     }
 }
 
-/// A box around most of some weighted points, and a little more.
+/// Returns a box around most of some weighted points, with a small margin.
 pub fn box_around(points: &[(DVec3, f64)], weight: f64) -> Bounds {
     let most = bounds_of_most(points, weight);
     let margin = MARGIN * most.size().length();
     Bounds { min: most.min - margin, max: most.max + margin }
 }
 
-/// How far it is from a point in a box to its end.
+/// Returns the distance from a point in a box to its boundary.
 fn distance_out(Bounds { min, max }: &Bounds, from: DVec3, direction: DVec3) -> f64 {
     let toward = |i: usize| match direction[i] {
         d if d > 0.0 => (max[i] - from[i]) / d,
@@ -107,7 +108,7 @@ pub fn weight(bounces: &[Bounce]) -> f64 {
     bounces.iter().map(|bounce| bounce.weight).sum()
 }
 
-/// Whether less than a quarter of the sky, weighed by the cosine, is seen from a place.
+/// Whether at most a quarter of the sky, weighted by the cosine, is seen from a place.
 fn is_inside(world: &World, place: DVec3, normal: DVec3, sampler: &Sampler) -> bool {
     let origin = off(place, normal);
     let sees = |look: &u32| {
@@ -118,7 +119,7 @@ fn is_inside(world: &World, place: DVec3, normal: DVec3, sampler: &Sampler) -> b
     (0..LOOKS).filter(sees).count() <= INSIDE
 }
 
-/// A little off a surface: the rays only look around.
+/// Returns a point slightly off a surface: good enough for rays that only look around.
 fn off(place: DVec3, normal: DVec3) -> DVec3 {
     place + normal * (1e-6 * place.length().max(1e-3))
 }

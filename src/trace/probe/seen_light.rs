@@ -1,4 +1,5 @@
-//! How much of the light seen polarization may change, by some hundred camera samples and some thousand photons.
+//! Estimates how much of the visible light polarization may change, from a few hundred camera samples and a few
+//! thousand photons.
 
 use std::ops::AddAssign;
 
@@ -16,12 +17,12 @@ use crate::trace::{LightPass, MapPasses, RAYS_OF_A_LOOK, World};
 pub const SIDE: u32 = 24;
 /// Parts of the view along each side.
 const PARTS: u32 = 6;
-/// Most photons that are shown, and most that are gathered; and the fewest, however many rays they follow.
+/// Most photons of the light pass and of the map, and the fewest of either, however many rays they take.
 const MOST: u64 = 2048;
 const FEWEST: u64 = 256;
 
-/// By which share of its light polarization may change a 36th of the view, where that is most: of the part of the image
-/// that is made, with fewer photons than the world's method asks for.
+/// Returns the largest share by which polarization may change the light of a 36th of the view. Measures the part of the
+/// image that is rendered, with fewer photons than the world's method has.
 pub fn most_changed(world: &World) -> f64 {
     let world = with_fewer_photons(world);
     let window = world.scene.film.window();
@@ -31,7 +32,7 @@ pub fn most_changed(world: &World) -> f64 {
     parts.into_iter().map(Amount::share).fold(0.0, f64::max)
 }
 
-/// The world with fewer photons than its method asks for.
+/// Returns the world with fewer photons than its method has.
 pub fn with_fewer_photons(world: &World) -> World {
     let most = photons_within(world, RAYS_OF_A_LOOK as f64).clamp(FEWEST, MOST);
     let of_map = |map: MapPasses| MapPasses { photons: map.photons.min(most), ..map };
@@ -39,7 +40,7 @@ pub fn with_fewer_photons(world: &World) -> World {
     world.with_light_pass(world.method.light_pass.as_ref().map(fewer))
 }
 
-/// Light that is seen, X + Y + Z, and by how much polarization changes it.
+/// The light that is seen, as X + Y + Z, and by how much polarization changes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Amount {
     pub light: f64,
@@ -47,7 +48,7 @@ pub struct Amount {
 }
 
 impl Amount {
-    /// The share of the light by which polarization changes it.
+    /// Returns the share of the light by which polarization changes it.
     fn share(self) -> f64 {
         if self.light > 0.0 { self.change / self.light } else { 0.0 }
     }
@@ -59,9 +60,9 @@ impl AddAssign for Amount {
     }
 }
 
-/// Hands over the light of one or two copies of the view, which know nothing of each other: the pixel, counted from the
-/// window's corner, the copy, and what of it a sample found, one in each of [`SIDE`] x [`SIDE`] cells as far as there
-/// are rays for them, or photons bring to as many.
+/// Renders one or two statistically independent copies of the view, and calls `take` with each result: the pixel
+/// (relative to the window's corner), the index of the copy, and the light found. Takes one camera sample in each of
+/// [`SIDE`] x [`SIDE`] cells until the rays run out; photons are scaled to the same number of pixels.
 pub fn for_each_light<const N: usize, P: Polarization<N>>(
     world: &World,
     copies: usize,
@@ -84,7 +85,7 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
             break;
         }
     }
-    // Photons light all pixels, of which so many were looked at.
+    // Photons light all pixels, of which camera samples looked at this share.
     let looked_at = f64::from(samples) / window.pixels() as f64;
     splats::<N, P>(world, &mut |pixel, splat| {
         let light = looked_at * world.amount(splat.rgb);

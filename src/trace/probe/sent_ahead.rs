@@ -1,4 +1,4 @@
-//! Photons that are sent ahead: which ones the camera sees tells where to send the others, and what they are worth.
+//! Sends photons ahead: those that the camera sees tell where to send the others, and what they are worth.
 
 use std::ops::Range;
 
@@ -11,39 +11,40 @@ use crate::trace::{LightPass, RAYS_OF_A_LOOK, World};
 
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6168_6561;
-/// Of a target's photons, one in so many is sent ahead to learn which ones are seen, unless those are too few to tell,
-/// and as many as tell enough.
+/// One in `AHEAD` of a target's photons is sent ahead to learn which are seen: at most `ENOUGH`, and none if that is
+/// fewer than `TOO_FEW`, which tell too little.
 const AHEAD: u64 = 8;
 const TOO_FEW: u64 = 4096;
 const ENOUGH: u64 = 1 << 16;
-/// Photons of all targets that the plan sends ahead, as many whatever the image is: no more than these, and than follow
-/// the rays of a look, if those are not too few to tell; and of all targets those that tell which are seen.
+/// Most photons of all targets that the plan sends ahead, whatever the size of the image. The first number is for
+/// learning where to send the others; it is also limited to what the rays of a look trace, unless that is too few. The
+/// second is for telling which photons are seen.
 const OF_A_PLAN: u64 = 1 << 16;
 const SEEN_OF_A_PLAN: u64 = 1 << 16;
-/// Most rays that a plan follows to learn where to send photons, and as many to tell which are seen. A photon in a heap
-/// of glass balls follows a hundred.
+/// Most rays that a plan traces to learn where to send photons, and again to tell which are seen. A photon in a heap of
+/// glass balls takes a hundred.
 const MOST_RAYS: f64 = (4 * RAYS_OF_A_LOOK) as f64;
-/// Photons of all targets that tell how many rays one follows.
+/// Photons of all targets that tell how many rays one takes.
 const FIRST: u64 = 256;
 
 /// What photons sent ahead found.
 #[derive(Default)]
 struct Learned {
-    /// Of each target, the places and whether the camera saw them.
+    /// For each target, the places of its photons and whether the camera saw them.
     found: Vec<Vec<([f64; 2], bool)>>,
     rays: u64,
 }
 
 impl Learned {
-    /// How many photons of each target follow so many rays, by what these took.
+    /// Estimates how many photons of each target can be traced with `rays` rays, from what these took.
     fn each_within(&self, rays: f64) -> u64 {
         let sent = self.found.iter().map(Vec::len).sum::<usize>() as f64;
         (rays * sent / (self.rays as f64 * self.found.len() as f64)) as u64
     }
 }
 
-/// Sends photons ahead, of each target those of some numbers as far as it has so many. The format sees them, also where
-/// a part of it or more is made, so that all parts are made alike.
+/// Sends photons ahead: of each target, those with the given numbers, as long as it has them. Tests whether the format
+/// sees them, even when a crop or overscan is rendered, so that all parts are rendered the same way.
 fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     let world = world.of_the_format();
     let Some(targets) = &world.photon_targets else { return Learned::default() };
@@ -60,12 +61,12 @@ fn send_ahead<const N: usize>(world: &World, numbers: Range<u64>) -> Learned {
     learned
 }
 
-/// Photons of each target that tell how many rays one follows.
+/// Returns the number of photons of each target that tell how many rays one takes.
 fn first_of_each(world: &World) -> u64 {
     world.photon_targets.as_ref().map_or(0, |targets| (FIRST / targets.targets.len() as u64).max(1))
 }
 
-/// Sends so many photons of each target ahead, or as many as follow [`MOST_RAYS`], but [`FIRST`] at least.
+/// Sends `most` photons of each target ahead, or as many as [`MOST_RAYS`] can trace, but at least [`FIRST`] in all.
 fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     let first = most.min(first_of_each(world));
     let mut learned = send_ahead::<N>(world, 0..first);
@@ -75,7 +76,7 @@ fn send_some_ahead<const N: usize>(world: &World, most: u64) -> Learned {
     learned
 }
 
-/// Of the photons of each light, the share that the camera sees; of many lights, of a light and its neighbors.
+/// Returns the share of each light's photons that the camera sees; of many lights, of a light and its neighbors.
 pub fn seen_photons(world: &World) -> Vec<f64> {
     let mut shares = vec![0.0; world.scene.lights.len()];
     let Some(targets) = &world.photon_targets else { return shares };
@@ -95,8 +96,8 @@ pub fn seen_photons(world: &World) -> Vec<f64> {
     shares
 }
 
-/// A world with another light pass and photons sent ahead, for a plan: no more of them for an image of many pixels than
-/// for one of few, and none where enough to learn from would follow too many rays.
+/// Returns a world with another light pass and photons sent ahead, for a plan. Their number does not grow with the
+/// image, and none are sent if learning enough would take too many rays.
 pub fn piloted(world: &World, light_pass: LightPass) -> World {
     let world = world.with_light_pass(Some(light_pass));
     in_lanes!(&world.method.basis, N => guided::<N>(world))
@@ -114,12 +115,12 @@ fn guided<const N: usize>(mut world: World) -> World {
     world
 }
 
-/// Sends photons ahead, and the others where those were seen.
+/// Sends photons ahead, and aims the others at where those were seen.
 pub fn learn_where_to_send(world: &mut World) {
     in_lanes!(&world.method.basis, N => train::<N>(world, u64::MAX));
 }
 
-/// The same by at most so many photons of a target.
+/// Sends at most `most` photons of each target ahead, and aims the others at where those were seen.
 fn train<const N: usize>(world: &mut World, most: u64) {
     let targets = world.photon_targets.iter().flat_map(|targets| &targets.targets);
     let Some(least) = targets.map(|target| target.photons / AHEAD).min() else { return };
@@ -139,7 +140,7 @@ mod tests {
     use crate::spectrum::{Basis, ColorSpace};
     use crate::trace::{Method, Smoothness, Transport};
 
-    /// A scene whose first light sends so many photons.
+    /// Returns a scene whose first light sends the given number of photons.
     fn sending(photons: u64, text: &str) -> World {
         let scene = Scene::parse(text, ".").expect("it is a scene");
         let transport = Transport::Random { split: 0.05, roulette: 0.05 };
@@ -153,7 +154,7 @@ mod tests {
         }))
     }
 
-    /// A heap of glass balls under a spot, in which a photon follows dozens of rays.
+    /// Returns a heap of glass balls under a spot, in which a photon takes dozens of rays.
     fn heap() -> World {
         let mut text = String::from(
             "[camera]\nposition = [0, -20, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n[film]\nwidth = 64\nheight = 48\n\
@@ -188,7 +189,7 @@ mod tests {
         assert_eq!(photons(&guided::<4>(world.clone())), photons(&world));
     }
 
-    /// Each pane of a stack mirrors a twelfth of the light: of 30, a photon that followed both ways came to no end.
+    /// Each pane of a stack reflects a twelfth of the light. With 30 panes, a photon that took both ways never ended.
     #[test]
     fn photons_between_many_panes_come_to_an_end() {
         let mut text = String::from(

@@ -1,4 +1,4 @@
-//! Where paths of suns and bright parts of skies start for light vertices: toward lit places that camera paths find.
+//! Finds where paths of suns and bright skies start for light vertices: toward lit places that camera paths find.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -16,27 +16,27 @@ use crate::trace::{SkyOpenings, SunlitPlaces, World};
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 48;
-/// Most suns and skies that are looked at.
+/// Most suns and skies that are considered.
 const SUNS: usize = 4;
 /// Fewest places that tell where paths should start.
 const FEWEST: usize = 16;
 /// Points along each side of an opening.
 const POINTS: u32 = 16;
-/// Of the way to a place, how far off it the ray to the sun starts: it only guides.
+/// How far before the end of a bounce the ray to the sun starts, as a share of its length: it only guides.
 const OFF: f64 = 1e-6;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x7375_6e73;
 
-/// The world with light vertices, those of skies by paths through some openings; none where there is no light that can
-/// be followed forward, or they would spoil the layer of a faint lamp.
+/// Returns the world with light vertices; paths of skies start through some openings. Returns `None` if no light can be
+/// traced forward, or if light vertices would spoil the layer of a faint lamp.
 pub fn with_light_vertices(world: &World, openings: &SkyOpenings) -> Option<World> {
     let world = can_be_followed(world)
         .then(|| world.with_light_vertices(sunlit_places(world, &openings.openings), openings.clone()))?;
     LightPaths::new(&world, world.method.seed).is_some_and(|paths| !paths.starve_a_layer()).then_some(world)
 }
 
-/// The places in the light of each sun and of each bright part of a sky that bounces find, if they are some, or else
-/// the openings through which it comes. The format counts, whatever part of it is made, so that all are made alike.
+/// Returns the places lit by each sun and each bright part of a sky: those that bounces find or, if too few, the
+/// openings through which it shines. Uses the format, whatever part of it is rendered, so that all parts are the same.
 fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     let lights = &world.scene.lights;
     let is_sun = |&id: &LightId| lights[id].is_infinite() && lights[id].sends_photons();
@@ -45,7 +45,7 @@ fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
         return Vec::new();
     }
     let bounces = bounces(world, SIDE);
-    // Where they ended, a little before the surface, and what light they found there.
+    // Where the bounces ended, slightly before the surface, and what light they found there.
     let has_found = |bounce: &&Bounce| bounce.distance.is_finite() && bounce.light.is_finite() && bounce.light > 0.0;
     let end = |bounce: &Bounce| (bounce.from + bounce.direction * (bounce.distance * (1.0 - OFF)), bounce.light);
     let ends: Vec<(DVec3, f64)> = bounces.iter().filter(has_found).map(end).collect();
@@ -54,14 +54,14 @@ fn sunlit_places(world: &World, openings: &[Opening]) -> Vec<SunlitPlaces> {
     suns.into_iter().filter_map(of).collect()
 }
 
-/// Points all over an opening, to its edges, with a part of its area for each.
+/// Returns points all over an opening, including its edges, each with its part of the area.
 fn points_of(opening: &Opening) -> impl Iterator<Item = (DVec3, f64)> {
     let at = |i: u32| f64::from(i) / f64::from(POINTS - 1);
     let weight = opening.area() / f64::from(POINTS * POINTS);
     (0..POINTS * POINTS).map(move |i| (opening.point([at(i % POINTS), at(i / POINTS)]), weight))
 }
 
-/// Those in the light of one sun.
+/// Returns the places in the light of one sun, if there are enough.
 fn of_sun(world: &World, id: LightId, ends: &[(DVec3, f64)]) -> Option<SunlitPlaces> {
     let light = &world.scene.lights[id];
     let (last_occluder, counts) = (Cell::new(None), |object| !world.is_see_through(object));

@@ -1,4 +1,4 @@
-//! Where lights are really seen that may be hidden for the most part.
+//! Learns where lights that may be mostly hidden are really seen.
 
 use std::cell::RefCell;
 
@@ -11,18 +11,18 @@ use crate::trace::width::in_lanes;
 
 /// Camera samples along each side of the image.
 const SIDE: u32 = 64;
-/// Lights hit that tell enough.
+/// Number of light hits that is enough.
 const ENOUGH: usize = 2048;
 /// Sets these random numbers apart from those of the image.
 const SEED: u64 = 0x6c61_6d70;
 
-/// Learns where lamps are visible that may be hidden for the most part. The format counts, also where a part of it or
-/// more is made, so that all parts are made alike.
+/// Learns where lamps that may be mostly hidden are visible. Uses the format, even when a crop or overscan is rendered,
+/// so that all parts are rendered the same way.
 pub fn learn_visible_caps(world: &mut World) {
     if !world.scene.lights.iter().any(|light| matches!(light, Light::Area(area) if area.may_show_a_cap())) {
         return;
     }
-    // Paths hit lamps behind a diffuse surface, also where the image has no such paths.
+    // Let paths hit lamps behind a diffuse surface, even where the image has no such paths.
     let asked = std::mem::replace(&mut world.method.diffuse_bounces, u32::MAX);
     let hit = in_lanes!(&world.method.basis, N => look::<N>(world));
     world.method.diffuse_bounces = asked;
@@ -36,7 +36,7 @@ pub fn learn_visible_caps(world: &mut World) {
     }
 }
 
-/// The lights that paths hit by chance, in directions drawn where lights were sampled as well, and their unit normals.
+/// Returns the lights that paths hit by chance in directions drawn where lights were also sampled, with unit normals.
 fn look<const N: usize>(world: &World) -> Vec<(LightId, DVec3)> {
     let film = world.scene.film;
     let met = RefCell::new(Vec::new());

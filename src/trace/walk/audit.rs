@@ -1,15 +1,15 @@
-//! The energy audit of splitting: whether all of the weight that left the camera has come to an end somewhere.
+//! The energy audit of splitting: whether all of the weight that left the camera has ended somewhere.
 //!
-//! A camera sample starts with weight 1 in each lane, or what a filter before the camera leaves of it. Surfaces split
-//! it into branches, media and surfaces absorb some, and the rest ends where it hits a light, or nothing. What
-//! chance adds or takes, where branches are chosen and paths ended, is 0 on the average. What is left when all paths
-//! have ended was lost: to a limit of bounces, or to a mistake.
+//! A camera sample starts with weight 1 in each lane, or what a filter in front of the camera leaves of it. Surfaces
+//! split it into branches, media and surfaces absorb some, and the rest ends where it hits a light or leaves the scene.
+//! Choosing branches and ending paths at random adds or removes weight, but 0 on average. What is left when all paths
+//! have ended was lost: to a bounce limit, or to a mistake.
 //!
 //! A weight is a share of flux: a throughput without the factor of radiance between media, each lane by its own index.
 //! What a dye absorbs counts as absorbed; the paths that look for what excites it have no weight here.
 //!
-//! Where lanes part for the first time the fixed lanes hand over to the heroes, so lanes that are together and lanes
-//! that have parted have a balance each.
+//! Where lanes part for the first time, the fixed lanes hand over to the heroes. Lanes that are together and lanes that
+//! have parted therefore have separate balances.
 
 use super::interaction::Interaction;
 use super::path::Path;
@@ -23,9 +23,9 @@ use crate::trace::white::White;
 /// The balance of one camera sample after another.
 pub struct Audit<'a, const N: usize> {
     world: &'a World,
-    /// The index of each lane around the camera.
+    /// The refractive index of each lane around the camera.
     start: [f64; N],
-    /// The weight of each lane that has not ended, before and after it parted.
+    /// The weight of each lane that has not ended: of lanes that are together, and of lanes that have parted.
     open: [[f64; N]; 2],
 }
 
@@ -34,20 +34,20 @@ impl<'a, const N: usize> Audit<'a, N> {
         Self { world, start: [1.0; N], open: [[0.0; N]; 2] }
     }
 
-    /// Begins with the path of another camera ray.
+    /// Begins another camera sample with its first path.
     pub fn begin<P>(&mut self, path: &Path<N, P>, draw: &Draw<N>) {
         self.start = self.indices(&path.media, draw);
         self.open = [path.throughput.of(Lanes::ONE).0.map(f64::from), [0.0; N]];
     }
 
-    /// A path has come to its end, but for what passes through the surface, if any does.
+    /// Records that a path has ended, except for what passes through the surface, if anything does.
     pub fn end<P>(&mut self, path: &Path<N, P>, through: Option<&PassThrough<N, P>>, draw: &Draw<N>) {
         let share = through.map_or(Lanes::ZERO, |through| through.straight.share());
         let ended = self.weight(path, path.throughput, draw);
         self.close(path.parted, &std::array::from_fn(|i| ended[i] * (1.0 - f64::from(share[i]))));
     }
 
-    /// The medium around a path has absorbed some of the throughput that it had before.
+    /// Records that the medium around a path has absorbed some of the throughput that it had before.
     pub fn absorb<P>(&mut self, path: &Path<N, P>, before: Throughput<N>, draw: &Draw<N>) {
         if before != path.throughput {
             let [before, after] = [before, path.throughput].map(|throughput| self.weight(path, throughput, draw));
@@ -55,10 +55,10 @@ impl<'a, const N: usize> Audit<'a, N> {
         }
     }
 
-    /// A surface has split a path into branches and what passes through.
+    /// Records that a surface has split a path into branches and what passes through.
     ///
-    /// A clear surface absorbs nothing: what its branches lack, or have too much, stays open. Any other absorbs what
-    /// they lack, for no formula of its own says how much that is.
+    /// A clear surface absorbs nothing: what its branches lack, or have in excess, stays open. Any other surface is
+    /// taken to absorb what they lack, because no separate formula says how much that is.
     pub fn split<P>(
         &mut self,
         path: &Path<N, P>,
@@ -82,7 +82,7 @@ impl<'a, const N: usize> Audit<'a, N> {
         }
         let hand_over = at.parts && !path.parted;
         for lane in 0..N {
-            // Lanes that do not cross where lanes part hand over to those that do.
+            // Where lanes part, those that do not cross hand over to those that do.
             let hands_over = at.parts && parting[lane] == 0.0;
             if clear && !hands_over {
                 absorbed[lane] = 0.0;
@@ -93,7 +93,7 @@ impl<'a, const N: usize> Audit<'a, N> {
         }
     }
 
-    /// What has not come to an end, as the film's red, green and blue of a white light.
+    /// Returns the weight that has not ended, as the film's red, green and blue of a white light.
     pub fn left_open(&self, white: &White, draw: &Draw<N>) -> [f64; 3] {
         let [together, parted] = [false, true].map(|parted| {
             let open = self.open[usize::from(parted)];
@@ -106,7 +106,7 @@ impl<'a, const N: usize> Audit<'a, N> {
         self.open[usize::from(parted)].iter_mut().zip(ended).for_each(|(open, ended)| *open -= ended);
     }
 
-    /// A throughput as a share of the flux that left the camera, at the end of a path.
+    /// Returns a throughput at the end of a path as a share of the flux that left the camera.
     fn weight<P>(&self, path: &Path<N, P>, throughput: Throughput<N>, draw: &Draw<N>) -> [f64; N] {
         if path.excitation.is_some() {
             return [0.0; N];
@@ -118,7 +118,7 @@ impl<'a, const N: usize> Audit<'a, N> {
         })
     }
 
-    /// The index of each lane among the bodies around a place.
+    /// Returns the refractive index of each lane in the media around a place.
     fn indices(&self, media: &Media, draw: &Draw<N>) -> [f64; N] {
         index(&self.world.scene, draw, media.inside(&self.world.scene))
     }

@@ -1,4 +1,4 @@
-//! What a surface makes of rows of Stokes weights.
+//! How a surface changes rows of Stokes weights.
 
 use std::array::from_fn;
 
@@ -7,23 +7,23 @@ use crate::material::{Block, Mueller};
 use crate::math::DVec3;
 use crate::spectrum::Lanes;
 
-/// Of each of K rows the weight of S0, then those of S1, S2 and S3.
+/// The weights of S0 in each of K rows, then those of S1, S2 and S3.
 pub type Weights<const K: usize> = [[f32; K]; 4];
 
 /// How a Mueller matrix changes rows.
 #[derive(Clone, Debug)]
 pub struct Change<const N: usize> {
-    /// What leaves of unpolarized light.
+    /// The part of unpolarized light that leaves.
     pub value: Lanes<N>,
-    /// What makes rows shares of the throughput beyond.
+    /// The factor that makes rows relative to the throughput beyond.
     pub scale: Lanes<N>,
-    /// From the frame before to that of the block.
+    /// Rotation from the frame before the surface to that of the block.
     pub met: Rotation,
-    /// From the frame before to that of the base, and from there to the frame beyond.
+    /// Rotations from the frame before the surface to that of the base, and from there to the frame beyond.
     pub base: [Rotation; 2],
-    /// The x of the frame beyond.
+    /// The x axis of the frame beyond.
     pub x: DVec3,
-    /// The only lane that goes this way, where it is alone: to change it alone takes a fraction of the time.
+    /// The only lane that goes this way, if there is just one. Changing it alone takes a fraction of the time.
     pub alone: Option<usize>,
 }
 
@@ -37,7 +37,7 @@ impl<const N: usize> Change<N> {
         alone: None,
     };
 
-    /// Rows of one lane beyond the surface, not yet shares of what leaves.
+    /// Returns the rows of one lane beyond the surface, not yet relative to what leaves.
     #[inline(always)]
     pub fn of_block<const K: usize>(&self, block: &Block<Lanes<N>>, i: usize, weights: Weights<K>) -> Weights<K> {
         let [q0, q1, q2, q3] = weights;
@@ -51,7 +51,7 @@ impl<const N: usize> Change<N> {
         ]
     }
 
-    /// Rows of one lane beyond a surface with what comes from below its coat, not yet shares of what leaves.
+    /// Returns the rows of one lane beyond a surface, with light from below its coat, not yet relative to what leaves.
     #[inline(always)]
     pub fn of_both<const K: usize>(&self, mueller: &Mueller<N>, i: usize, weights: Weights<K>) -> Weights<K> {
         let mut after = self.of_block(&mueller.block, i, weights);

@@ -1,4 +1,4 @@
-//! Where a path hits dyes: besides what the surface scatters, it may go on with what excites each of them.
+//! Where a path hits dyes: besides what the surface scatters, it may follow what excites each dye.
 
 use super::excitation::Excitation;
 use super::interaction::Interaction;
@@ -10,9 +10,9 @@ use crate::trace::World;
 use crate::trace::dyes::Dyes;
 use crate::trace::received_light::ReceivedLight;
 
-/// The branch of the random numbers of dyes, beyond those that a path may take.
+/// First branch number of the random numbers of dyes, beyond the branches that a path may take.
 pub const DYE: usize = 160;
-/// Use of those that choose one, and what lanes stand for.
+/// Use of the random numbers that choose a dye, and what the lanes stand for.
 const CHOICE: u32 = 1;
 
 /// A path at a surface with dyes.
@@ -21,13 +21,13 @@ pub struct Exciting<'a, const N: usize, P> {
     pub dyes: &'a Dyes,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    /// Whether it goes on in all ways, or in one of them.
+    /// Whether the path continues in all ways, or in one of them.
     pub all: bool,
-    /// The dye that the path's light excites, if it has seen one.
+    /// The dye that the path's light excites, if the path has seen one.
     pub seen: Option<&'a Excitation<N, P>>,
 }
 
-/// The ways on from there.
+/// The ways in which the path continues.
 pub struct ExcitedPaths<const N: usize, P> {
     pub of_dyes: Vec<(Path<N, P>, Excitation<N, P>)>,
     /// The factor on what the surface scatters: 0 if one of the dyes is chosen.
@@ -35,7 +35,7 @@ pub struct ExcitedPaths<const N: usize, P> {
 }
 
 impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
-    /// Chooses those that are followed.
+    /// Chooses the ways that are followed.
     pub fn ways(&self, sampler: &Sampler) -> ExcitedPaths<N, P> {
         let Self { world, dyes, path, at, all, .. } = *self;
         let [mut u, wavelength, ..] = sampler.four_plain(path.key.child(DYE), CHOICE);
@@ -53,7 +53,7 @@ impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
             }
             let lanes = path.throughput.of(share * (1.0 / (weight * chance)) as f32);
             let excitation = self.excitation(dye, lanes, wavelength);
-            // One that is chosen goes on for all.
+            // A dye that was chosen stands for all.
             let weight = if all { weight * chance } else { weight };
             let way = Path {
                 throughput: Throughput::starting(excitation.draw.start()).scaled(weight),
@@ -72,7 +72,8 @@ impl<const N: usize, P: Polarization<N>> Exciting<'_, N, P> {
         ExcitedPaths { of_dyes, scattered }
     }
 
-    /// What the sensor gets of a dye that is seen by lanes. A random number chooses what the lanes behind it stand for.
+    /// Returns what the sensor receives from a dye that these lanes see. `wavelength` chooses what the lanes behind it
+    /// stand for.
     fn excitation(&self, dye: usize, lanes: Lanes<N>, wavelength: f64) -> Excitation<N, P> {
         let Self { world, dyes, path, at, .. } = *self;
         let (seen_by, draw) = (at.context.draw, world.method.basis.draw(wavelength));

@@ -1,4 +1,4 @@
-//! A ray hits a surface.
+//! The interaction of a ray with a surface.
 
 use super::shading;
 use crate::material::{Lobes, Material, ScatterContext};
@@ -30,13 +30,13 @@ pub struct IncidentRay<'a, const N: usize> {
     pub parted: bool,
 }
 
-/// Where a path hits a surface, and what that may know of it: for the camera's paths, photons and probes.
+/// Where a path hits a surface, and everything the surface's response depends on: for camera paths, photons and probes.
 pub struct Interaction<'a, const N: usize> {
     pub object: u32,
     pub point: &'a SurfacePoint,
     pub material: &'a Material<Table>,
     pub lobes: Lobes,
-    /// The surface's own unit normal, of the triangle where a mesh is smooth, on the side that the path comes from.
+    /// The geometric unit normal, of the triangle in a smooth mesh, on the side that the path comes from.
     pub flat: DVec3,
     /// The media on both sides.
     pub boundary: Boundary,
@@ -45,7 +45,7 @@ pub struct Interaction<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Interaction<'a, N> {
-    /// Where a ray arrives at a surface that it has hit, at a boundary of media.
+    /// Returns the interaction of an arriving ray with the surface that it has hit, at a boundary of media.
     #[inline(always)]
     pub fn new(
         world: &'a World,
@@ -76,7 +76,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         at
     }
 
-    /// With another normal by which the surface scatters.
+    /// Returns the interaction with another normal by which the surface scatters.
     pub fn by_normal(self, normal: DVec3) -> Self {
         if normal == self.context.normal {
             return self;
@@ -86,7 +86,7 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { context, parts, ..self }
     }
 
-    /// The surface as it is viewed from another direction, on either side; the media are still those of this one.
+    /// Returns the surface as viewed from another direction, on either side. The media stay those of this interaction.
     pub fn viewed_from(&self, wo: DVec3) -> Self {
         let [flat, normal] = shading::normals_of(self.lobes, self.point, wo);
         let turned = ScatterContext { wo, normal, ..self.context };
@@ -94,25 +94,25 @@ impl<'a, const N: usize> Interaction<'a, N> {
         Self { flat, context, ..*self }
     }
 
-    /// As a surface that has some of its material's lobes alone.
+    /// Returns a surface that has only some of its material's lobes.
     pub fn of_lobes(&self, lobes: Lobes) -> Self {
         Self { context: ScatterContext { lobes, ..self.context }, ..*self }
     }
 
-    /// As the light sees it that excites a dye: white, in lanes that stand for what excites.
+    /// Returns the surface as the light that excites a dye sees it: white, in lanes that stand for what excites it.
     pub fn of_dye(&self, white: &'a Material<Table>, draw: &'a Draw<N>) -> Self {
         let context = ScatterContext { draw, present: draw.start(), ..self.context };
         Self { material: white, lobes: Lobes::DIFFUSE_REFLECTION, context, parts: false, ..*self }
     }
 }
 
-/// Whether lanes part that cross a surface.
+/// Returns whether lanes part that cross a surface.
 pub fn parts<const N: usize>(lobes: Lobes, material: &Material<Table>, context: &ScatterContext<N>) -> bool {
     lobes.is_transmissive() && material.parts_lanes(context)
 }
 
-/// What a surface may know of light that arrives there, between media on the viewer's side and beyond. `wo` leads to
-/// the viewer; `normal` is the one by which the surface scatters, on the viewer's side; `uv` says where it is hit.
+/// Returns what the response of a surface depends on, between media on the viewer's side and beyond. `wo` points to the
+/// viewer. `normal` is the one by which the surface scatters, on the viewer's side. `uv` is where it is hit.
 #[inline(always)]
 pub fn context<'a, const N: usize>(
     world: &'a World,

@@ -1,4 +1,4 @@
-//! A path from surface to surface: what it hits, how it goes on, and what it knows of its light.
+//! A path from surface to surface: what it hits, how it continues, and what it carries about its light.
 
 mod audit;
 mod change;

@@ -10,94 +10,94 @@ use crate::trace::first_lobe::FirstLobe;
 use crate::trace::media::Media;
 use crate::trace::{World, media};
 
-/// A ray on its way back from the camera.
+/// A path in progress, back from the camera or forward from a light.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<const N: usize, P = Polarized> {
     pub ray: Ray,
-    /// The surface that it hit last, which its ray leaves.
+    /// The surface that it hit last, from which its ray starts.
     pub left: Option<Primitive>,
     pub throughput: Throughput<N>,
-    /// The factor of radiance between the medium at the path's end and the camera's, times what densities of
-    /// [aimed](Self::aimed) bounces change: neither is a measure of importance.
+    /// The factor of radiance between the medium at the path's end and the camera's, times what the densities of
+    /// [aimed](Self::aimed) bounces change. Neither is a measure of importance.
     pub eta_scale: f64,
-    /// The factor by which the densities of bounces that were aimed at bright places change the throughput.
+    /// The factor by which the densities of bounces aimed at bright places have changed the throughput.
     pub aimed: f32,
-    /// The bodies the ray is inside of.
+    /// The bodies that the ray is inside of.
     pub media: Media,
-    /// Whether lanes have parted on the way, after which other lanes count.
+    /// Whether lanes have parted on the way. From then on, other lanes count.
     pub parted: bool,
-    /// Which random numbers belong to the path's next vertex.
+    /// The key of the random numbers of the path's next vertex.
     pub key: BranchKey,
-    /// Surfaces hit so far.
+    /// Number of surfaces hit so far.
     pub vertices: u32,
-    /// How many of them were those of bodies that are hidden inside others.
+    /// Number of surfaces hit so far that belong to bodies hidden inside others.
     pub hidden: u32,
-    /// How far the light has to go along it; to the camera itself, not to the near plane.
+    /// Length of the path so far, from the camera itself and not from the near plane.
     pub length: f64,
-    /// What kind of path it is so far.
+    /// The kind of the path so far.
     pub kind: PathKind,
-    /// Whether photons bring the light that comes straight along its ray from lights that send them.
+    /// Whether photons carry the light that arrives directly along its ray, from lights that send photons.
     pub left_to_photons: bool,
-    /// Whether the surface that last scattered it in every direction did so by narrow lobes alone. Photons do not land
-    /// there after a narrow lobe: what one such surface shows of another, the camera's rays find soon.
+    /// Whether the surface that last scattered it widely did so by narrow lobes alone. Photons do not land there after
+    /// a narrow lobe: the camera's rays soon find what one such surface shows of another.
     pub is_narrow: bool,
-    /// How often the path may still leave a diffuse surface.
+    /// How many times the path may still leave a diffuse surface.
     pub diffuse_left: u32,
-    /// How the last direction was sampled; none after the camera or a smooth surface.
+    /// How the last direction was sampled; `None` after the camera or a smooth surface.
     pub scatter: Option<ScatterSample>,
-    /// How its light is polarized.
+    /// The polarization of its light.
     pub polarization: P,
-    /// How often surfaces have scattered, mirrored or refracted it.
+    /// Number of times that surfaces have scattered, mirrored or refracted it.
     pub bounces: u32,
-    /// Whether only smooth surfaces have: what it hits next is seen.
+    /// Whether only smooth surfaces have mirrored or refracted it. The camera then sees what it hits next.
     pub is_seen: bool,
-    /// Which objects there are for it.
+    /// The objects that exist for it.
     pub among: Among,
-    /// Whether light was looked for at light vertices before, which count no more; of a photon, whether they carry it.
+    /// Whether light was already estimated at light vertices, which count no more. For a photon: whether they carry it.
     pub resampled: bool,
-    /// Whether all of its light is found otherwise, and it goes on to be accounted for alone.
+    /// Whether all of its light is found otherwise, so that the path only serves the accounting.
     pub unlit: bool,
-    /// Which of the walk's excitations it follows: its lanes are then what excites a dye.
+    /// The number of the excitation that it follows, if any. Its lanes then stand for what excites a dye.
     pub excitation: Option<u32>,
-    /// By which lobe the first surface sends its light to the camera, if layers tell that apart.
+    /// The lobe by which the first surface sends its light to the camera, if layers need that.
     pub first: Option<FirstLobe>,
 }
 
-/// Which objects there are for a ray.
+/// The objects that exist for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Among {
     All,
-    /// Those that are in the plate or light it.
+    /// Objects in the plate, and those that light it.
     Plate,
 }
 
-/// How a path that photons may find as well goes on.
+/// The kind of a path, which tells whether photons may find its light as well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathKind {
-    /// Straight from the camera.
+    /// Directly from the camera.
     Camera,
-    /// Straight from the camera, through surfaces of hidden bodies: splatted photons are not seen through these.
+    /// Directly from the camera, through surfaces of hidden bodies. Splatted photons are not seen through these.
     PastHidden,
-    /// Scattered widely by a surface from which photons are shown to the camera or gathered.
+    /// Scattered widely by a surface where photons are splatted or gathered.
     Wide,
-    /// After that over smooth surfaces alone.
+    /// Scattered widely by such a surface, then only by smooth ones.
     Smooth,
-    /// Another way.
+    /// Any other way.
     Other,
 }
 
 impl PathKind {
-    /// Whether the camera sees what it hits next.
+    /// Returns whether the camera sees what it hits next.
     pub fn is_from_camera(self) -> bool {
         matches!(self, Self::Camera | Self::PastHidden)
     }
 
-    /// Whether photons may have brought its light to the last surface that scattered it widely.
+    /// Returns whether photons may have carried its light to the last surface that scattered it widely.
     pub fn is_of_photons(self) -> bool {
         matches!(self, Self::Wide | Self::Smooth)
     }
 
-    /// After the surface of a body that is hidden inside another.
+    /// Returns the kind after the surface of a body hidden inside another.
     pub fn past_hidden(self) -> Self {
         match self {
             Self::Camera | Self::PastHidden => Self::PastHidden,
@@ -106,8 +106,9 @@ impl PathKind {
         }
     }
 
-    /// After one more surface; `wide` says whether light left it by a density of directions, and `followed` whether it
-    /// can be followed forward the same way. Photons are splatted from the first surface, and gathered from others.
+    /// Returns the kind after one more surface. `wide` tells whether light left it by a density of directions, and
+    /// `followed` whether it can be followed forward the same way. Photons are splatted from the first surface, and
+    /// gathered from others.
     pub fn then(self, gathers: bool, wide: bool, followed: impl Fn() -> bool) -> Self {
         match (self, wide) {
             (Self::Camera, true) => Self::Wide,
@@ -127,25 +128,25 @@ pub struct ScatterSample {
     pub from: DVec3,
     /// The surface's unit normal on the side that the direction leads to.
     pub normal: DVec3,
-    /// How likely lights were sampled on this side of the surface.
+    /// Probability that lights were sampled on this side of the surface.
     pub chance: f64,
-    /// Whether every light was sampled there, or one.
+    /// Whether every light was sampled there, or only one.
     pub all_lights: bool,
     /// Whether the path has passed through surfaces since.
     pub passed: bool,
-    /// Whether a vertex of a light path was looked at from there.
+    /// Whether light vertices were sampled from there.
     pub resampled: bool,
 }
 
 impl ScatterSample {
-    /// Toward a direction that was sampled with a density, which may lead beyond the surface.
+    /// Returns the sample for a direction that was sampled with a density, and that may cross the surface.
     pub fn toward(self, pdf: f64, crosses: bool) -> Self {
         Self { pdf, normal: if crosses { -self.normal } else { self.normal }, ..self }
     }
 }
 
 impl<const N: usize, P> Path<N, P> {
-    /// Surfaces hit so far that are there for light: `max_bounces` limits them.
+    /// Returns the number of surfaces hit so far that light interacts with: `max_bounces` limits it.
     pub fn surfaces(&self) -> u32 {
         self.vertices - self.hidden
     }
@@ -160,7 +161,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Self { throughput, length, ..path }
     }
 
-    /// The path of a ray that leaves a light.
+    /// Returns the path of a ray that leaves a light.
     pub fn from_light(world: &World, draw: &Draw<N>, ray: Ray, light: LightId) -> Self {
         let (media, polarization) = (world.media_at_light(light, &ray), P::of_light(world, &ray));
         Self::starting(world, draw, PathKind::Other, ray, media, polarization)
@@ -196,15 +197,15 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         }
     }
 
-    /// The path beyond a surface that it passes through as if nothing were there.
+    /// Returns the path beyond a surface that it passes through as if nothing were there.
     ///
-    /// Lights beyond were sampled through the surface: light that passes through makes no other kind of path.
+    /// Lights beyond were sampled through the surface: passing through does not change the kind of a path.
     pub fn passed(&self, point: &SurfacePoint) -> Self {
         let scatter = self.scatter.map(|scatter| ScatterSample { passed: true, ..scatter });
         Self { ray: point.leave(self.ray.direction), scatter, ..*self }
     }
 
-    /// The path beyond a surface that it passes through in part, which is not counted among its surfaces.
+    /// Returns the path beyond a surface that it passes through in part. The surface is not counted.
     #[cold]
     #[inline(never)]
     pub fn passed_in_part(&self, point: &SurfacePoint, through: &PassThrough<N, P>) -> Self {
@@ -213,8 +214,8 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Self { throughput, polarization, vertices: self.vertices - 1, ..self.passed(point) }
     }
 
-    /// The lobe by which the first surface sends light to the camera that the path finds at a surface, in a direction
-    /// that may lead beyond it; none if layers do not tell that apart.
+    /// Returns the lobe by which the first surface sends light to the camera that the path finds at a surface, in the
+    /// direction `wi`, which may lead beyond it. Returns `None` if layers do not need that.
     #[inline]
     pub fn first_lobe(&self, world: &World, at: &Interaction<N>, wi: DVec3, crosses: bool) -> Option<FirstLobe> {
         if self.bounces > 0 || !world.layers.lobes_apart {
@@ -224,37 +225,37 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         Some(FirstLobe::scattered(world.layers.white.as_ref(), material, *lobes, context, wi, crosses))
     }
 
-    /// Whether photons bring what a narrow lobe sends the path of direct light, from lights that send photons.
+    /// Returns whether photons carry the direct light that a narrow lobe sends the path, for lights that send photons.
     #[inline]
     pub fn leaves_narrow_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
         let has_landed = self.kind.is_of_photons() && !self.is_narrow && self.among == Among::All;
         has_landed && at.lobes.has_narrow_apart() && world.is_photon_target(at.object, at.point.position)
     }
 
-    /// Whether photons bring all light that a surface scatters: from narrow lobes alone they go on as from smooth ones.
+    /// Returns whether photons carry all light that a surface scatters: its narrow lobes then act like smooth surfaces.
     #[inline]
     pub fn leaves_all_to_photons(&self, world: &World, at: &Interaction<N>) -> bool {
         at.lobes.is_narrow() && self.leaves_narrow_to_photons(world, at)
     }
 
-    /// Its ray, as it arrives at a surface.
+    /// Returns its ray, as it arrives at a surface.
     #[inline(always)]
     pub fn arriving(&self) -> IncidentRay<'_, N> {
         IncidentRay { ray: &self.ray, present: self.throughput.present(), parted: self.parted }
     }
 
-    /// How much the path can still matter: its mean throughput, without what is no measure of importance.
+    /// Returns how much the path can still matter: its mean throughput, without factors that do not measure importance.
     pub fn weight(&self, draw: &Draw<N>) -> f64 {
         self.throughput.weight(draw.shares(self.parted)) / self.eta_scale
     }
 
-    /// The part of a camera sample's weight that the path has, as one of its siblings.
+    /// Returns the part of a camera sample's weight that the path has, as one of its siblings.
     pub fn share(&self, draw: &Draw<N>) -> f64 {
         self.weight(draw) * f64::from(self.aimed) / draw.siblings(self.parted)
     }
 
-    /// Takes other media to be around its end, without a surface between both: those that the camera sees, or those
-    /// that are there for all other light. Flux stays what it is.
+    /// Replaces the media around its end, without crossing a surface: by those that the camera sees, or by those that
+    /// exist for all other light. Flux is preserved.
     pub fn enter(&mut self, world: &World, draw: &Draw<N>, media: Media) {
         let sides = [self.media, media].map(|media| media.inside(&world.scene));
         self.media = media;
@@ -267,7 +268,7 @@ impl<const N: usize, P: Polarization<N>> Path<N, P> {
         self.eta_scale *= if before > 0.0 { weight(self.throughput) / before } else { 1.0 };
     }
 
-    /// Follows the ray along a distance, on which the medium around it absorbs.
+    /// Follows the ray along a distance over which the medium around it absorbs.
     pub fn advance(&mut self, world: &World, draw: &Draw<N>, distance: f64) {
         self.length += distance;
         if let Some(material) = self.media.inside(&world.scene) {

@@ -1,4 +1,4 @@
-//! What a path knows of the polarization of its light.
+//! What a path carries about the polarization of its light.
 
 use std::fmt::Debug;
 
@@ -12,20 +12,20 @@ use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
 use crate::trace::received_light::ReceivedLight;
 
-/// What of a path's light passes through where it hits a surface.
+/// The part of a path's light that passes through a surface that it hits.
 #[derive(Clone, Copy, Debug)]
 pub struct PassThrough<const N: usize, P> {
     pub straight: Straight<N>,
-    /// How the path's light is polarized beyond.
+    /// The polarization of the path's light beyond.
     pub polarization: P,
 }
 
 pub struct FoundLight<'a, const N: usize, P> {
     pub world: &'a World,
     pub received: &'a ReceivedLight<'a, N>,
-    /// The dye that it excites, where the path has seen one.
+    /// The dye that it excites, if the path has seen one.
     pub excitation: Option<&'a Excitation<N, P>>,
-    /// What the sensor gets of it.
+    /// The color that the sensor receives.
     pub rgb: [f64; 3],
     /// Whether lanes have parted anywhere on its way.
     pub dispersed: bool,
@@ -45,63 +45,64 @@ impl<'a, const N: usize, P> FoundLight<'a, N, P> {
 
 /// How the light of a photon reaches the camera.
 pub struct SeenPhoton<const N: usize> {
-    /// By what share polarization may change each lane.
+    /// The share by which polarization may change each lane.
     pub change: Lanes<N>,
     /// The factor by which a filter changes it.
     pub factor: Option<Lanes<N>>,
-    /// S1, S2 and S3 over S0, if they are asked for.
+    /// S1, S2 and S3 relative to S0, if they are requested.
     pub stokes: Option<[Lanes<N>; 3]>,
 }
 
-/// What a path knows of the polarization of its light: [`Polarized`](super::polarized::Polarized), by how much it may
-/// matter that polarization is not traced, or [`Rows`](super::rows::Rows), all of it.
+/// The polarization state that a path carries. [`Polarized`](super::polarized::Polarized) bounds how much it may matter
+/// that polarization is not traced. [`Rows`](super::rows::Rows) traces it.
 ///
-/// Densities never depend on it, nor do directions: all ways to sample light agree on them.
+/// Neither densities nor directions depend on it, so all techniques that sample light agree on them.
 pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
-    /// What is kept of it with a photon that has landed.
+    /// What is stored of it with a photon that has landed.
     type Stored: Clone + Debug + Send + Sync;
-    /// What becomes of it along a branch that may be followed.
+    /// How it changes along a branch that may be followed.
     type RowTransfer: Debug;
 
-    /// Of a path that starts at the camera along a ray.
+    /// Returns the state of a path that starts at the camera along a ray.
     fn of_camera(world: &World, ray: &Ray) -> Self;
 
-    /// Of a path that starts at a light, which shines unpolarized.
+    /// Returns the state of a path that starts at a light, which emits unpolarized light.
     fn of_light(world: &World, ray: &Ray) -> Self;
 
-    /// After a surface that lets some light pass through; makes that the share that does.
+    /// Returns the state after a surface that lets light pass through, and sets `straight` to the share that passes.
     fn through(self, material: &Material<Table>, context: &ScatterContext<N>, straight: &mut Straight<N>) -> Self;
 
-    /// Before branches are chosen: makes their shares those of the path's light, and puts what becomes of it along each
-    /// of them into `ways`. Nothing is put there where that can wait until one is chosen.
+    /// Converts the shares of branches to those of the path's light, before branches are chosen, and adds to `ways` how
+    /// the state changes along each of them. Adds nothing if that can wait until one is chosen.
     fn split(&self, at: &Interaction<N>, branches: &mut [Branch<N>], ways: &mut Slots<Self::RowTransfer>);
 
-    /// Becomes what it is along a branch when it was `before`; `split` has told of those that are followed back to the
-    /// lights, and none has of those that `forward` follows.
+    /// Becomes the state along a branch, given the state `before`. `split` has computed `way` for branches that are
+    /// followed back to the lights. It is `None` for those that `forward` follows.
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&Self::RowTransfer>);
 
-    /// On the way from a surface along the unit vector `wi` to a light or panes; makes `bsdf_cos` that of the path.
+    /// Returns the state on the way from a surface along the unit vector `wi` to a light or panes. Converts `bsdf_cos`
+    /// to that of the path.
     fn toward(&self, at: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// How much of light along `wi`, `on_its_way` by `toward` and panes, polarization may change, as X + Y + Z.
+    /// Returns how much polarization may change light along `wi`, as X + Y + Z. `on_its_way` is by `toward` and panes.
     fn moved(&self, at: &Interaction<N>, wi: DVec3, on_its_way: &Self, light: &FoundLight<N, Self>) -> f64;
 
-    /// The same of light that the path has hit.
+    /// Returns how much polarization may change light that the path has hit, as X + Y + Z.
     fn moved_of_met(&self, light: &FoundLight<N, Self>) -> f64;
 
-    /// Of the light that excites a dye, where the path sees one: evenly, whatever its polarization.
+    /// Returns the state of light that excites a dye where the path sees one: the dye absorbs all polarizations alike.
     fn exciting(&self) -> Self;
 
-    /// Where the path hits polarized light that comes from the unit vector `wi`; makes `shone`, what the light would
-    /// be that is not, what the path takes of it. None where the light is not polarized.
+    /// Returns the state where the path hits polarized light from the unit vector `wi`, or `None` if the light is
+    /// unpolarized. Converts `shone` from what an unpolarized light would emit to what the path receives.
     fn lit_by(&self, light: &Light<Table>, wi: DVec3, shone: &mut Lanes<N>) -> Option<Self>;
 
-    /// Of light that is followed forward: beyond a surface, to which it came from the unit vector `wi`, on its way to
-    /// the viewer. Makes `bsdf_cos`, by the surface as it is viewed, that of the path's light.
+    /// Returns the state of light that is followed forward, beyond a surface that it reached from the unit vector `wi`,
+    /// on its way to the viewer. Converts `bsdf_cos`, of the surface as it is viewed, to that of the path's light.
     fn forward(&self, viewed: &Interaction<N>, wi: DVec3, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// What the camera sees of a photon that came to it from there along a ray of its own; `on_its_way` is by `forward`
-    /// and panes, `viewed` the surface as the camera sees it.
+    /// Returns what the camera sees of a photon along a camera ray. `on_its_way` is the state by `forward` and panes,
+    /// and `viewed` is the surface as the camera sees it.
     fn seen(
         &self,
         at: &Interaction<N>,
@@ -111,13 +112,13 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
         ray: &Ray,
     ) -> SeenPhoton<N>;
 
-    /// What is kept of it where a photon has landed.
+    /// Returns what is stored of it where a photon has landed.
     fn landed(&self, at: &Interaction<N>) -> Self::Stored;
 
-    /// Joins a camera path at a surface with a photon that landed near, along `wi`; makes `bsdf_cos` that of both.
+    /// Joins a camera path at a surface with a photon that landed near, along `wi`. Makes `bsdf_cos` that of both.
     fn join(&self, at: &Interaction<N>, wi: DVec3, photon: &Self::Stored, bsdf_cos: &mut Lanes<N>) -> Self;
 
-    /// By what share polarization may change the light of a photon, along a unit vector, that `join` joined with lanes.
+    /// Returns the share by which polarization may change a photon's light, along a unit vector, that `join` joined.
     fn change_of_joined(
         &self,
         at: &Interaction<N>,
@@ -127,9 +128,9 @@ pub trait Polarization<const N: usize>: Copy + Debug + Send + Sync + 'static {
         lanes: Lanes<N>,
     ) -> f64;
 
-    /// What is kept with a photon, its lanes read as others.
+    /// Converts what is stored with a photon to other lanes.
     fn read_stored(photon: &Self::Stored, read: impl Fn(Lanes<N>) -> Lanes<N>) -> Self::Stored;
 
-    /// S1, S2 and S3 of unpolarized light that the path has hit, each as a factor on S0, if they are asked for.
+    /// Returns S1, S2 and S3 of unpolarized light that the path has hit, as factors on S0, if they are requested.
     fn stokes(&self) -> Option<[Lanes<N>; 3]>;
 }

@@ -1,10 +1,10 @@
-//! What polarization, which is not traced, may change of the light seen.
+//! A bound on how much polarization, which is not traced, may change the light that is seen.
 //!
-//! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the part of the
-//! light's polarization in its own frame, and p becomes (p + d) / (1 + d p) where the frames agree. Whatever the
-//! frames, retardances and signs are, intensity is thus changed at most by the product of 1 + P |d|, with P that
-//! follows the same rule from |d| alone: degrees add as velocities do, and ones that add all the way are the worst.
-//! Light leaves lamps and the sky unpolarized, and surfaces that scatter it diffusely.
+//! A surface that favors one polarization by the degree d multiplies intensity by 1 + d p, where p is the component of
+//! the light's polarization in the surface's frame. If the frames agree, p becomes (p + d) / (1 + d p). Whatever the
+//! frames, retardances and signs are, intensity changes at most by the product of 1 + P |d|, where P follows the same
+//! rule with |d|. Degrees add like velocities in relativity, and the worst case is that all of them add up. Light
+//! leaves lamps and the sky unpolarized, and also surfaces that scatter it diffusely.
 
 use super::interaction::Interaction;
 use super::polarization::{FoundLight, Polarization, SeenPhoton};
@@ -15,7 +15,7 @@ use crate::math::{DVec3, Ray};
 use crate::spectrum::{Lanes, Table};
 use crate::trace::World;
 
-/// How far a path's light may be polarized, and by what factor that may have changed it.
+/// The largest possible degree of a path's polarization, and the largest factor by which it may have changed the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polarized {
     degree: f32,
@@ -23,10 +23,10 @@ pub struct Polarized {
 }
 
 impl Polarized {
-    /// Of a camera that sees all polarizations alike.
+    /// The state at a camera that sees all polarizations alike.
     pub const NOT: Self = Self { degree: 0.0, growth: 1.0 };
 
-    /// After a surface of a degree, 0 to 1.
+    /// Returns the state after a surface of a degree, 0 to 1.
     pub fn after(self, degree: f32) -> Self {
         if degree == 0.0 {
             return self;
@@ -36,13 +36,13 @@ impl Polarized {
         Self { degree: ((self.degree + degree) / factor).min(1.0), growth }
     }
 
-    /// After a way on which unpolarized light is polarized as `other` says.
+    /// Returns the state after a path segment that polarizes unpolarized light like `other`.
     pub fn joined(self, other: Self) -> Self {
         let growth = (other.growth * self.growth).min(f32::MAX);
         Self { growth, ..self }.after(other.degree)
     }
 
-    /// After light was scattered by a material in a direction that it drew from a density.
+    /// Returns the state after a material has scattered light in a direction that was sampled from a density.
     pub fn scattered<const N: usize>(self, material: &Material<Table>, context: &ScatterContext<N>, wi: DVec3) -> Self {
         if let Material::Diffuse(_) = material {
             return Self { degree: 0.0, ..self };
@@ -52,7 +52,7 @@ impl Polarized {
         if material.lobes().is_diffuse() { Self { degree, ..after } } else { after }
     }
 
-    /// With light that comes to a surface that scatters it, in a direction and polarized on its way there.
+    /// Returns the state with light from the direction `wi`, polarized on its way, that a surface scatters.
     pub fn brought<const N: usize>(
         self,
         material: &Material<Table>,
@@ -63,12 +63,12 @@ impl Polarized {
         self.scattered(material, context, wi).joined(on_its_way)
     }
 
-    /// Whether there is anything that polarization may have changed or may change at the next surface.
+    /// Returns whether polarization may have changed anything, or may do so at the next surface.
     pub fn is_any(self) -> bool {
         self.degree != 0.0 || self.growth != 1.0
     }
 
-    /// The share of the light by which polarization may have changed it.
+    /// Returns the share by which polarization may have changed the light.
     pub fn change(self) -> f64 {
         f64::from(self.growth) - 1.0
     }

@@ -1,4 +1,4 @@
-//! From one frame of a ray's polarization to another.
+//! Rotations between the frames of a ray's polarization.
 
 use std::array::from_fn;
 
@@ -12,7 +12,7 @@ pub struct Rotation(f32, f32);
 impl Rotation {
     pub const NONE: Self = Self(1.0, 0.0);
 
-    /// From `x`, of any length; none where either direction has no part across z.
+    /// Returns the rotation from `x`, of any length; `None` if either direction has no component perpendicular to z.
     pub fn new(z: DVec3, x: DVec3, to: DVec3) -> Option<Self> {
         let (c, t) = (x.dot(to), z.cross(x).dot(to));
         let length = c * c + t * t;
@@ -28,7 +28,7 @@ impl Rotation {
     }
 }
 
-/// A unit vector across z, near a direction.
+/// Returns a unit vector perpendicular to z, near a direction.
 pub fn across(z: DVec3, near: DVec3) -> DVec3 {
     (near - z * z.dot(near)).try_normalize().unwrap_or_else(|| Frame::about(z).to_world(DVec3::X))
 }

@@ -1,47 +1,47 @@
-//! Ways by which light leaves a surface, and what becomes of rows of Stokes weights along them.
+//! The ways in which light leaves a surface, and how rows of Stokes weights change along them.
 
 use super::change::Change;
 use crate::material::Mueller;
 use crate::math::DVec3;
 use crate::spectrum::{LaneSet, Lanes};
 
-/// One way by which light leaves a surface.
+/// One way in which light leaves a surface.
 pub struct Exitant<const N: usize> {
-    /// What leaves of unpolarized light.
+    /// The part of unpolarized light that leaves.
     pub value: Lanes<N>,
-    /// The lanes that do.
+    /// The lanes that leave this way.
     pub lanes: LaneSet,
-    /// The direction of the light on both sides of the surface, to the viewer and before it arrives.
+    /// The direction of the light on both sides of the surface: toward the viewer, and before it arrives.
     pub z: [DVec3; 2],
 }
 
 impl<const N: usize> Exitant<N> {
-    /// The same followed forward: the light's source is the viewer.
+    /// Returns this way, followed forward: the light then comes from the viewer.
     pub fn turned_back(self) -> Self {
         let [to, from] = self.z;
         Self { z: [-from, -to], ..self }
     }
 }
 
-/// What becomes of rows along a branch.
+/// How rows change along a branch.
 #[derive(Debug)]
 pub struct RowTransfer<const N: usize> {
-    /// Whether any polarization is left: what there is beside `change.x` otherwise has no meaning.
+    /// Whether any polarization is left. If not, nothing but `change.x` has a meaning.
     pub is_any_left: bool,
     pub mueller: Mueller<N>,
     pub change: Change<N>,
     /// The unit normal of the plane at which a shading normal folds the light.
     pub folded_at: Option<DVec3>,
-    /// What comes folded to a direction to which light comes straight as well.
+    /// Light that is folded into a direction to which light also comes unfolded.
     pub folded_light: Option<Box<FoldedTransport<N>>>,
 }
 
-/// What becomes of rows by light that is folded to the direction of other light.
+/// How rows change by light that is folded into the direction of other light.
 #[derive(Debug)]
 pub struct FoldedTransport<const N: usize> {
     pub mueller: Mueller<N>,
     pub change: Change<N>,
-    /// What leaves of the path's light: of the other light, and of this one.
+    /// The parts that leave of the path's light: of the other light, and of the folded light.
     pub lights: [Lanes<N>; 2],
 }
 

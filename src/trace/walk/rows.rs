@@ -1,11 +1,11 @@
-//! Polarization traced: rows of Stokes weights, followed backward.
+//! Traced polarization: rows of Stokes weights, followed backward.
 //!
-//! A sensor that takes the intensity of light takes the scalar product of a row of four weights with the light's Stokes
-//! vector. On its way back the row is multiplied by the Mueller matrix of each surface: of unpolarized light its first
-//! weight is what counts, which is the path's throughput. The others are kept as shares of it, with the reference
+//! A sensor that measures intensity takes the scalar product of a row of four weights with the light's Stokes vector.
+//! On the way back, the row is multiplied by the Mueller matrix of each surface. For unpolarized light only the first
+//! weight counts, which is the path's throughput. The other weights are stored relative to it, with the reference
 //! direction of their frame, the last surface's s. (Rows and columns: Jarabo & Arellano 2018, *Bidirectional Rendering
 //! of Vector Light Transport*. Mueller matrices are reciprocal, M of the way back = Q M^T Q with Q = diag(1, 1, -1, 1):
-//! Sekera 1966, *Scattering Matrices and Reciprocity Relationships*. So photons are followed by the same code.)
+//! Sekera 1966, *Scattering Matrices and Reciprocity Relationships*. Photons are thus followed by the same code.)
 
 use std::array::from_fn;
 
@@ -24,45 +24,46 @@ use crate::trace::World;
 use crate::trace::method::Polarizing;
 use crate::trace::received_light::ReceivedLight;
 
-/// What the sensor takes of each Stokes component, lane by lane: the row of S0 of the image alone, or all `K` = 4.
-/// Paths are copied, and one row is all that most images need.
+/// The sensor's weight for each Stokes component, lane by lane: only the row of the image's S0, or all `K` = 4 rows.
+/// Paths are copied, and most images need only one row.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<const N: usize, const K: usize> {
-    /// The x of the frame whose z is the light's direction, back along the ray; of any length, across z up to rounding.
+    /// The x axis of the frame whose z is the light's direction, back along the ray. It may have any length, and is
+    /// perpendicular to z up to rounding.
     x: DVec3,
-    /// Each over the throughput, so that the first begins with 1; those of a lane side by side, for one is often alone.
+    /// Weights relative to the throughput: the first starts at 1. Those of a lane are adjacent, as one is often alone.
     weights: [Weights<K>; N],
-    /// Whether the throughput is that of light taken for unpolarized at every surface, which is compared.
+    /// Whether the throughput is that of light taken to be unpolarized at every surface, for comparison.
     compares: bool,
 }
 
-/// How light that a photon brings is polarized.
+/// The polarization of light that a photon carries.
 #[derive(Clone, Debug)]
 pub struct Column<const N: usize> {
     x: DVec3,
-    /// S0 to S3 over what light would be that is taken for unpolarized.
+    /// S0 to S3, relative to the light if it were taken to be unpolarized.
     stokes: [Lanes<N>; 4],
 }
 
-/// One over a number, 0 where there is nothing to divide by, or so little that what is left of it has no digits.
+/// Returns one over a number, or 0 if the number is 0 or so small that it has lost its significant digits.
 #[inline(always)]
 fn inverse(x: f32) -> f32 {
     if x >= f32::MIN_POSITIVE { 1.0 / x } else { 0.0 }
 }
 
-/// What leaves a surface of unpolarized light from a direction, by the normal by which it scatters.
+/// Returns the part of unpolarized light from a direction that leaves a surface, by the normal by which it scatters.
 fn evaluated<const N: usize>(at: &Interaction<N>, wi: DVec3) -> Lanes<N> {
     at.material.evaluate(&at.context, wi).map_or(Lanes::ZERO, |(light, _)| light)
 }
 
 impl<const N: usize, const K: usize> Rows<N, K> {
-    /// Where light hits no surface before it reaches the sensor, which has image right at `x`.
+    /// Returns the rows of light that hits no surface before it reaches the sensor, which has image right at `x`.
     fn starting(x: DVec3, compares: bool) -> Self {
         let identity = from_fn(|part| from_fn(|row| if row == part { 1.0 } else { 0.0 }));
         Self { x, weights: [identity; N], compares }
     }
 
-    /// Makes `change` how rows change beyond a surface, and `share` what leaves of the path's light.
+    /// Sets `change` to how rows change beyond a surface, and `share` to what leaves of the path's light.
     #[inline(always)]
     fn find_change(&self, mueller: &Mueller<N>, exitant: &Exitant<N>, change: &mut Change<N>, share: &mut Lanes<N>) {
         let Exitant { value, lanes, z: [z, onward] } = exitant;
@@ -98,13 +99,13 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         }
     }
 
-    /// One lane of the first row.
+    /// Returns one lane of the first row.
     #[inline(always)]
     fn first_row(&self, i: usize) -> Weights<1> {
         self.weights[i].map(|part| [part[0]])
     }
 
-    /// The first weight of the first row, which the image is made of.
+    /// Returns the first weight of the first row, from which the image is made.
     fn firsts(&self) -> Lanes<N> {
         Lanes::from_fn(|i| self.weights[i][0][0])
     }
@@ -115,7 +116,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         self.weights[i] = weights.map(|part| part.map(|weight| weight * scale));
     }
 
-    /// Becomes what rows are beyond a surface that were `before`; lanes that are not on the ray stay what they are.
+    /// Becomes the rows beyond a surface, given the rows `before`. Lanes that are not on the ray stay as they are.
     fn go(&mut self, before: &Self, mueller: &Mueller<N>, change: &Change<N>) {
         (self.x, self.compares) = (change.x, before.compares);
         match (change.alone, &mueller.base) {
@@ -145,7 +146,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         one * one + two * two + three * three
     }
 
-    /// Rounding may leave a degree above 1.
+    /// Limits the degree of polarization to 1, because of rounding.
     #[inline(always)]
     fn bound(&mut self, i: usize) {
         let squared = self.degree_squared(i);
@@ -153,7 +154,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         self.weights[i][1..].iter_mut().for_each(|part| part[0] *= within);
     }
 
-    /// Goes on beyond a surface; makes `share` what leaves of the path's light.
+    /// Passes a surface, and sets `share` to what leaves of the path's light.
     #[inline(never)]
     fn pass(&mut self, mueller: &Mueller<N>, exitant: &Exitant<N>, share: &mut Lanes<N>) {
         let (before, mut change) = (*self, Change::NONE);
@@ -161,14 +162,14 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         self.go(&before, mueller, &change);
     }
 
-    /// Makes `mueller` what a surface does to light that leaves it by a way, and answers that way.
+    /// Sets `mueller` to what a surface does to light that leaves it in one way, and returns that way.
     #[inline(always)]
     fn meet(at: &Interaction<N>, incoming: Incoming, value: Lanes<N>, mueller: &mut Mueller<N>) -> Exitant<N> {
         at.material.mueller(&at.context, incoming, mueller);
         Exitant { value, lanes: incoming.lanes, z: [at.context.wo, -incoming.wi] }
     }
 
-    /// Becomes what rows are beyond a surface that leaves no polarization, with a frame's x.
+    /// Becomes the rows beyond a surface that leaves no polarization, with `x` as their frame.
     fn lose(&mut self, before: &Self, x: DVec3) {
         (self.x, self.compares) = (x, before.compares);
         for (weights, [firsts, ..]) in self.weights.iter_mut().zip(before.weights) {
@@ -176,7 +177,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         }
     }
 
-    /// The mirror image in a plane: light that was folded there by a shading normal.
+    /// Mirrors the rows in a plane, for light that a shading normal folded there.
     fn fold(&mut self, flat: DVec3) {
         self.x = shading::folded(self.x, flat);
         for weights in &mut self.weights {
@@ -184,14 +185,15 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         }
     }
 
-    /// The direction by which a material was asked, where shading normals have folded it to `incoming`.
+    /// Returns the direction that the material was evaluated for, if shading normals have folded it to `incoming`.
     #[inline(always)]
     fn unfolded(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
         let is_folded = at.flat != at.context.normal && (incoming.wi.dot(at.context.normal) < 0.0) != incoming.crosses;
         is_folded.then(|| Incoming { wi: shading::folded(incoming.wi, at.flat), ..incoming })
     }
 
-    /// From where light arrives that a shading normal folds to a direction to which it sends light straight as well.
+    /// Returns the direction that a shading normal folds to `incoming`, if the material also sends light there
+    /// unfolded.
     #[inline(always)]
     fn folded_to(at: &Interaction<N>, incoming: Incoming) -> Option<Incoming> {
         if at.flat == at.context.normal || incoming.single {
@@ -202,7 +204,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         (comes(incoming.wi) && comes(folded)).then_some(Incoming { wi: folded, ..incoming })
     }
 
-    /// Takes in rows of light that comes to the same direction, which is z, by the lights of both.
+    /// Merges rows of light that arrives in the same direction, which is z, in proportion to the light of both.
     fn take_in(&mut self, other: &Self, z: DVec3, [own, others]: &[Lanes<N>; 2]) {
         let turn = Rotation::new(z, other.x, self.x).unwrap_or(Rotation::NONE);
         for (i, weights) in self.weights.iter_mut().enumerate() {
@@ -215,8 +217,9 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         }
     }
 
-    /// What becomes of the rows by light that is folded to the direction of other light, of which `straight` leaves of
-    /// unpolarized light and `left` of the path's; makes `share` what leaves of the path's of both.
+    /// Returns how rows change by light that is folded into the direction of other light. Of the other light,
+    /// `straight` leaves of unpolarized light and `left` of the path's. Sets `share` to what leaves of the path's light
+    /// of both.
     #[inline(never)]
     fn folded_light(
         &self,
@@ -234,7 +237,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         FoldedTransport { mueller, change, lights: [left, light] }
     }
 
-    /// Takes in what comes folded to the direction of the rows' light, which is z; they were `before` at the surface.
+    /// Merges light folded into the direction of the rows' light, which is z. `before` are the rows at the surface.
     fn take_in_besides(&mut self, before: &Self, folded_light: &FoldedTransport<N>, z: DVec3, flat: DVec3) {
         let mut other = *before;
         other.go(before, &folded_light.mueller, &folded_light.change);
@@ -242,7 +245,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         self.take_in(&other, z, &folded_light.lights);
     }
 
-    /// After a surface, along a direction that shading normals may have folded; makes `bsdf_cos` that of the path.
+    /// Returns the rows after a surface, along a direction that shading normals may have folded. Converts `bsdf_cos` to
+    /// that of the path.
     fn after(&self, at: &Interaction<N>, wi: DVec3, value: Option<Lanes<N>>, bsdf_cos: &mut Lanes<N>) -> Self {
         let mut after = *self;
         if let Material::Diffuse(_) = at.material {
@@ -269,8 +273,8 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         after
     }
 
-    /// Beyond a surface, of light that is followed forward by one way to the viewer, and folded before it arrives or
-    /// not; makes `share`, what leaves of unpolarized light, that of the path's.
+    /// Returns the rows of light that is followed forward, beyond a surface that it leaves in one way to the viewer. If
+    /// `is_folded`, it is folded before it arrives. Converts `share` from unpolarized light to the path's light.
     fn sent(&self, at: &Interaction<N>, incoming: Incoming, is_folded: bool, share: &mut Lanes<N>) -> Self {
         let (mut after, mut mueller) = (*self, Mueller::NONE);
         if is_folded {
@@ -282,7 +286,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         after
     }
 
-    /// Takes light of some polarization, whose direction is z; answers the factor on its intensity.
+    /// Receives polarized light whose direction is z, and returns the factor on its intensity.
     fn receive(&mut self, z: DVec3, light: &Column<N>) -> Lanes<N> {
         let turn = Rotation::new(z, self.x, light.x).unwrap_or(Rotation::NONE);
         for (i, weights) in self.weights.iter_mut().enumerate() {
@@ -298,13 +302,13 @@ impl<const N: usize, const K: usize> Rows<N, K> {
         Lanes::from_fn(|i| if taken[i] > 0.0 { taken[i] } else { 0.0 })
     }
 
-    /// The light that a photon brings which has followed the first row: Q times it.
+    /// Returns the light of a photon that has followed the first row: Q times the row.
     fn column(&self) -> Column<N> {
         let [zero, one, two, three] = from_fn(|part| Lanes::from_fn(|i| self.weights[i][part][0]));
         Column { x: self.x, stokes: [zero, one, two * -1.0, three] }
     }
 
-    /// By how much polarization changes light that is compared.
+    /// Returns how much polarization changes light that is compared.
     fn compared(&self, light: &FoundLight<N, Self>) -> f64 {
         if !self.compares {
             return 0.0;
@@ -321,7 +325,7 @@ impl<const N: usize, const K: usize> Rows<N, K> {
 }
 
 impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
-    /// None on surfaces that leave no polarization.
+    /// `None` on surfaces that leave no polarization.
     type Stored = Option<Box<Column<N>>>;
     type RowTransfer = RowTransfer<N>;
 
@@ -369,7 +373,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
             let asked = drawn.unwrap_or(incoming);
             let value = match branch.pdf {
                 None => branch.share,
-                // Where lanes part, a branch's share is of its own lanes, and its density that of all.
+                // Where lanes part, a branch's share is that of its own lanes, and its density that of all lanes.
                 Some(pdf) if at.flat == at.context.normal && !(at.parts && branch.crosses) => branch.share * pdf as f32,
                 Some(_) => evaluated(at, asked.wi),
             };
@@ -389,7 +393,7 @@ impl<const N: usize, const K: usize> Polarization<N> for Rows<N, K> {
 
     fn become_along(&mut self, before: &Self, at: &Interaction<N>, branch: &Branch<N>, way: Option<&RowTransfer<N>>) {
         let Some(RowTransfer { is_any_left, mueller, change, folded_at, folded_light }) = way else {
-            // The branch's share is that of the path's light by now.
+            // The branch's share is already that of the path's light.
             let mut share = branch.share;
             *self = before.forward(&at.viewed_from(branch.wi), at.context.wo, &mut share);
             return;

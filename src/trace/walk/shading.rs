@@ -1,24 +1,25 @@
-//! Surfaces that look smoother or rougher than they are: materials are asked with the shading normal, and no light is
-//! lost where its directions and those of the triangle disagree.
+//! Surfaces that look smoother or rougher than they are. Materials are evaluated with the shading normal, and no light
+//! is lost where its hemisphere and that of the triangle disagree.
 //!
-//! Two things make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
-//! section 5.3, describes what goes wrong without): where a material mirrors, the shading normal is bent until the
-//! mirror image of the viewer's direction lies above the triangle, and a direction that leaves on the wrong side of the
-//! triangle is folded back through its plane. Folding moves light and takes none away: what a material gives to a
-//! direction is the sum over both directions that end there, and so is the density.
+//! Two measures make up for the difference (Veach 1997, *Robust Monte Carlo Methods for Light Transport Simulation*,
+//! section 5.3, describes what goes wrong without them). Where a material mirrors, the shading normal is bent until the
+//! mirror image of the viewer's direction lies above the triangle. A direction that leaves on the wrong side of the
+//! triangle is folded back through its plane. Folding moves light and removes none: the value of a direction is the sum
+//! over both directions that end there, and so is its density.
 
 use crate::material::{Branch, Lobes, Material, Scatter, ScatterContext, reflect};
 use crate::math::{DVec3, unit};
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Lanes, Table};
 
-/// The triangle's normal and the shading normal, both on the side of the unit vector `wo` to the viewer.
+/// Returns the triangle's normal and the bent shading normal, both on the side of the unit vector `wo` to the viewer.
 pub fn normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
     let [flat, smooth] = plain_normals(point, wo);
     if flat == smooth { [flat; 2] } else { [flat, bent(wo, flat, smooth)] }
 }
 
-/// The same for a material of some lobes: what is matte looks the same to every viewer, by its shading normal as it is.
+/// Returns both normals for a material with some lobes. What is matte looks the same to every viewer, so its shading
+/// normal is not bent.
 pub fn normals_of(lobes: Lobes, point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
     if lobes == Lobes::DIFFUSE_REFLECTION { plain_normals(point, wo) } else { normals(point, wo) }
 }
@@ -28,12 +29,12 @@ fn plain_normals(point: &SurfacePoint, wo: DVec3) -> [DVec3; 2] {
     [point.normal, point.shading].map(|normal| if is_front { normal } else { -normal })
 }
 
-/// The shading normal on the side of the unit vector `wo`, as it is.
+/// Returns the unbent shading normal, on the side of the unit vector `wo`.
 pub fn plain_normal(point: &SurfacePoint, wo: DVec3) -> DVec3 {
     plain_normals(point, wo)[1]
 }
 
-/// Whether light goes from `wi` to the viewer at `wo` by the plain shading normal, and so can be followed either way.
+/// Returns whether light goes from `wi` to the viewer at `wo` by the unbent normal, and so can be followed either way.
 pub fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bool {
     if point.shading == point.normal {
         return true;
@@ -44,8 +45,8 @@ pub fn is_plain(point: &SurfacePoint, wo: DVec3, wi: DVec3, crosses: bool) -> bo
     wo.dot(smooth) > 0.0 && mirrored * wo_above > 0.0 && crosses == (wi_above * wo_above < 0.0)
 }
 
-/// What light gains that is followed forward from `wi` to `wo`: the shading normal makes of a beam's width another than
-/// the surface's own. Veach 1997, equation 5.19.
+/// Returns the gain of light that is followed forward from `wi` to `wo`: a beam has another width by the shading normal
+/// than by the geometric normal. Veach 1997, equation 5.19.
 pub fn forward_factor(point: &SurfacePoint, wo: DVec3, wi: DVec3) -> f64 {
     if point.shading == point.normal {
         return 1.0;
@@ -54,18 +55,18 @@ pub fn forward_factor(point: &SurfacePoint, wo: DVec3, wi: DVec3) -> f64 {
     ((wo.dot(flat) * wi.dot(smooth)) / (wo.dot(smooth) * wi.dot(flat))).abs()
 }
 
-/// The shading normal, or, where it would mirror `wo` below the triangle, the one that mirrors it as far above.
+/// Returns the shading normal or, if that would mirror `wo` below the triangle, the one that mirrors it as far above.
 fn bent(wo: DVec3, flat: DVec3, smooth: DVec3) -> DVec3 {
     let mirrored = reflect(wo, smooth);
     if mirrored.dot(flat) > 0.0 { smooth } else { unit(wo + folded(mirrored, flat)) }
 }
 
-/// The mirror image of a direction in the triangle's plane.
+/// Returns the mirror image of a direction in the triangle's plane.
 pub fn folded(direction: DVec3, flat: DVec3) -> DVec3 {
     unit(direction - flat * (2.0 * direction.dot(flat)))
 }
 
-/// `Material::scatter`, with every direction on its side of the triangle of normal `flat`.
+/// Calls `Material::scatter`, and folds every direction to its side of the triangle of normal `flat`.
 pub fn scatter<const N: usize>(
     material: &Material<Table>,
     context: &ScatterContext<N>,
@@ -87,7 +88,7 @@ pub fn scatter<const N: usize>(
     }
 }
 
-/// `Material::evaluate`, both ways to a direction together: straight, and folded at the triangle of normal `flat`.
+/// Calls `Material::evaluate` for both ways to a direction: unfolded, and folded at the triangle of normal `flat`.
 pub fn evaluate<const N: usize>(
     material: &Material<Table>,
     context: &ScatterContext<N>,

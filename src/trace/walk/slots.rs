@@ -1,7 +1,7 @@
 //! A stack of large entries.
 
-/// A stack whose entries are filled in their place, in the memory of entries that are gone, and are never moved: to
-/// copy what has just been written piece by piece takes longer than to write it.
+/// A stack whose entries are filled in place, in the memory of removed entries, and are never moved. Copying what has
+/// just been written piece by piece takes longer than writing it.
 #[derive(Debug)]
 pub struct Slots<T> {
     entries: Vec<Box<T>>,
@@ -13,32 +13,32 @@ impl<T> Slots<T> {
         Self { entries: Vec::new(), spare: Vec::new() }
     }
 
-    /// Another entry on top, to be filled: it holds what an entry that is gone did, or what `new` makes.
+    /// Adds an entry on top and returns it to be filled. It holds what a removed entry held, or what `new` makes.
     #[inline(always)]
     pub fn add(&mut self, new: impl FnOnce() -> T) -> &mut T {
         self.entries.push(self.spare.pop().unwrap_or_else(|| Box::new(new())));
         self.entries.last_mut().expect("one was pushed")
     }
 
-    /// Takes the entry at the top, if there is any. [`release`](Self::release) gives its memory back.
+    /// Takes the entry at the top, if there is one. [`release`](Self::release) gives its memory back.
     #[inline(always)]
     pub fn take(&mut self) -> Option<Box<T>> {
         self.entries.pop()
     }
 
-    /// Takes back the memory of an entry that is not used any more.
+    /// Takes back the memory of an entry that is no longer used.
     #[inline(always)]
     pub fn release(&mut self, entry: Box<T>) {
         self.spare.push(entry);
     }
 
-    /// An entry, counted from the bottom.
+    /// Returns an entry, counted from the bottom.
     #[inline(always)]
     pub fn get(&self, number: usize) -> Option<&T> {
         self.entries.get(number).map(|entry| &**entry)
     }
 
-    /// Leaves those alone whose number is to be kept.
+    /// Keeps only the entries whose numbers `is_kept` accepts.
     pub fn keep(&mut self, is_kept: impl Fn(usize) -> bool) {
         let mut number = 0;
         self.spare.extend(self.entries.extract_if(.., |_| {

@@ -1,4 +1,4 @@
-//! Light that passes through the holes of masks and through panes that bend nothing.
+//! Light that passes through the holes of masks, and through panes that do not bend it.
 
 use std::cell::Cell;
 
@@ -13,10 +13,10 @@ use crate::scene::{MaterialId, RayEnds, Visibility};
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::{Transport, World, media};
 
-/// Use of the random numbers of a ray from the camera that hits a surface with holes.
+/// Use of the random numbers of a camera ray that hits a surface with holes.
 const COVER: u32 = 4;
 
-/// What of a path's light passes through where it hits a surface that lets light pass through; none if nothing does.
+/// Returns the part of a path's light that passes through a see-through surface; `None` if nothing does.
 #[cold]
 #[inline(never)]
 pub fn straight_on<const N: usize, P: Polarization<N>>(
@@ -31,7 +31,7 @@ pub fn straight_on<const N: usize, P: Polarization<N>>(
     (!(pass_through.straight.share() * present).is_zero()).then_some(pass_through)
 }
 
-/// The share of each lane that goes through the holes of a surface, which a ray inside of a medium has hit.
+/// Returns the share of each lane that goes through the holes of a surface, which a ray inside a medium has hit.
 pub fn holes<const N: usize>(
     world: &World,
     draw: &Draw<N>,
@@ -47,17 +47,17 @@ pub fn holes<const N: usize>(
         .map_or(Lanes::ZERO, |pass_through| pass_through.straight.holes)
 }
 
-/// Whether a ray from the camera hits a surface that may be cut out: a pane is hit, a hole is not.
+/// Whether a camera ray hits a surface that may be cut out: it hits panes, but not holes.
 pub struct Cutout {
     pub is_hit: bool,
-    /// How likely that was.
+    /// Probability of this outcome.
     pub chance: f64,
-    /// The part of the path's weight that is of a path to what is hit. Beyond a surface, one that goes through its
-    /// holes goes through its panes as well.
+    /// The part of the path's weight that belongs to a path to what is hit. Beyond a surface, a path that goes through
+    /// its holes goes through its panes as well.
     pub weight: f64,
 }
 
-/// Whether a ray from the camera counts as having hit a surface.
+/// Decides whether a camera ray counts as having hit a surface.
 pub fn hit<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,
@@ -84,35 +84,35 @@ pub fn hit<const N: usize, P: Polarization<N>>(
 
 /// The segment between a place and a light, which something may occlude.
 pub struct VisibilityTest<'a> {
-    /// From the place toward the light.
+    /// The ray from the place toward the light.
     pub ray: &'a Ray,
-    /// How far away the light is.
+    /// Distance to the light.
     pub distance: f64,
     pub ends: RayEnds,
     /// The medium around the ray.
     pub inside: Option<MaterialId>,
-    /// Which objects may occlude it.
+    /// The objects that may occlude it.
     pub occluders: Occluders,
-    /// The object that occluded a light last.
+    /// The object that last occluded a light.
     pub last_occluder: &'a Cell<Option<u32>>,
 }
 
-/// Which objects may occlude a segment.
+/// The objects that may occlude a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Occluders {
-    /// Those that are there for a path.
+    /// Objects that exist for a path.
     Objects(Among),
-    /// Those that are not hidden from the camera, to which it leads.
+    /// Objects that the camera sees, if the segment leads to it.
     Seen(SeenThrough),
 }
 
-/// Through what the camera sees a place. Beyond a pane it sees holdouts and shadow catchers as it sees all else.
+/// What the camera sees a place through. Beyond a pane it sees holdouts and shadow catchers like everything else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeenThrough {
     All,
-    /// Nothing but holes.
+    /// Only holes.
     Holes,
-    /// A pane, among others.
+    /// At least one pane.
     Panes,
 }
 
@@ -132,8 +132,8 @@ impl Occluders {
 }
 
 impl VisibilityTest<'_> {
-    /// What arrives of light through holes, panes and the medium, and how it is polarized beyond them; none if
-    /// something occludes it. `polarization` of the path at the place and `light` are asked only if nothing does.
+    /// Returns the light that arrives through holes, panes and the medium, and its polarization beyond them; `None` if
+    /// something occludes it. `polarization`, of the path at the place, and `light` are only called if nothing does.
     #[inline]
     pub fn arriving<const N: usize, P: Polarization<N>>(
         &self,
@@ -162,7 +162,8 @@ impl VisibilityTest<'_> {
         Some((arriving, after))
     }
 
-    /// The share of each lane that passes through all surfaces before the light, and its polarization; none if none.
+    /// Returns the share of each lane that passes all surfaces before the light, and its polarization; `None` if it is
+    /// 0.
     #[cold]
     #[inline(never)]
     fn transmittance<const N: usize, P: Polarization<N>>(
@@ -180,8 +181,8 @@ impl VisibilityTest<'_> {
                 StraightRay { ray: &ray, surface_hit: &surface_hit, present: Lanes::ONE, inside: self.inside };
             let pass_through = straight_at(world, draw, &straight_ray, polarization)?;
             let share = pass_through.straight.share();
-            // The last surface is the camera's first: behind one that is held out it sees no more than holes show, and
-            // one that lets all light through is not there for it.
+            // The last surface is the first one that the camera sees. Behind a holdout it sees only what holes show,
+            // and a surface that lets all light through does not exist for it.
             let [holes, panes] = match world.visibility(hit.object) {
                 Visibility::Holdout => [pass_through.straight.holes, Lanes::ZERO],
                 _ if share == Lanes::ONE => [share, Lanes::ZERO],
@@ -215,7 +216,7 @@ struct StraightRay<'a, const N: usize> {
     inside: Option<MaterialId>,
 }
 
-/// What a material lets pass through where a ray hits it: what every ray asks.
+/// Returns what a material lets pass through where a ray hits it, for all kinds of rays.
 fn straight_at<const N: usize, P: Polarization<N>>(
     world: &World,
     draw: &Draw<N>,

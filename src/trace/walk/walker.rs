@@ -1,4 +1,4 @@
-//! The one walk from surface to surface: under the camera's paths and under photons.
+//! The one walk from surface to surface, shared by camera paths and photons.
 
 use std::cell::Cell;
 
@@ -19,31 +19,31 @@ use crate::trace::media::Boundary;
 use crate::trace::stats::Stats;
 use crate::trace::{Transport, World};
 
-/// Follows rays, one sample after another; its buffers live as long as it does.
+/// Follows rays, one sample after another, and reuses its buffers.
 pub struct Walker<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub world: &'a World,
     pub transport: Transport,
     pub pending: Slots<Path<N, P>>,
     pub branches: Vec<Branch<N>>,
-    /// What becomes of polarization along each of them, where it is traced.
+    /// How polarization changes along each of the branches, where it is traced.
     ways: Slots<P::RowTransfer>,
-    /// The object that occluded the last light that was: the first to ask about the next one.
+    /// The object that last occluded a light, which is tested first for the next one.
     pub last_occluder: Cell<Option<u32>>,
     pub stats: Stats,
-    /// Where all weight ends, if somebody asks.
+    /// The audit of where all weight ends, if it is requested.
     pub audit: Option<Audit<'a, N>>,
-    /// Rays that were followed before this camera sample.
+    /// Number of rays that were followed before this camera sample.
     pub started: u64,
 }
 
-/// Use of the random numbers that choose a branch or end one.
+/// Use of the random numbers that choose a branch or end a path.
 const CHOICE: u32 = 2;
 
 /// How much sooner roulette ends paths that leave a diffuse surface than those that leave a smooth one: what they still
-/// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to an equal error.
+/// gather varies little. Measured on the smallpt scene, where 1 takes 1.17 times as long to the same error.
 const SOONER: f64 = 5.0;
 
-/// How a sample goes on that has hit too many surfaces: by all bright branches, and by one of the faint ones.
+/// How a sample continues that has hit too many surfaces: by all bright branches, and by one of the faint ones.
 const BY_CHANCE: Transport = Transport::Random { split: 0.01, roulette: 0.01 };
 
 impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
@@ -61,7 +61,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Follows a path along its ray, through the medium around it, to the next surface; none if it leaves the scene.
+    /// Follows a path along its ray, through the medium around it, to the next surface; `None` if it leaves the scene.
     #[inline(always)]
     pub fn next_hit(&mut self, path: &mut Path<N, P>, draw: &Draw<N>) -> Option<SurfaceHit> {
         self.stats.rays += 1;
@@ -88,17 +88,17 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         Some(SurfaceHit::new(self.world, &path.ray, hit))
     }
 
-    /// What passes through the surface that a path has hit; none if nothing does.
+    /// Returns what passes through the surface that a path has hit; `None` if nothing does.
     #[inline(always)]
     pub fn straight(&self, path: &Path<N, P>, draw: &Draw<N>, surface_hit: &SurfaceHit) -> Option<PassThrough<N, P>> {
         let lets_through = self.world.is_see_through(surface_hit.hit.object);
         if lets_through { straight::straight_on(self.world, draw, path, surface_hit) } else { None }
     }
 
-    /// The media at the surface that a path has hit.
+    /// Returns the media at the surface that a path has hit.
     ///
     /// # Errors
-    /// [`Hidden`] where the surface is that of a body that is hidden inside another of higher priority.
+    /// [`Hidden`] if the surface is that of a body hidden inside another of higher priority.
     #[inline(always)]
     pub fn boundary(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit) -> Result<Boundary, Hidden> {
         let SurfaceHit { hit, point } = surface_hit;
@@ -109,7 +109,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         if is_hidden { Err(Hidden(boundary)) } else { Ok(boundary) }
     }
 
-    /// Makes the path pending that goes on through a hidden surface as if nothing were there.
+    /// Adds the pending path that goes on through a hidden surface as if nothing were there.
     #[cold]
     pub fn pass_hidden(&mut self, path: &Path<N, P>, surface_hit: &SurfaceHit, Hidden(boundary): &Hidden) {
         let kind = path.kind.past_hidden();
@@ -123,14 +123,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         (next.vertices, next.hidden) = (path.vertices + 1, path.hidden + 1);
     }
 
-    /// Makes the path pending that passes through a surface that it has hit, if any light does.
+    /// Adds the pending path that passes through a surface, if any light does.
     pub fn pass_in_part(&mut self, path: &Path<N, P>, point: &SurfacePoint, through: Option<&PassThrough<N, P>>) {
         if let Some(through) = through {
             *self.pending.add(|| *path) = Path { key: path.key.child(0), ..path.passed_in_part(point, through) };
         }
     }
 
-    /// Makes the shares of the branches those of the path's light, which may be polarized.
+    /// Converts the shares of the branches to those of the path's light, which may be polarized.
     #[inline(always)]
     pub fn polarize(&mut self, path: &Path<N, P>, at: &Interaction<N>) {
         path.polarization.split(at, &mut self.branches, &mut self.ways);
@@ -144,7 +144,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Leaves the branches alone that smooth surfaces have: diffuse surfaces may send light on no more.
+    /// Keeps only the branches of smooth surfaces: diffuse surfaces may send on no more light.
     pub fn keep_single(&mut self, departure: &OutgoingPath<N, P>) {
         let wide = self.branches.iter().filter(|branch| branch.pdf.is_some());
         let left_out = |branch: &Branch<N>| departure.weight(branch) * f64::from(departure.aimed(branch));
@@ -153,14 +153,14 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         self.branches.retain(|branch| branch.pdf.is_none());
     }
 
-    /// Accounts for the branches and what passes through, if somebody asks.
+    /// Reports the branches and what passes through to the audit, if there is one.
     pub fn account(&mut self, path: &Path<N, P>, at: &Interaction<N>, straight: Option<&Straight<N>>) {
         if let Some(audit) = &mut self.audit {
             audit.split(path, at, &self.branches, straight);
         }
     }
 
-    /// Decides which of the branches are followed, and of what passes through: their paths become pending.
+    /// Decides which branches, and how much of what passes through, are followed. Their paths become pending.
     pub fn follow(&mut self, departure: &mut OutgoingPath<N, P>, sampler: &Sampler) {
         let path = departure.path;
         if let Some(through) = &departure.through {
@@ -192,7 +192,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Whether a path of several ways on follows all of them, or one.
+    /// Returns whether a path with several branches follows all of them, or only one.
     pub fn follows_all(&self, path: &Path<N, P>, draw: &Draw<N>) -> bool {
         match self.rule() {
             Transport::Deterministic { .. } => true,
@@ -219,7 +219,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Follows all branches that roulette leaves.
+    /// Follows all branches that survive roulette.
     fn follow_many(&mut self, departure: &OutgoingPath<N, P>, sampler: &Sampler, roulette: f64) {
         let is_diffuse = departure.at.lobes.is_diffuse();
         let is_seen = departure.is_seen && self.world.has_soft_light;
@@ -227,7 +227,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
             let u = || sampler.four_plain(departure.path.key.child(number), CHOICE)[2];
             let (weight, wide) = (departure.weight(branch), branch.pdf.is_some() && is_diffuse);
             let roulette = if wide { roulette * SOONER } else { roulette };
-            // In soft light dark surfaces make pixels as dark as paths: they may be no noisier than bright ones.
+            // In soft light, dark surfaces make pixels as dark as paths. These must be no noisier than bright ones.
             let counted = if wide && is_seen { departure.path.weight(departure.at.context.draw) } else { weight };
             if weight != 0.0
                 && let Some(factor) = survival(counted, roulette, departure.path.vertices, u)
@@ -237,7 +237,8 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
         }
     }
 
-    /// Which branches are followed by now. Where light has too many ways one is chosen, which keeps the mean.
+    /// Returns how branches are followed at this point of the sample. If light has too many ways, one is chosen, which
+    /// keeps the mean.
     fn rule(&self) -> Transport {
         match self.transport {
             Transport::Deterministic { most, .. } if self.surfaces() > most => BY_CHANCE,
@@ -250,7 +251,7 @@ impl<'a, const N: usize, P: Polarization<N>> Walker<'a, N, P> {
     }
 }
 
-/// The surface of a body that is hidden inside another of higher priority, and what crossing it does.
+/// The surface of a body hidden inside another of higher priority, and the effect of crossing it.
 pub struct Hidden(Boundary);
 
 /// A path that leaves a surface.
@@ -258,17 +259,17 @@ pub struct OutgoingPath<'a, const N: usize, P = Polarized> {
     pub world: &'a World,
     pub path: &'a Path<N, P>,
     pub at: &'a Interaction<'a, N>,
-    /// From where lights were sampled, if they were.
+    /// Where lights were sampled, if they were.
     pub scatter: Option<&'a ScatterSample>,
-    /// What passes through the surface: the last branch.
+    /// What passes through the surface, as the last branch.
     pub through: Option<&'a PassThrough<N, P>>,
-    /// Whether that is followed for certain, for it is where the camera ray hits something.
+    /// Whether what passes through is always followed, because the camera ray hits something behind the surface.
     pub is_awaited: bool,
     /// Whether the camera sees the surface.
     pub is_seen: bool,
-    /// Whether all branches count as leaving a diffuse surface, and not the wide ones alone.
+    /// Whether all branches count as leaving a diffuse surface, and not only the wide ones.
     pub all_count: bool,
-    /// How many branches there are, once they are followed.
+    /// Number of branches, once they are followed.
     pub branches: usize,
 }
 
@@ -278,12 +279,12 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         Self { world, path, at, scatter, through, is_awaited: false, is_seen: false, all_count: false, branches: 0 }
     }
 
-    /// How many paths together stand for this one.
+    /// Returns how many paths together stand for this one.
     fn siblings(&self) -> f64 {
         self.at.context.draw.siblings(self.path.parted)
     }
 
-    /// The weight of the path along a branch.
+    /// Returns the weight of the path along a branch.
     #[inline]
     fn weight(&self, branch: &Branch<N>) -> f64 {
         let Self { path, at, .. } = self;
@@ -291,15 +292,15 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         path.throughput.through(branch.share).weight(shares) / (path.eta_scale * branch.eta_scale)
     }
 
-    /// The factor of the densities of aimed bounces on the throughput: `eta_scale` where a branch crosses no surface.
+    /// Returns the factor of the densities of aimed bounces on the throughput: `eta_scale` if a branch does not cross.
     fn aimed(&self, branch: &Branch<N>) -> f32 {
         if branch.crosses { self.path.aimed } else { self.path.aimed * branch.eta_scale as f32 }
     }
 
-    /// Makes the path along a branch pending, followed with probability 1 / `factor`. `way` is what becomes of its
-    /// polarization, where that is known already.
+    /// Adds the pending path along a branch, which is followed with probability 1 / `factor`. `way` is how its
+    /// polarization changes, if that is known already.
     ///
-    /// Paths are large: it becomes one in its place.
+    /// Paths are large, so it is built in place.
     #[inline(always)]
     fn send(
         &self,
@@ -320,7 +321,7 @@ impl<'a, const N: usize, P: Polarization<N>> OutgoingPath<'a, N, P> {
         let followed = || shading::is_plain(at.point, at.context.wo, branch.wi, crosses);
         let left_to_photons = wide && path.leaves_narrow_to_photons(world, at);
         let goes_on_smoothly = left_to_photons && at.lobes.is_narrow();
-        // A photon that leaves by the lobe that is left to photons has come over smooth surfaces alone.
+        // A photon that leaves by the lobe that is left to photons has hit only smooth surfaces so far.
         let lands = wide && at.context.lobes != Lobes::NARROW;
         let next = pending.add(|| **path);
         next.ray = at.point.leave(branch.wi);
