@@ -139,7 +139,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
     if let Some(alpha) = &found.alpha {
         let [largest, error] = [alpha.largest, alpha.relative_mse].map(number);
         let known = if alpha.contradicts() {
-            format!("{} pixels are empty in one and full in the other, more than chance makes", alpha.opposite)
+            format!("{} pixels are empty in one and full in the other, more than chance explains", alpha.opposite)
         } else {
             "of its noise nothing is known".into()
         };
@@ -155,7 +155,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
         if noise.beyond > 0 && gathers {
             put(
                 "photon map",
-                "its noise is told in part: a few values may be beyond by chance, fewer with more samples".into(),
+                "its noise is known in part: a few values may differ more by chance, fewer with more samples".into(),
             );
         }
     }
@@ -187,5 +187,5 @@ fn of_noise(found: &Difference, noise: &Noise) -> String {
     let [pixel, channel] = noise.at;
     let ([x, y], channel) = (found.bounds.place(pixel), &found.channels[channel]);
     let beyond = if noise.beyond > 0 { format!("; {} beyond it", noise.beyond) } else { String::new() };
-    format!("worst {:.1} in {channel} of ({x}, {y}), chance makes up to {:.1}{beyond}", noise.worst, noise.threshold)
+    format!("worst {:.1} in {channel} of ({x}, {y}), chance explains up to {:.1}{beyond}", noise.worst, noise.threshold)
 }

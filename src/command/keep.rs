@@ -69,7 +69,7 @@ impl Flags {
         let is_planned = idle == Some("--plan");
         let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
         if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
-            return Error::refuse(format!("{flag} is of a render, and nothing is rendered"), "leave it out");
+            return Error::refuse(format!("{flag} belongs to a render, and nothing is rendered"), "leave it out");
         }
         if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
@@ -168,7 +168,7 @@ impl Keep {
                 let help = "name another image, or move that file away";
                 return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), help);
             }
-            let help = "add --resume to go on from it, or delete it to begin anew";
+            let help = "add --resume to go on from it, or delete it to start over";
             return Error::refuse(format!("{name} is there from an earlier run"), help);
         }
         let snapshot = flags.snapshot.map(|_| file.to_owned());
@@ -218,7 +218,7 @@ impl Keep {
             Resumed::Finished => Ok(true),
             Resumed::HasMore(samples) => match missing {
                 None => {
-                    say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to be done"));
+                    say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to do"));
                     Ok(false)
                 }
                 Some(missing) => Error::refuse(
@@ -318,7 +318,7 @@ impl Keep {
 
 fn say_finished(checkpoint: &Path) {
     let name = checkpoint.display();
-    say(&format!("{name} has all samples that are needed, and the image is written: nothing is left to be done"));
+    say(&format!("{name} has all samples that are needed, and the image is written: nothing is left to do"));
 }
 
 /// How many samples of a pixel will do, about, where that is known and more than there are.

@@ -63,8 +63,8 @@ pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) 
         return match commands.iter().find(|command| words.iter().any(|word| word == *command)) {
             Some(command) => {
                 let whole = format!("render {command}");
-                let help = format!("write {whole}, and what belongs to it after that; {whole} --help tells it");
-                Some((format!("the command {command} stands before all other arguments"), help))
+                let help = format!("write {whole}, and its arguments after that; {whole} --help lists them");
+                Some((format!("the command {command} comes before all other arguments"), help))
             }
             None => out_of_place(&given),
         };

@@ -158,8 +158,7 @@ pub fn warn_of_exposure(image: &Image, png: &Path, exr: Option<&Path>, stops: f6
 /// Whether lines for the program that listens were lost, which is said on stderr.
 pub fn has_lost_lines() -> bool {
     let lost = stdout::lost();
-    lost.iter()
-        .for_each(|why| print(&format!("error: cannot write all there is to say to stdout: {}", reason("write", why))));
+    lost.iter().for_each(|why| print(&format!("error: cannot write all output to stdout: {}", reason("write", why))));
     lost.is_some()
 }
 
@@ -312,7 +311,9 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
     image.warnings().iter().for_each(|warning| warn(warning));
     match (image.error(), report.stopped_by) {
         (Some(error), _) => print_error_of_image(error),
-        (None, Some(_)) => say(&format!("fewer than {FIRST_LOOK} samples per pixel do not tell the error")),
+        (None, Some(_)) => {
+            say(&format!("the error cannot be estimated from fewer than {FIRST_LOOK} samples per pixel"))
+        }
         (None, None) => {}
     }
     if listener() == Listener::Program {

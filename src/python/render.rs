@@ -200,7 +200,7 @@ impl Checkpoint {
             true => Ok(()),
             false => Error::refuse(
                 format!("{name} is there from an earlier run"),
-                "add resume=True to go on from it, or delete it to begin anew",
+                "add resume=True to go on from it, or delete it to start over",
             ),
         }
     }
