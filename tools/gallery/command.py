@@ -28,6 +28,8 @@ MEASURED = SCENES / "pictures/measured.json"
 FIRST = "rainbow"  # the picture on top of README.md, scenes/rainbow.png
 ORDER = "gem rainbow water pond pool window lens prism bubble coatings highlighter metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
+PARTS = ". "  # between the lines of a plan in measured.json
+
 HEAD = """# The gallery
 
 Every scene in this folder, with the command that renders it. For a quick look, add `--samples 16`. All meshes and images are in the repository,
@@ -173,7 +175,7 @@ def plan_of(name):
 
 def words(plan):
     """What the page says of a plan: the model of color, and the photons if there are any."""
-    return ". ".join(line for line in plan.splitlines() if line.startswith(("model ", "photon tracing: ", "photon map: ")))
+    return PARTS.join(line for line in plan.splitlines() if line.startswith(("model ", "photon tracing: ", "photon map: ")))
 
 
 def reduced(name, share=5):
@@ -234,7 +236,8 @@ def readme():
         if "plan" in measured.get(name, {}):
             samples, seconds, plan = (measured[name][key] for key in ("samples", "seconds", "plan"))
             shown = "1 sample" if samples == 1 else f"{samples} samples"
-            text += f"\nAbout {max(1, round(seconds))} s; the picture shows {shown}. The plan: {plan}.\n"
+            text += f"\nAbout {max(1, round(seconds))} s; the picture shows {shown}. The plan:\n\n"
+            text += "".join(f"- {part}\n" for part in plan.split(PARTS))
     return text
 
 
