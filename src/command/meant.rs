@@ -41,7 +41,7 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
 const WRONG: usize = 2;
 
 /// Returns a message on an argument that does not exist, and what to write instead, if that is known. `commands` are
-/// the commands that exist. If clap has no complaint, `said` is none, but the scene may still be a misspelled command.
+/// those that exist. If clap accepts the words, `said` is none, but the scene may still be a misspelled command.
 pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
     let first = || words.get(1)?.to_str().filter(|first| !first.starts_with('-'));
     let Some(said) = said else {
