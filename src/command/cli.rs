@@ -456,8 +456,7 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     Ok(Job { frame, scene, set, output, exposure, options, keep, report })
 }
 
-/// Tells the scene from the image. `--exr` may take an image, but right before the only other argument it takes the
-/// scene.
+/// Tells the scene from the image. `--exr` may take an image, but right before the only path it takes the scene.
 ///
 /// `idle` is the flag that renders nothing, if one is given.
 fn scene_and_image(

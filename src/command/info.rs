@@ -34,6 +34,9 @@ pub struct Query {
 const MOST_SHOWN: usize = 200;
 
 /// Returns the lines that answer a query.
+///
+/// # Errors
+/// If the file cannot be read.
 pub fn lines(query: &Query) -> Result<Vec<String>> {
     let (file, unread) = match ExrFile::read(&query.file) {
         Ok(file) => (file, None),

@@ -66,7 +66,7 @@ impl Flags {
     /// If there is such a flag.
     pub fn check(&self, idle: Option<&str>, exr: bool, png: bool, stamp: bool) -> Result<()> {
         let keeps = [("--checkpoint", self.checkpoint.is_some()), ("--resume", self.resume)];
-        // If an error or a time ends the render, a part has a plan of its own, which differs from that of the whole.
+        // If an error or a time ends the render, each part has a plan of its own, so --plan may go with --shard.
         let is_planned = idle == Some("--plan");
         let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
         if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
@@ -135,7 +135,7 @@ struct Files {
     checkpoint: Option<PathBuf>,
     /// The path of the image that is updated during the render, if one is.
     snapshot: Option<PathBuf>,
-    /// Whether the snapshot shows the samples of the last update.
+    /// Whether the last update of the snapshot succeeded.
     has_snapshot: Cell<bool>,
 }
 

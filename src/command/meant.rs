@@ -37,7 +37,7 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
     (&["--denoise"], "--layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr"),
 ];
 
-/// The maximum number of wrong letters in a command.
+/// The maximum number of wrong letters in a misspelled command.
 const WRONG: usize = 2;
 
 /// Returns a message on an argument that does not exist, and what to write instead, if that is known. `commands` are
@@ -45,7 +45,7 @@ const WRONG: usize = 2;
 pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
     let first = || words.get(1)?.to_str().filter(|first| !first.starts_with('-'));
     let Some(said) = said else {
-        // A name of three letters is close to half of all commands, so short names may have fewer wrong letters.
+        // A name of three letters is close to half of all commands, so a short name must match more closely.
         let is_file = |name: &str| [name.into(), format!("{name}.toml")].iter().any(|name| Path::new(name).exists());
         return first().filter(|name| !is_file(name)).and_then(|name| near_command(name, commands, name.len() / 4));
     };
@@ -72,7 +72,7 @@ pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) 
     near_command(first, commands, WRONG)
 }
 
-/// Returns the command that a word of at most `most` wrong letters stands for.
+/// Returns a message on a word, with the command that it resembles, if at most `most` letters are wrong.
 fn near_command(word: &str, commands: &[&str], most: usize) -> Option<(String, String)> {
     let wrong = |command: &str| strsim::damerau_levenshtein(word, command);
     let known = commands.iter().map(|&command| (command, command)).chain(FLAGS);
@@ -126,7 +126,7 @@ pub fn meant_below(said: &clap::Error, words: &[OsString]) -> Option<(String, St
     is_image.then(|| (format!("merge has no argument {given}"), help.to_owned()))
 }
 
-/// Returns what was meant by a file name that belongs to no argument.
+/// Returns a message on a file name that belongs to no argument, and what was meant.
 fn out_of_place(given: &str) -> Option<(String, String)> {
     match given.rsplit_once('.')?.1 {
         "toml" => {

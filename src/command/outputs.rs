@@ -63,7 +63,7 @@ pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
     }
 }
 
-/// Refuses an output that is a file of the scene, or another output under the same or another name.
+/// Refuses an output that is a file of the scene, or the same file as another output, whatever its name.
 pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
     let [own, others @ ..] = &scene.files[..] else { return Ok(()) };
     let another = |message: String| Error::refuse(message, "name another file");

@@ -273,7 +273,7 @@ fn times(passed: f64, left: Option<f64>) -> String {
     format!("{} passed{left}", spoken(passed))
 }
 
-/// Returns a time in the unit that people would use.
+/// Formats a time in the unit that people would use.
 fn spoken(seconds: f64) -> String {
     match seconds {
         seconds if seconds < 99.5 => format!("{seconds:.0} s"),

@@ -9,7 +9,7 @@ use abbe::look::Picture;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
-/// The number of columns if it is unknown.
+/// The number of columns of a terminal that does not tell it.
 const COLUMNS: usize = 80;
 /// The approximate width of a column in pixels, on terminals that show pixels.
 const PIXELS_OF_COLUMN: usize = 8;
