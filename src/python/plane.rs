@@ -20,7 +20,7 @@ pub(super) struct Plane {
 
 /// A type of numbers that numpy supports.
 pub(super) trait Number: Copy + Send + Sync + 'static {
-    /// Its type in the array interface.
+    /// The name of the type in the array interface.
     const KIND: &'static str;
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Place {
     /// The address of the first number.
     pub(super) address: usize,
     pub(super) shape: Vec<usize>,
-    /// In bytes.
+    /// The strides in bytes.
     pub(super) strides: Vec<usize>,
 }
 
