@@ -7,18 +7,18 @@ use clap::Parser;
 use super::messages::aligned;
 
 const HELP: &str = "\
-Words are looked for in names, other names and makers, whatever their case; all of them must be found. \
-Among the glasses of the makers, flint finds those with V_d below 50, crown the others.
+Words are searched for in names, other names and makers, ignoring case; an entry must contain all of them. \
+Among the makers' glasses, flint finds those with V_d below 50, and crown the others.
 
-A line holds, of a glass: name, n_d, V_d, known wavelengths, whether absorption is known, source; \
-of a metal: name, other names, measured wavelengths, source; of the others: name, tabulated wavelengths, source. \
+The columns of a glass: name, n_d, V_d, known wavelengths, whether absorption is known, source. \
+Of a metal: name, other names, measured wavelengths, source. Of all others: name, tabulated wavelengths, source. \
 On a terminal the columns have titles.
 
 Examples:
   render catalog glass                 list every glass
   render catalog glass schott flint    the flints of one maker
   render catalog metal silver          one metal
-  render catalog d65                   whatever is called that
+  render catalog d65                   everything of that name
 
 Exit codes: 0 something was found, 2 nothing was.";
 
@@ -26,7 +26,7 @@ Exit codes: 0 something was found, 2 nothing was.";
 #[derive(Parser)]
 #[command(name = "render catalog", bin_name = "render catalog", after_help = HELP)]
 pub struct Query {
-    /// One of glass, metal, illuminant, reflectance, to list only those; then words to search for
+    /// glass, metal, illuminant or reflectance to list only those, then words to search for
     words: Vec<String>,
 }
 

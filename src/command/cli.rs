@@ -21,28 +21,28 @@ use super::{catalog, diff, info, keep, manual, merge, view};
 const HELP: &str = "\
 Commands:
   render catalog      list the glasses, metals, lights and colors it knows
-  render info         say what an OpenEXR image holds
+  render info         describe an OpenEXR image
   render view         show an image on the terminal
-  render diff         say whether two images agree
-  render merge        lay the parts of an image together
-  render completions  write what completes its words in a shell
-  render man          write its manual page
-Each has a help of its own: render merge --help
+  render diff         test whether two images agree
+  render merge        combine the parts of an image
+  render completions  write a completion script for a shell
+  render man          write the manual page
+Each has its own help: render merge --help
 
 Examples:
   render --exr scenes/prism.toml                  write ./prism.exr
   render scenes/prism.toml --exr out/frame.exr    name the file
-  render scenes/prism.toml --png look.png         write a picture alone
+  render scenes/prism.toml --png look.png         write only a picture
   render --exr scenes/prism.toml --png look.png   write both
-  render --plan scenes/prism.toml                 report how, how long, and why
+  render --plan scenes/prism.toml                 explain how it would render
   render --check scenes/prism.toml                find mistakes in the scene
   render --samples 16 --exr scenes/prism.toml     take a quick look
-  render --error 0.01 --exr scenes/prism.toml     stop when it is off by 1 %
+  render --error 0.01 --exr scenes/prism.toml     stop at an error of 1 %
   render --layers all --exr scenes/prism.toml     write layers beside the image
   render --spectral --exr scenes/prism.toml       write spectra beside the image
-  render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume goes on
+  render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume continues
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts
-  render merge prism.exr prism.*.part             lay them together
+  render merge prism.exr prism.*.part             combine them
   render --plan s.toml --plan-file s.plan         make a plan for all parts
   render --set film.width=320 scenes/prism.toml   change a value of the scene
   render --frame 1-24 turn.toml                   render frames, one by one
@@ -52,8 +52,8 @@ Examples:
   render info prism.exr                           list what an image holds
   render view prism.exr                           show it on the terminal
   render diff prism.exr other.exr                 compare two images
-  render completions bash                         complete its words in a shell
-  render man                                      write its manual page
+  render completions bash                         write completions for bash
+  render man                                      write the manual page
 
 Exit codes: 0 done, 1 the render or a file failed, 2 bad arguments or scene,
 130 stopped by Ctrl-C, SIGTERM or SIGHUP.";
@@ -70,7 +70,7 @@ struct Arguments {
     #[arg(long, value_name = "FILE.exr", num_args = 0..=1)]
     exr: Option<Option<PathBuf>>,
 
-    /// Write an 8-bit sRGB picture for looking; no EXR then, unless --exr asks for it
+    /// Write an 8-bit sRGB picture to look at; without --exr, no EXR is written then
     #[arg(long, value_name = "FILE.png")]
     png: Option<PathBuf>,
 
@@ -78,13 +78,13 @@ struct Arguments {
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true)]
     exposure: Option<f64>,
 
-    /// Report what would be modelled, why, and at what cost; render nothing
+    /// Report what would be modeled, why, and at what cost; render nothing
     #[arg(long, conflicts_with_all = ["check", "png"])]
     plan: bool,
 
-    /// With --plan, write the plan to this file; without, follow it, so that parts of an image need not plan each for
-    /// itself. It belongs to one scene with its options, and changes no image. Where the scene asks for an error or a
-    /// time, make it with --shard 1/N as well
+    /// With --plan, write the plan to this file. Otherwise read it from there, so that the parts of an image need not
+    /// all plan for themselves. A plan belongs to one scene with its options, and does not change the image. If the
+    /// scene sets an error or a time, write the plan with --shard 1/N as well
     #[arg(long, value_name = "FILE.plan", conflicts_with = "check")]
     plan_file: Option<PathBuf>,
 
@@ -92,16 +92,16 @@ struct Arguments {
     #[arg(long, conflicts_with = "png")]
     check: bool,
 
-    /// Another value of the scene: the path of a key and a TOML value, such as film.width=320 or
-    /// object.ball.shape.sphere.radius=2. Objects, lights and other entries of lists go by name, or by number from 1.
-    /// What is not TOML is a text: object.wine glass.material=gold. A name with a dot stands in quotes: object."a.b".
-    /// One word sets the scene's variable: angle=45
+    /// Replace a value of the scene: the path of a key and a TOML value, such as film.width=320 or
+    /// object.ball.shape.sphere.radius=2. Objects, lights and other list entries go by name, or by number from 1. A
+    /// value that is not TOML is taken as text: object.wine glass.material=gold. A name with a dot needs quotes:
+    /// object."a.b". A single word sets a variable of the scene: angle=45
     #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     set: Vec<String>,
 
-    /// The number of a frame: the value of the variable frame, and of every %04d or %d in the names of the files to
-    /// write; %% is a percent there. 1-24 are frames one after another, 1-24x2 is every second of them, and 3,17,40-50
-    /// is a list
+    /// The frame to render: the value of the variable frame, and of every %04d or %d in the names of the files to
+    /// write, where %% is a percent sign. 1-24 renders a range of frames, 1-24x2 every second of them, and 3,17,40-50
+    /// a list
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     frame: Option<Frames>,
 
@@ -109,43 +109,43 @@ struct Arguments {
     #[arg(long, conflicts_with = "json")]
     quiet: bool,
 
-    /// Write all to standard output, one JSON object a line: plan, progress, report, files, warnings and errors
+    /// Write everything to standard output as one JSON object per line: plan, progress, report, files, warnings, errors
     #[arg(long)]
     json: bool,
 
-    /// Report on standard output how far it is, by the lines of a farm's protocol; all else goes to its log
+    /// Report progress on standard output, in the protocol of a render farm; everything else goes to its log
     #[arg(long, value_name = "PROTOCOL", conflicts_with_all = ["json", "quiet", "plan", "check"])]
     progress: Option<Protocol>,
 
-    /// Camera samples per pixel, instead of the scene's; with --error or --time, the most
+    /// Camera samples per pixel, instead of the scene's; with --error or --time, the maximum
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
 
     /// Take samples until the image is off by no more than this in 95 of 100 renders: 0.01 is one percent. The first of
-    /// --error, --time and --samples ends the render; the scene's samples then count no more
+    /// --error, --time and --samples to be reached ends the render; the scene's own samples then no longer count
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true, value_parser = ratio)]
     error: Option<f64>,
 
-    /// Take samples for so long: 90s, 10m, 1.5h
+    /// Take samples for this long: 90s, 10m, 1.5h
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = keep::time)]
     time: Option<Duration>,
 
-    /// Another set of random numbers, instead of the scene's
+    /// Choose another set of random numbers, instead of the scene's
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
     seed: Option<u64>,
 
-    /// Render so many pixels around the format as well, instead of the scene's overscan: on each side, or to the left,
-    /// above, to the right and below
+    /// Render extra pixels around the format, instead of the scene's overscan: one number for all sides, or four for
+    /// left, top, right and bottom
     #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = overscan)]
     overscan: Option<Overscan>,
 
-    /// Render this part of the image alone, instead of the scene's crop: first column, first row, width, height; both
-    /// firsts are negative in the overscan
+    /// Render only this part of the image, instead of the scene's crop: first column, first row, width, height; in the
+    /// overscan, the first column and row may be negative
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true, value_parser = crop)]
     crop: Option<Window>,
 
-    /// Layers in the EXR beside the image, instead of the scene's: such as albedo,N,lights, or all, which leaves out
-    /// those of polarization; "" for none. S1, S2 and S3 stay if film.stokes asks for them
+    /// Layers of the EXR beside the image, instead of the scene's, such as albedo,N,lights; all for all but those of
+    /// polarization, or "" for none. S1, S2 and S3 stay if film.stokes is set
     #[arg(long, value_name = "NAMES", value_parser = layers)]
     layers: Option<LayerList>,
 
@@ -153,20 +153,19 @@ struct Arguments {
     #[arg(long, conflicts_with = "check")]
     spectral: bool,
 
-    /// Processor threads; all if absent. The image is the same for any number
+    /// Processor threads; all if absent. The image does not depend on the number
     #[arg(long, value_name = "N", allow_negative_numbers = true,
           value_parser = clap::value_parser!(u16).range(1..=i64::from(Options::MOST_THREADS)))]
     threads: Option<u16>,
 
-    /// Write all that is known of the render as JSON: its plan, what it took, how far the image is off and why it
-    /// stopped
+    /// Write a report on the render as JSON: its plan, its time and memory, the error of the image and why it stopped
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["plan", "check"])]
     report: Option<PathBuf>,
 
     #[command(flatten)]
     keep: keep::Flags,
 
-    /// Write into the EXR when it was made, how long that took, and on how many threads. Without it two runs write the
+    /// Record in the EXR when it was made, how long that took, and on how many threads. Without it, two runs write the
     /// same bytes
     #[arg(long, conflicts_with_all = ["plan", "check"])]
     stamp: bool,

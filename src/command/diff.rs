@@ -13,23 +13,23 @@ use super::outputs::{Folders, check_png, spare};
 use super::signals::catch_plainly;
 
 const HELP: &str = "\
-Files with a variance layer agree if they differ by no more than their noise: if every z = (a - b) / sqrt(va + vb), \
-and that of each channel's mean, is within what chance exceeds in one of a hundred pairs of images. \
-Other files agree if all values are equal, or relMSE is at most --tolerance. \
-Images that are equal do not agree if a layer that both files have is not, such as Z; \
-nor does alpha that is 0 in one and 1 in the other more often than chance makes it so. \
-If one file is a crop of the other, only the pixels that both have are compared. \
-What only one of the files has is told, and makes no difference.
+Files with a variance layer agree if they differ by no more than their noise: no z = (a - b) / sqrt(va + vb), of a \
+pixel or of a channel's mean, may exceed the bound that chance exceeds in one of a hundred pairs of images. \
+Other files agree if all values are equal, or if relMSE is at most --tolerance. \
+Two equal images do not agree if a layer of both files differs, such as Z, or if alpha is 0 in one and 1 in the other \
+more often than chance explains. \
+If one file is a crop of the other, only their common pixels are compared. \
+Layers that only one of the files has are listed, but do not count.
 
 Examples:
   render diff old.exr new.exr                       do they agree, and if not, where
-  render diff old.exr new.exr --tolerance 1e-4      do they agree so far
+  render diff old.exr new.exr --tolerance 1e-4      do they agree within 1e-4
   render diff old.exr new.exr --layer albedo
   render diff old.exr new.exr --png difference.png  see where they differ
 
 Exit codes: 0 they agree, 1 they differ, 2 they cannot be read or compared.";
 
-/// Say whether two OpenEXR images agree.
+/// Test whether two OpenEXR images agree.
 #[derive(Parser)]
 #[command(name = "render diff", bin_name = "render diff", after_help = HELP)]
 pub struct Query {
@@ -37,7 +37,7 @@ pub struct Query {
     #[arg(value_name = "A.exr")]
     a: PathBuf,
 
-    /// The other image, to which it is compared
+    /// The image to compare it with
     #[arg(value_name = "B.exr")]
     b: PathBuf,
 
@@ -46,7 +46,7 @@ pub struct Query {
     #[arg(long, value_name = "NAME")]
     layer: Option<String>,
 
-    /// The largest relMSE of images that agree; noise is not looked at then
+    /// The largest relMSE at which the images agree; noise is then ignored
     #[arg(long, value_name = "RELMSE", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 

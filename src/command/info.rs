@@ -11,9 +11,9 @@ use clap::Parser;
 use super::messages::aligned;
 
 const HELP: &str = "\
-It says the size and the part of it that is there, the color space, the camera, all that the file says of itself, \
-and of each channel its type, least, mean and largest value, and how many values are not finite. Of deep images and \
-subsampled channels it says all but the values.
+It lists the size and the data window, the color space, the camera and all attributes of the file. For each channel it \
+lists the type, the least, mean and largest value, and how many values are not finite. For deep images and subsampled \
+channels it lists everything but the values.
 
 Examples:
   render info rainbow.exr            files of other programs as well
@@ -21,7 +21,7 @@ Examples:
 
 Exit codes: 0 done, 1 the file cannot be read, 2 bad arguments or no such file.";
 
-/// Say what an OpenEXR image carries.
+/// Describe an OpenEXR image.
 #[derive(Parser)]
 #[command(name = "render info", bin_name = "render info", after_help = HELP)]
 pub struct Query {

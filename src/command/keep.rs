@@ -16,17 +16,17 @@ use super::problem::problem;
 use super::progress::Progress;
 use super::signals::{self, is_stopped};
 
-/// What the command line says of it.
+/// The flags for checkpoints, snapshots and parts.
 #[derive(Args, Clone)]
 pub struct Flags {
-    /// Save what is done to NAME.checkpoint beside the image at this interval (60s, 5m, 1h), and when Ctrl-C stops it.
-    /// Saving takes at most 1 % of the time: large images are saved less often
+    /// Save the state to NAME.checkpoint beside the image at this interval (60s, 5m, 1h), and when Ctrl-C stops it.
+    /// Saving takes at most 1 % of the time, so large images are saved less often
     #[arg(long, value_name = "TIME", allow_hyphen_values = true, value_parser = time)]
     checkpoint: Option<Duration>,
 
-    /// Go on from NAME.checkpoint, if it is there, to the same image; from 16, 32, 64 and so on samples also to more of
-    /// them, as long as these need no other plan (as where photons are gathered) and half_a and half_b are not asked
-    /// for. It keeps one, too, every 60 s where --checkpoint does not say how often
+    /// Continue from NAME.checkpoint, if it exists, to the same image. From 16, 32, 64 and so on samples it also
+    /// continues to more of them, unless these need another plan (as where photons are gathered) or half_a and half_b
+    /// are requested. It also saves a checkpoint, every 60 s unless --checkpoint sets the interval
     #[arg(long)]
     resume: bool,
 

@@ -9,7 +9,7 @@ Examples:
   render completions bash > ~/.local/share/bash-completion/completions/render
   render completions fish > ~/.config/fish/completions/render.fish";
 
-/// Write the completions of a shell to standard output.
+/// Write a completion script for a shell to standard output.
 #[derive(Parser)]
 #[command(name = "render completions", bin_name = "render completions", after_help = COMPLETIONS)]
 pub struct Completions {

@@ -13,14 +13,14 @@ use super::signals::catch_plainly;
 const EXAMPLES: &str = "\
 Examples:
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts: prism.1-of-4.part
-  render merge prism.exr prism.*-of-4.part        lay all four together
-  render merge --delete prism.exr prism.*.part    keep nothing but the image
+  render merge prism.exr prism.*-of-4.part        combine all four
+  render merge --delete prism.exr prism.*.part    keep only the image
 
-The merged image has the same bytes as one that a single render makes.
+The merged image is byte for byte that of a single render.
 
 Exit codes: 0 done, 1 a file failed, 2 the parts do not belong together, or one is missing.";
 
-/// Lay the parts of an image together.
+/// Combine the parts of an image.
 #[derive(Parser)]
 #[command(name = "render merge", bin_name = "render merge", after_help = EXAMPLES)]
 pub struct Query {
@@ -32,11 +32,11 @@ pub struct Query {
     #[arg(required = true, value_name = "PART")]
     parts: Vec<PathBuf>,
 
-    /// Delete the parts when the image is written, and the checkpoints beside them
+    /// Delete the parts, and the checkpoints beside them, when the image is written
     #[arg(long)]
     delete: bool,
 
-    /// Say on standard output what happens, by the lines of a farm's protocol; all else goes to its log
+    /// Report on standard output, in the protocol of a render farm; everything else goes to its log
     #[arg(long, value_name = "PROTOCOL")]
     progress: Option<Protocol>,
 }

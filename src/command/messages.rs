@@ -37,7 +37,7 @@ pub enum Listener {
 /// The lines by which progress is reported on stdout.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Protocol {
-    /// Those of Open Job Description
+    /// Open Job Description
     Openjd,
 }
 

@@ -15,9 +15,10 @@ use super::outputs::{Folders, check_exposure, check_png, spare};
 use super::signals::catch_plainly;
 
 const HELP: &str = "\
-kitty, WezTerm and Ghostty show the pixels themselves, every other terminal two of them in a character. \
-Colors are brought to Rec.709. Normals are shown from -1 to 1, depths and single numbers from their 1st to their 99th \
-percentile, Cryptomattes in a color for each name. The tone srgb cuts off what is brighter than white; hable is the filmic curve of Hable 2010.
+kitty, WezTerm and Ghostty show the pixels themselves; other terminals show two pixels per character. \
+Colors are converted to Rec.709. Normals are shown from -1 to 1, depths and single numbers from their 1st to their 99th \
+percentile, Cryptomattes in one color per name. The tone curve srgb clips what is brighter than white; hable is the \
+filmic curve of Hable 2010.
 
 Examples:
   render view rainbow.exr                      on the terminal
@@ -27,7 +28,7 @@ Examples:
   render view rainbow.exr CryptoObject.prism   the matte of one object
   render view rainbow.spectral.exr 550nm       the band of a spectrum around a wavelength
   render view rainbow.exr --png look.png       a PNG instead
-  render view rainbow.exr albedo --sixel       for terminals that know sixels
+  render view rainbow.exr albedo --sixel       for terminals that support sixels
 
 Exit codes: 0 done, 1 a file cannot be read or written, 2 bad arguments, no such file or layer.";
 
@@ -43,7 +44,7 @@ pub struct Query {
     /// CryptoObject, or one of them such as CryptoObject.ball; the image itself if absent
     layer: Option<String>,
 
-    /// Write an 8-bit sRGB picture of full size, and show nothing
+    /// Write a full-size 8-bit sRGB picture instead of showing it
     #[arg(long, value_name = "OUT.png")]
     png: Option<PathBuf>,
 
@@ -55,7 +56,7 @@ pub struct Query {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Tone::ALL.map(Tone::name)))]
     tone: Option<String>,
 
-    /// Show sixels, for a terminal that draws them
+    /// Show the image as sixels, for a terminal that supports them
     #[arg(long, conflicts_with = "png")]
     sixel: bool,
 }

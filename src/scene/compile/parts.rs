@@ -73,7 +73,7 @@ impl<'d> Search<'_, 'd> {
         if let Some(start) = self.within.iter().position(|name| name == known) {
             self.circular.extend(&self.within[start..]);
             let way: Vec<_> = self.within[start + 1..].iter().map(|name| format!("{name:?}")).collect();
-            let by = if way.is_empty() { String::new() } else { format!(", by way of {}", way.join(" and ")) };
+            let by = if way.is_empty() { String::new() } else { format!(", via {}", way.join(" and ")) };
             return place.refuse(format!("material {known:?} is made of itself{by}"));
         }
         self.parts += 1;

@@ -81,7 +81,7 @@ impl Included {
         let path = folder.join(name);
         let file = real(&path);
         if self.within.contains(&file) {
-            let message = format!("{name} includes itself by way of this file");
+            let message = format!("{name} includes itself via this file");
             return Err(Fault::new(message, "what both need stands in a file of its own"));
         }
         if self.files.contains(&file) {
