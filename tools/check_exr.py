@@ -99,8 +99,7 @@ STAMPED = r"[0-9]{4}:(0[1-9]|1[0-2]):(0[1-9]|[12][0-9]|3[01]) ([01][0-9]|2[0-3])
 
 
 class File(NamedTuple):
-    """The contents of a file: the header of its first part, all channels by name, and header and channels of each part.
-    """
+    """The contents of a file: header of its first part, all channels by name, header and channels of each part."""
 
     header: dict
     channels: dict
@@ -111,16 +110,14 @@ class File(NamedTuple):
         return list(dict.fromkeys(name.rpartition(".")[0] for name in self.channels))
 
     def layer(self, layer):
-        """Returns the channels of a layer as one float64 array, channels first; None unless the file has all of them.
-        """
+        """Returns the channels of a layer as one float64 array, channels first; None unless the file has them all."""
         names = [f"{layer}.{channel}" for channel in known_channels(layer)]
         if names and all(name in self.channels for name in names):
             return np.array([self.channels[name] for name in names], np.float64)
         return None
 
     def bands(self, component=0):
-        """Returns the channels of a Stokes component of a spectral image, by the centers of their bands in nm,
-        ascending."""
+        """Returns the channels of a Stokes component by the centers of their bands in nm, ascending."""
         found = {name: re.fullmatch(BAND, name) for name in self.channels}
         own = {name: match for name, match in found.items() if match and int(match[1]) == component}
         return dict(sorted((float(f"{match[2]}.{match[3]}"), name) for name, match in own.items()))
@@ -162,8 +159,7 @@ def layout(file):
 
 
 def parts(file):
-    """Checks files of several parts: the first is the image and has all metadata; each other one is a layer, or depth.
-    """
+    """Checks files of several parts: the first is the image and has all metadata; the others are layers, or depth."""
     if len(file.parts) == 1:
         return
     if file.header.get("name") != "image":
@@ -238,8 +234,7 @@ def names(file):
 
 
 def types(file):
-    """Checks for 32-bit floats. Colors, coverage and normals have 16 bits if the file counts the values that did not
-    fit."""
+    """Checks for 32-bit floats; 16 bits for colors, coverage and normals of files that count clamped values."""
     half = "render/clamped" in file.header
     for name, pixels in file.channels.items():
         bits = 16 if half and not re.fullmatch(ALWAYS_32_BITS, name) else 32
@@ -258,8 +253,7 @@ def subtracts(file):
 
 
 def values(file):
-    """Checks for finite numbers, coverage in 0..1, and positive depth, which is the miss depth where nothing is
-    covered."""
+    """Checks for finite numbers, coverage in 0..1, and positive depth: the miss depth where nothing is covered."""
     for name, pixels in file.channels.items():
         if wrong := np.count_nonzero(~np.isfinite(pixels.astype(np.float64))):
             yield f"channel {name!r}: {wrong} values not finite"
@@ -273,8 +267,7 @@ def values(file):
 
 
 def surfaces(file):
-    """Checks the layers of first surfaces: albedo in 0..1, normals no longer than 1, and 0 where there is no surface.
-    """
+    """Checks the layers of first surfaces: albedo in 0..1, normals no longer than 1, 0 where there is no surface."""
     albedo = file.layer("albedo")
     if albedo is not None and not ((albedo >= 0) & (albedo <= 1)).all():
         yield f"layer 'albedo': from {albedo.min()} to {albedo.max()}, not within 0..1"
@@ -298,7 +291,8 @@ def statistics(file):
     """Checks that variance is not negative, and that the numbers of samples are those asked for.
 
     Adaptive sampling takes half, twice or four times as many samples of a pixel. Samples that were not finite are
-    missing."""
+    missing.
+    """
     variance, samples = file.layer("variance"), file.layer("samples")
     if variance is not None and not (variance >= 0).all():
         yield f"layer 'variance': {np.count_nonzero(~(variance >= 0))} values negative"
@@ -329,8 +323,7 @@ def luminance(file, channels):
 
 
 def stokes(file):
-    """Checks that the polarized part is at most all of the light, and that degrees and angles match the Stokes vectors.
-    """
+    """Checks that the polarized part is at most all light, and that degrees and angles match the Stokes vectors."""
     degrees = file.layer("polarization")
     if degrees is not None:
         degree, linear, angle = degrees
@@ -359,8 +352,7 @@ def stokes(file):
 
 
 def sums(file):
-    """Checks that kinds of light, lights, and the halves of the samples add up to the image, as precisely as it is
-    stored."""
+    """Checks that kinds of light, lights, and halves of the samples add up to the image within rounding."""
     lights = [layer for layer in file.layers() if layer.startswith("light_")]
     lobes = [f"{lobe}_{kind}" for lobe in LOBES for kind in ("direct", "indirect")]
     wholes = [(("emission", "background", "direct", "indirect"), 1), (("emission", "background", *lobes), 1), (lights, 1)]
@@ -390,8 +382,7 @@ SPECTRAL = {"spectralLayoutVersion": "1.0", "emissiveUnits": "W.m^-2.sr^-1", "re
 
 
 def spectrum(file):
-    """Checks that bands are evenly spaced, with only R, G and B beside them, and attributes that say so, and only
-    there."""
+    """Checks that bands are evenly spaced, beside R, G and B alone, with attributes that no other file has."""
     attributes = (*SPECTRAL, "render/spectralStep", "polarisationHandedness")
     bands, said = np.array(list(file.bands())), {name: file.header.get(name) for name in attributes}
     if not len(bands):
@@ -449,8 +440,7 @@ def matte_key(name):
 
 
 def matte(file, name):
-    """Returns the numbers of a matte, as integers, and their coverage, rank by rank; None without all layers in 32
-    bits."""
+    """Returns a matte's numbers, as integers, and coverage, rank by rank; None without all layers in 32 bits."""
     channels = [file.channels.get(f"{name}{layer}.{channel}") for layer in MATTE_LAYERS for channel in "rgba"]
     if any(each is None or each.dtype != np.float32 for each in channels):
         return None
@@ -512,8 +502,7 @@ def coverage(file, numbers, shares, manifest):
 
 
 def color(file):
-    """Checks for a color space by name, and in single-part files its chromaticities, for readers that do not know
-    names."""
+    """Checks for a color space by name, and in single parts its chromaticities, for readers that know no names."""
     space, stored = file.header.get("colorInteropID"), file.header.get("chromaticities")
     if space not in CHROMATICITIES:
         yield f"colorInteropID is {space!r}, not one of {', '.join(CHROMATICITIES)}"
@@ -555,8 +544,7 @@ def optics(file):
 
 
 def camera(file):
-    """Checks that worldToCamera takes row vectors from a right-handed world to a left-handed camera looking along +z.
-    """
+    """Checks that worldToCamera takes row vectors from a right-handed world to a left-handed camera along +z."""
     header = file.header
     if not header.get("screenWindowWidth", 0) > 0:
         yield "screenWindowWidth is not positive"

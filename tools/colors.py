@@ -194,8 +194,7 @@ def verdict(name, errors, bar):
 
 
 def judge_charts():
-    """Judges the whole chart under every illuminant. Prints a line for each, and returns the names of those that fail.
-    """
+    """Judges the whole chart under every illuminant. Prints a line for each, and returns the names of failures."""
     failed = []
     for bands in CHART_BANDS:
         charts = {name: chart(illuminant(name), bands) for name in catalog()}
@@ -210,8 +209,7 @@ def judge_charts():
 
 
 def judge_mirrors():
-    """Judges every patch in a mirror of every patch. Prints a line for each light, and returns the names of those that
-    fail."""
+    """Judges every patch in a mirror of every patch. Prints a line for each light, and returns names of failures."""
     failed = []
     for light in (illuminant("FL11"), LASERS, SODIUM):
         name = f"bands 12, patches in mirrors, {light.name}"

@@ -67,8 +67,7 @@ def denoised(denoise, color, albedo, normal):
 
 
 def parts_with(file, result):
-    """Returns the parts of a file with the result in as many bits as the image: in the only part, or in one of its own.
-    """
+    """Returns the parts of a file with the result in as many bits as the image: in the only part, or in its own."""
     first = file.parts[0]
     kind = next(part.channels["R"].pixels.dtype for part in file.parts if "R" in part.channels)
     fitting = result.clip(-np.finfo(kind).max, np.finfo(kind).max).astype(kind)

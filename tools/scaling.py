@@ -33,8 +33,7 @@ FLOOR = "[[object]]\nshape.plane = { point = [0, -1, 0], normal = [0, 1, 0] }\nm
 
 
 def hills(path: Path, triangles: int):
-    """Writes a binary PLY of rolling hills, 8 units on a side, and returns its number of triangles, about `triangles`.
-    """
+    """Writes a binary PLY of rolling hills, 8 units on a side, of about `triangles`, and returns the exact number."""
     n = max(2, round(math.sqrt(triangles / 2)) + 1)
     x, z = np.meshgrid(np.linspace(-4, 4, n), np.linspace(-4, 4, n))
     y = 0.3 * np.sin(3 * x) * np.cos(2 * z) + 0.05 * np.sin(17 * x + 3 * z) + 0.02 * np.sin(41 * z - 5 * x)
@@ -52,8 +51,7 @@ def of_triangles(folder: Path, count: int):
 
 
 def of_lights(_, count: int):
-    """Returns a hall with one small lamp above each square of a grid. It grows with their number, at constant density.
-    """
+    """Returns a hall with a small lamp above each square of a grid. It grows with their number at equal density."""
     side = math.ceil(math.sqrt(count))
     lamps = []
     for number in range(count):

@@ -20,8 +20,7 @@ OBSERVER = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(
 
 
 def chart(lamp):
-    """Returns the scene: all patches side by side, under a uniform sky with the lamp's spectrum. Each patch reflects
-    it."""
+    """Returns a scene of all patches side by side, which reflect a uniform sky with the lamp's spectrum."""
     squares = [
         {"shape": {"quad": {"center": [x, -y, 0], "u": [0.45, 0, 0], "v": [0, 0.45, 0]}}, "material": patch}
         for (y, x), patch in zip(np.ndindex(ROWS, COLUMNS), PATCHES, strict=True)

@@ -65,8 +65,7 @@ def scene():
 
 
 def rendered(image):
-    """Returns the wavelengths and the angle at which each sees the edge: where the light would begin if the edge were
-    sharp."""
+    """Returns wavelengths, and the angles at which they see the edge: where a sharp edge would be."""
     nm, radiance = image.spectra
     (row,) = radiance
     lit = row[-PIXELS // 4 :].mean(axis=0)

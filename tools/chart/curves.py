@@ -53,11 +53,10 @@ def seconds_to(error: float, curve: Curve) -> tuple[float, str]:
 
 
 def crossings(first: Curve, second: Curve) -> list[tuple[float, float]]:
-    """Returns the errors and seconds at which one curve overtakes the other, where both are measured; largest error
-    first.
+    """Returns errors and seconds at which one curve overtakes the other, where both are measured.
 
-    Curves that only touch do not cross: on either side of a crossing, one must somewhere take longer by more than a
-    tie."""
+    The largest error comes first. Curves that only touch do not cross: on either side of a crossing, one must somewhere
+    take longer by more than a tie."""
     first, second = falling(first), falling(second)
     if min(len(first), len(second)) < 2:
         return []
@@ -92,11 +91,11 @@ def rank(ratio: float) -> str:
 
 
 def levels_for(first: Curve, second: Curve) -> list[float]:
-    """Returns the smallest and the largest round error that both curves reach as measured; if none, where they are
-    closest.
+    """Returns the smallest and the largest round error that both curves reach as measured.
 
-    If their errors do not overlap, that is the first point of the better curve. Extrapolating it to larger errors would
-    mean nothing, because even little work may take this long to start."""
+    Without one, returns where they come closest: if their errors do not overlap, that is the first point of the better
+    curve. Extrapolating it to larger errors would mean nothing, because even little work may take this long to start.
+    """
     ends = [falling(curve) for curve in (first, second)]
     low, high = max(curve[-1][1] for curve in ends), min(curve[0][1] for curve in ends)
     if both := [level for level in LEVELS if low <= level <= high]:

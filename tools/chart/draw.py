@@ -84,8 +84,7 @@ def seconds(value: float, _=None) -> str:
 
 
 def paint(axes, panel: Panel, size: float) -> None:
-    """Draws lines with labels to their right, a grid, and dotted lines along which four times the time halves the
-    error."""
+    """Draws lines and their labels, a grid, and dotted lines on which four times the time halves the error."""
     every = np.array([point for line in panel.lines for point in line.points if point[1] > 0])
     low, high = every.min(axis=0), every.max(axis=0)
     axes.set_xscale("log")

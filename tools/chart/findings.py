@@ -36,8 +36,7 @@ def floor(measured: Measured) -> str:
 
 
 def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
-    """Says how far a converged picture is from the common one, and how the series compares if judged by the common one.
-    """
+    """Says how far a converged picture is from the common one, and how the series does if judged by the common one."""
     if takes_no_seed(measured):
         best = curves.percent(min(point.common for point in measured.points))
         return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
@@ -111,8 +110,7 @@ def table_cell(ours: Measured, theirs: Measured) -> str:
 
 
 def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
-    """Returns rows for the table of benches/README.md: scene, the other series, time that ours takes, pictures apart.
-    """
+    """Returns rows for the table of benches/README.md: scene, the other series, time ours takes, pictures apart."""
     first, *others = found
     ours, rows = found[first], []
     renderers = {one.label: one.renderer for one in chart.series}

@@ -89,8 +89,7 @@ def converged(renderer, samples: int) -> Reference:
 
 
 def or_none(label: str, render, *arguments):
-    """Returns what a renderer makes. If it fails, prints the reason in one line and returns None; the others continue.
-    """
+    """Returns what a renderer makes. If it fails, prints the reason in a line and returns None; the others go on."""
     try:
         return render(*arguments)
     except (RuntimeError, OSError, ValueError) as words:
@@ -99,8 +98,7 @@ def or_none(label: str, render, *arguments):
 
 
 def reason(said: str) -> str:
-    """Returns the line that gives the reason: the last that mentions an error, unless a signal came last; else the
-    last."""
+    """Returns the line with the reason: the last about an error, unless a signal came last; else the last."""
     lines = [line.strip() for line in said.splitlines() if line.strip()] or ["it said nothing"]
     errors = [line for line in lines if "error" in line.lower()]
     return errors[-1] if errors and "signal" not in lines[-1] else lines[-1]

@@ -72,8 +72,7 @@ def direct_light(scene, rays, point, normal, reflectance):
 
 
 def fresnel(cosine, n1, n2):
-    """Returns the unpolarized reflectance and the cosine of refraction, 1 and 0 at total reflection. Hecht, Optics,
-    4.6."""
+    """Returns unpolarized reflectance and cosine of refraction, 1 and 0 at total reflection (Hecht, Optics, 4.6)."""
     cosine = cosine[:, None]
     cosine_t = np.sqrt(np.maximum(1 - (n1 / n2) ** 2 * (1 - cosine**2), 0))
     s = (n1 * cosine - n2 * cosine_t) / (n1 * cosine + n2 * cosine_t)
@@ -116,8 +115,7 @@ def scatter(scene, rays, normal, front, number):
 
 
 def step(scene, rays, image):
-    """Traces rays to their next surface, adds the light found there to the image, and returns the rays that continue.
-    """
+    """Traces rays to their next surface, adds the light found there to the image, and returns rays that continue."""
     distance, surface = nearest(scene, rays)
     miss = np.isinf(distance)
     np.add.at(image, rays.pixel[miss], (rays.weight * rays.scale[:, None])[miss] * scene.environment)

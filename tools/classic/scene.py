@@ -29,8 +29,7 @@ class Plane:
         self.W = -dot(self.n, np.array(point, float))
 
     def distance(self, origin, direction, leaving):
-        """Returns the distance along each ray, infinite without a hit. A ray that is `leaving` here never comes back.
-        """
+        """Returns the distance along each ray, infinite without a hit. A ray `leaving` here never comes back."""
         t = -(origin @ self.n + self.W) / (direction @ self.n)
         return np.where((t > 0) & ~leaving & self.holds(origin + t[:, None] * direction), t, np.inf)
 
@@ -76,8 +75,7 @@ class Sphere:
         self.center, self.radius = np.array(center, float), radius
 
     def distance(self, origin, direction, leaving):
-        """Returns the distance along each ray. One that is `leaving` starts on the sphere: one root is 0, the other
-        counts."""
+        """Returns the distance along each ray. One that is `leaving` has a root of 0, and only the other counts."""
         d = self.center - origin
         middle = dot(direction, d)
         cross = np.cross(d, direction)

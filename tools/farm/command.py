@@ -8,8 +8,7 @@
 Measures on this machine the work that every part repeats and the work that parts share. From these it forecasts, for 1
 to 10,000 parts, processor time, time on as many machines, and the share of processor time that is overhead.
 `tools/farm/model.py` has the formulas. `--verify` renders the given numbers of parts one after another, and says how
-far
-off the forecast was.
+far off the forecast was.
 """
 
 import argparse

@@ -7,9 +7,8 @@ With n parts, each on a machine of its own, and the seconds of `Work`:
     time           = repeated + slowest(n) tiles / n + merge + n merge_part
 
 `slowest(n)` is the ratio of the time that the slowest part takes for its tiles to the mean. A part gets every n-th
-tile,
-so costs that vary randomly from tile to tile average out by the square root of a part's number of tiles. With u as the
-expected largest deviation of n (the root of 2 ln n standard deviations) and v as the variation of single tiles,
+tile, so costs that vary randomly from tile to tile average out by the square root of a part's number of tiles. With u
+as the expected largest deviation of n (the root of 2 ln n standard deviations) and v as the variation of single tiles,
 
     slowest(n) = 1 + v sqrt(2 ln n) sqrt(n / count)
 

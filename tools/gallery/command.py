@@ -1,7 +1,6 @@
 """The gallery in scenes/: makes its meshes and images, renders every scene to a small picture, writes scenes/README.md.
 
-    python tools/gallery.py make                # scenes/meshes, scenes/textures, scenes/generated,
-    scenes/large/instances.toml
+    python tools/gallery.py make                # scenes/meshes, scenes/textures, scenes/generated, scenes/large/instances.toml
     python tools/gallery.py render              # every scene: scenes/pictures, then scenes/README.md
     python tools/gallery.py render gem lens     # these alone
     python tools/gallery.py render --quick      # with a quarter of the samples
@@ -53,8 +52,7 @@ def first_line(name):
 
 
 def make_lenses():
-    """Yields the profiles of a singlet of N-SF11 and of an achromat, a crown of N-BK7 with a flint of N-SF11, and of a
-    ring.
+    """Yields profiles: a singlet of N-SF11, an achromat of N-BK7 and N-SF11, and a ring.
 
     Both lenses have the focal length 1.9 by the thin-lens formula."""
     focal, crown, flint = 1.9, (1.5168, 64.17), (1.7847, 25.68)
@@ -102,8 +100,7 @@ def needs_making(name):
 
 
 def make_sunflower(path, count=2000):
-    """Writes the positions of the beads after the line that marks them: each is turned by the golden angle (Vogel
-    1979)."""
+    """Writes the beads' places after the line that marks them, each turned by the golden angle (Vogel 1979)."""
     mark = "# What follows is written by tools/gallery.py.\n"
     head, found, _ = path.read_text("utf-8").partition(mark)
     if not found:

@@ -23,9 +23,9 @@ def write_ply(path, points, faces, normals=None, uv=None):
 
 
 def convex(normals, offsets):
-    """Returns points and triangles of the convex polyhedron normals . p <= offsets; each face is a triangle fan.
+    """Returns the convex polyhedron normals . p <= offsets: points and triangles, each face a fan.
 
-    Solves for the corner of every three planes, so it is meant for small numbers of planes."""
+    Planes pass through at most a few corners."""
     triples = np.array(list(itertools.combinations(range(len(normals)), 3)))
     determinants = np.linalg.det(normals[triples])
     triples = triples[np.abs(determinants) > 1e-9]
@@ -124,8 +124,8 @@ def arc(center, radius, start, end, steps=8):
 def lens(front, back, thickness, radius, steps=24):
     """Returns the profile of a lens about y, with its center at the origin and `thickness` on the axis.
 
-    It lies between spheres of the radii `front` (top, convex if positive) and `back` (bottom). Its edge, at `radius`,
-    is slightly rounded by the smooth normals."""
+    It lies between spheres of the radii `front` (top, convex if positive) and `back` (bottom). Its edge is a cylinder
+    of `radius`."""
 
     def cap(r, way):
         heights = [*np.linspace(0, radius - 0.004, steps), radius]
@@ -135,8 +135,7 @@ def lens(front, back, thickness, radius, steps=24):
 
 
 def flint(back, thickness, radius, bottom, top, steps=24):
-    """Returns the profile of the flint lens of an achromat, `thickness` on the axis, behind a crown that ends at
-    `bottom`.
+    """Returns the profile of an achromat's flint, `thickness` on the axis, behind a crown that ends at `bottom`.
 
     Its back has the radius `back`. Its top is flat and lies inside the crown, at the height `top`."""
     heights = np.array([*np.linspace(0, radius - 0.004, steps), radius])
@@ -144,8 +143,7 @@ def flint(back, thickness, radius, bottom, top, steps=24):
 
 
 def tumbler():
-    """Returns the profile of a glass: radius 0.38 at the foot to 0.46 at the rim, height 1.25, wall 0.035, thick
-    bottom."""
+    """Returns a glass's profile: radius 0.38 at the foot, 0.46 at the rim, height 1.25, wall 0.035, thick bottom."""
     outside = [(0, 0), (0.3, 0), *arc((0.34, 0.045), 0.045, -90, -4), *[(0.385 + 0.075 * t, 0.045 + 1.19 * t) for t in (0.3, 0.65, 0.98)]]
     rim = arc((0.4425, 1.23), 0.0185, 0, 180, 9)
     inside = [(0.349 + 0.075 * t, 0.045 + 1.19 * t) for t in (0.98, 0.65, 0.3)]
@@ -201,8 +199,7 @@ def grid(rows, columns):
 
 
 def curtain(width=0.55, height=2.15, folds=5, columns=61, rows=15):
-    """Returns a cloth that hangs from the origin, gathered toward the top, with smooth normals; it folds in z along +x.
-    """
+    """Returns a cloth hanging from the origin, gathered toward the top, with smooth normals; it folds in z along +x."""
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     swing = 0.035 * (0.6 + 0.5 * t) * np.sin(2 * np.pi * folds * s + 0.8 * np.sin(3 * t)) + 0.012 * np.sin(17 * s + 4 * t)
     points = np.stack([(s - 0.5) * width * (0.9 + 0.12 * t), -height * t, swing], axis=-1)
@@ -223,8 +220,7 @@ def noise(size, cells, seed):
 
 
 def ridges(size=1025):
-    """Returns heights of mountains by ridged noise (Musgrave, in Texturing and Modeling, 1994): roughest on the crests.
-    """
+    """Returns heights of mountains by ridged noise (Musgrave, Texturing and Modeling, 1994), roughest on the crests."""
     heights, weight, amplitude = np.zeros((size, size)), np.ones((size, size)), 1.0
     for octave in range(9):
         crest = (1 - np.abs(noise(size, 4 * 2**octave, 41 + octave))) ** 2
@@ -243,8 +239,7 @@ def sheet(heights, width, depth):
 
 
 def waves(size=65, width=5.2):
-    """Returns heights of water in a pool, `width` x `width`: twelve crossing waves, equally steep, from 1.1 to 0.4
-    long."""
+    """Returns heights of water, `width` x `width`: twelve crossing waves, equally steep, 1.1 to 0.4 long."""
     x, z = np.meshgrid(np.linspace(0, width, size), np.linspace(0, width, size))
     random, heights = np.random.default_rng(5), np.zeros((size, size))
     for length in np.geomspace(1.1, 0.4, 12):
@@ -254,8 +249,7 @@ def waves(size=65, width=5.2):
 
 
 def block(heights, width, depth, bottom):
-    """Returns a body with a sheet of heights as its top, upright sides and a flat bottom; its normals are smooth on
-    top."""
+    """Returns a body with upright sides, a flat bottom and a sheet of heights as its top, with smooth normals."""
     points, faces, _ = sheet(heights, width, depth)
     down, along = np.gradient(heights, depth / (heights.shape[0] - 1), width / (heights.shape[1] - 1))
     normals = np.stack([-along, np.ones_like(heights), -down], axis=-1).reshape(-1, 3)
@@ -288,8 +282,7 @@ def sweep(width=30, front=14, back=-4, radius=3, height=14):
 
 
 def landscape():
-    """Returns heights of a lake among mountains, 1025 x 1025: the mountains rise to the north (-z), the lake is south
-    of them."""
+    """Returns heights of a lake, 1025 x 1025, with mountains that rise to the north (-z) behind it."""
     heights = ridges()
     size = heights.shape[0]
     x, z = np.meshgrid(np.linspace(-1, 1, size), np.linspace(-1, 1, size))

@@ -94,8 +94,7 @@ def painting(size=256):
 
 
 def sky(size=64):
-    """Returns a clear evening sky seen from a mountain, by latitude and longitude, +z in the middle: linear, without
-    the sun."""
+    """Returns a clear evening sky by latitude and longitude, +z in the middle: linear, without the sun."""
     up = np.cos((np.arange(size) + 0.5) * np.pi / size)[:, None, None]
     turn = ((np.arange(2 * size) + 0.5) * np.pi / size)[None, :, None]
     haze = np.exp(-np.maximum(up, 0) * 5)

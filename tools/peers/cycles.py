@@ -15,7 +15,7 @@ DEPTH = 1024
 
 
 class Renderer:
-    """A scene in bpy, which has only one scene at a time."""
+    """A scene in bpy, whose state is global."""
 
     def __init__(self, device: str, path: Path, flat_lamp: bool = False):
         import bpy

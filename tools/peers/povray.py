@@ -47,8 +47,7 @@ def mesh_text(mesh: tuple, material: str) -> str:
 
 
 def lamp_text(quad: dict, radiance: list[float], side: int) -> str:
-    """Returns a parallelogram that emits to its front: points whose light falls off with cosine and squared distance.
-    """
+    """Returns a parallelogram that emits to its front: points whose light falls off with cosine and distance^2."""
     center, u, v = (np.array(quad[key], float) for key in ("center", "u", "v"))
     normal = np.cross(u, v)
     area = 4 * np.linalg.norm(normal)

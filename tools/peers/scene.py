@@ -67,8 +67,7 @@ def wall(center: np.ndarray, radius: float, room: np.ndarray) -> dict:
 
 
 def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
-    """Returns kind, values and material of each object, with quads for huge spheres, and for a huge lamp the disc of
-    its rim."""
+    """Returns kind, values and material of each object; huge spheres are quads, a huge lamp the disc of its rim."""
     found = [(*parts(entry["shape"]), entry["material"]) for entry in scene["object"]]
     huge = [values for kind, values, _ in found if kind == "sphere" and values["radius"] > WALL]
     if huge:

@@ -1,5 +1,4 @@
-"""The means of the 99-line program (tools/smallpt/smallpt.cpp) in regions of scenes/smallpt.toml, and Abbe's beside
-them.
+"""Means of the 99-line program (tools/smallpt/smallpt.cpp) in regions of scenes/smallpt.toml, and Abbe's.
 
     python tools/smallpt_reference.py             # say what each habit of the program changes, region by region
     python tools/smallpt_reference.py --compare   # render with Abbe and compare it with the program (20 CPU minutes)

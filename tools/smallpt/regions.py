@@ -96,8 +96,7 @@ def distances(sphere: Sphere, origin: np.ndarray, direction: np.ndarray) -> np.n
 
 
 def sees_glass(width: int, height: int) -> np.ndarray:
-    """Returns the pixels that see the glass ball directly, or are within about one and a half pixels of its silhouette.
-    """
+    """Returns the pixels that see the glass ball directly, or come within some one and a half pixels of its edge."""
     origin, direction = camera_rays(width, height)
     glass = spheres()["glass ball"]
     pixel_size = np.linalg.norm(direction[0, 0] - direction[0, 1]) * np.linalg.norm(glass.center - origin[0, 0])

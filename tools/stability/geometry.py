@@ -15,8 +15,7 @@ def ball_reflectance(cosine):
 
 
 def ball_rays(distance: float, count: int, precision):
-    """Returns origin and unit directions from `distance` along z, across 0.999 of a unit ball, rounded to a precision.
-    """
+    """Returns origin and unit directions from `distance` along z, across 0.999 of a unit ball, in a precision."""
     slope = 0.999 / distance * (2 * np.arange(count) + 1 - count) / count
     length = np.hypot(1, slope)
     zero = np.zeros(count)
@@ -31,8 +30,7 @@ def expanded(origin, directions):
 
 
 def by_cross_product(origin, directions):
-    """Returns distances to a unit ball by R^2 - |o x n|^2, without cancellation (Haines, Gunther, Akenine-Moller 2019).
-    """
+    """Returns distances to a unit ball by R^2 - |o x n|^2: no cancellation (Haines, Gunther, Akenine-Moller 2019)."""
     across = np.cross(np.broadcast_to(origin, directions.shape), directions).astype(origin.dtype)
     with np.errstate(invalid="ignore"):
         return -(directions @ origin) - np.sqrt(origin.dtype.type(1) - np.sum(across * across, -1))

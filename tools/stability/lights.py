@@ -116,8 +116,7 @@ def l1(quick: bool) -> Plot:
 
 
 def wall_share(h):
-    """Returns the form factor of a point of the floor and a square of side 2 standing on it at distance h (Howell,
-    B-5)."""
+    """Returns the form factor of a floor point and a square of side 2 standing at distance h (Howell, B-5)."""
     far = np.hypot(h, 2)
     return (np.arctan(1 / h) - h / far * np.arctan(1 / far)) / np.pi
 
@@ -183,8 +182,7 @@ def l3(quick: bool) -> Plot:
 
 
 def girard_f32(size: float) -> float:
-    """Returns the solid angle of a triangle of edge `size` at distance 1 by the excess of its angles (Girard), in f32.
-    """
+    """Returns the solid angle of a triangle of edge `size` at distance 1 by its spherical excess (Girard), in f32."""
     p = triangle_points(size).astype(np.float32)
     a, b, c = (v / np.sqrt(v @ v, dtype=np.float32) for v in p)
 

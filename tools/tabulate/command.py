@@ -72,8 +72,7 @@ def tables():
 
 
 def index(formula, coefficients, wavelength_nm):
-    """Returns n by those dispersion formulas of refractiveindex.info (Polyanskiy, "Dispersion formulas") that makers
-    use."""
+    """Returns n by the formulas of refractiveindex.info, "Dispersion formulas" (Polyanskiy), that makers use."""
     um = wavelength_nm * 1e-3
     constant, *rest = (float(text) for text in coefficients.split())
     terms = list(zip(rest[0::2], rest[1::2], strict=True))

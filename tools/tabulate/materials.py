@@ -6,7 +6,8 @@ from typing import NamedTuple
 class Material(NamedTuple):
     """A material: its key, its page in the database, its other names, and its source if the page does not cite one.
 
-    A second page may give the absorption that the first lacks."""
+    A second page may give the absorption that the first lacks.
+    """
 
     key: str
     page: str

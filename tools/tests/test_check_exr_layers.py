@@ -250,8 +250,7 @@ def test_a_good_file_of_several_parts_breaks_no_rule(found_in_parts, half):
 
 
 def lossy_parts(compression, half):
-    """Returns the good file of several parts, with lossy compression of its colors, and its depth in a part of its own.
-    """
+    """Returns the good file of several parts with lossy compression of its colors, and depth in a part of its own."""
     parts = several_parts(half)
     parts["depth"] = {**parts["N"][0], "name": "depth"}, {"Z": parts["image"][1].pop("Z")}
     for header, channels in parts.values():

@@ -1,5 +1,4 @@
-"""Patches have the colors of colour-science under every illuminant, seen directly and in colored mirrors; white is
-white.
+"""Patches look as colour-science says under every illuminant, directly and in colored mirrors; white is white.
 
 pytest tools/tests/test_colors.py
 """

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import render
 
-# A clay ball and a glass ball on a floor, under a small lamp and a dim sky.
+# A red ball and a glass ball on a floor, under a small lamp and a dim sky.
 SCENE = """
 camera = {{ position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }}
 film = {{ width = 128, height = 96, first = "visible"{film} }}

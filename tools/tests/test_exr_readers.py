@@ -1,5 +1,4 @@
-"""Other readers interpret the files correctly: OpenColorIO knows every color space by its name, ffmpeg reads every
-pixel.
+"""Other readers understand the files: OpenColorIO knows each color space by name, ffmpeg reads every pixel.
 
     python -m pip install imageio-ffmpeg                     # or a system's own ffmpeg; nothing else here needs it
     pytest tools/tests/test_exr_readers.py

@@ -4,8 +4,7 @@
 
 The spectrum is computed without the renderer. Rays from all over the beam, half a nanometer apart, are refracted by
 Snell's law with Schott's Sellmeier coefficients of N-SF11, reflected inside the prism any number of times, attenuated
-by
-Fresnel's equations at every face, and counted in the pixels where they land. Light is unpolarized at every face, as
+by Fresnel's equations at every face, and counted in the pixels where they land. Light is unpolarized at every face, as
 the scene asks for.
 """
 
@@ -90,8 +89,7 @@ class Bench:
         self.foot = self.foot + self.across * (ends[0] + ends[1]) / 2
 
     def landings(self, ways, nm, surfaces=8):
-        """Yields places on the screen, along the fan and across it, and the share that arrives, for each exit from the
-        prism."""
+        """Yields places on the screen, along the fan and across it, and what arrives there, for each exit."""
         for leaving, out, share in exits(self.lamp, ways, flint(nm), surfaces):
             toward = dot(out, self.facing)
             ahead = toward[:, 0] > 0.1
@@ -134,8 +132,7 @@ class Bench:
         )
 
     def expected(self, step=0.5, rings=32, surfaces=8):
-        """Returns XYZ of every pixel column, as the mean over its rows, for light that meets up to `surfaces` faces
-        inside."""
+        """Returns XYZ of every column, as the mean over its rows, for light that meets up to `surfaces` faces."""
         # Rays that stand for equal solid angles of the beam: rings of equal area, rotated by the golden angle.
         count = rings * rings
         radius = np.sqrt((np.arange(count) + 0.5) / count) * math.tan(self.cone())

@@ -52,7 +52,7 @@ def _is_truth(value: Any) -> bool:
 
 
 def truth(name: str, value: Any) -> bool:
-    """Returns `value` as a truth value. It may be Python's or numpy's."""
+    """Returns `value` as a truth value, of Python or numpy."""
     if not _is_truth(value):
         raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) says all arguments")
     return bool(value)

@@ -28,7 +28,8 @@ class ExrImage(Layers):
         The array is float32, or uint32 if the file has that; height x width, and x channels if there are several. Alpha
         is not part of a color: it is `"A"`, or `"NAME.A"`. Mattes have four channels.
 
-        Raises `KeyError` with the nearest name if there is none."""
+        Raises `KeyError` with the nearest name if there is none.
+        """
         return np.asarray(self._core.plane(_arguments.text("the name of a layer", name)))
 
     @property
@@ -44,7 +45,7 @@ class ExrImage(Layers):
 
 @dataclass(frozen=True)
 class Difference:
-    """The difference between two images. Pixels with a value that is not finite count only in `torn`."""
+    """The difference between two images. Pixels with a value that is not finite are left out, except from `torn`."""
 
     agrees: bool
     """Whether all values are equal, those of other layers as well; or whether `relative_mse` is within the tolerance;
@@ -87,7 +88,8 @@ Picture = Union[Path, ExrImage, Image]
 def read_exr(path: Path) -> ExrImage:
     """Reads an OpenEXR file written by any program.
 
-    Raises `FileNotFoundError` if there is no such file, and `RenderError` if it is not a complete image."""
+    Raises `FileNotFoundError` if there is no such file, and `RenderError` if it is not a complete image.
+    """
     return ExrImage(_abbe.Exr.read(_arguments.path("path", path)))
 
 
@@ -108,7 +110,8 @@ def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float |
     judges by `relative_mse` instead. `layer` compares a layer such as `"albedo"` instead of the image itself. If one
     image is a crop of the other, the pixels that both have are compared.
 
-    Raises `OptionsError` if they cannot be compared, for example because their sizes differ."""
+    Raises `OptionsError` if they cannot be compared, for example because their sizes differ.
+    """
     name = None if layer is None else _arguments.text("layer", layer)
     most = None if tolerance is None else _arguments.number("tolerance", tolerance)
     found = _abbe.diff(_file(a), _file(b), name, most)

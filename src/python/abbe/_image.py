@@ -27,7 +27,8 @@ class Spectrum(NamedTuple):
 class Image(Layers):
     """A rendered image, and what the render reports about it.
 
-    Its arrays are read-only: they are the renderer's own memory, not copies. `image.rgb.copy()` can be written to."""
+    Its arrays are read-only: they are the renderer's own memory, not copies. `image.rgb.copy()` can be written to.
+    """
 
     _core: _abbe.Image
 
@@ -41,7 +42,8 @@ class Image(Layers):
         `"Z"`, the nearest depth in scene units, 1e10 where nothing is hit, are height x width. Of the layers asked for,
         colors and vectors have 3 channels, `"UV"` has 2, `"samples"` 1 and mattes 4. `"albedo.R"` is one channel.
 
-        Raises `KeyError` if the image has no such layer, and says what to do."""
+        Raises `KeyError` if the image has no such layer, and says what to do.
+        """
         return np.asarray(self._core.plane(_arguments.text("the name of a layer", name)))
 
     @cached_property
@@ -49,7 +51,8 @@ class Image(Layers):
         """What the render reports, with the keys of the command's `--json`.
 
         Among them are `samples` (camera samples of all pixels together), `seconds`, `error` (the estimated error of the
-        image if an error or a time was asked for, else None), `plan` (a dict) and `warnings` (a list)."""
+        image if an error or a time was asked for, else None), `plan` (a dict) and `warnings` (a list).
+        """
         return json.loads(self._core.account)
 
     @cached_property
@@ -69,21 +72,22 @@ class Image(Layers):
 
     @property
     def stokes_spectra(self) -> npt.NDArray[np.float32] | None:
-        """S1, S2 and S3 of all pixels in the bands of `spectra`, height x width x 3 x bands, per nm; S0 is its
-        radiance.
+        """S1, S2 and S3 of all pixels in the bands of `spectra`, height x width x 3 x bands, per nm.
 
-        None unless both spectra and Stokes vectors were asked for: spectra by `spectral=True`, Stokes vectors by
-        `film.stokes = true` in the scene or by layers such as `"S1"`. S1 is light polarized along the image's rows
-        minus light polarized along its columns. S2 is light polarized along the diagonal that rises to the right minus
-        light polarized across it. S3 is right-circular minus left-circular light, as seen looking toward the scene."""
+        S0 is the radiance of `spectra`. None unless both spectra and Stokes vectors were asked for: spectra by
+        `spectral=True`, Stokes vectors by `film.stokes = true` in the scene or by layers such as `"S1"`. S1 is light
+        polarized along the image's rows minus light polarized along its columns. S2 is light polarized along the
+        diagonal that rises to the right minus light polarized across it. S3 is right-circular minus left-circular
+        light, as seen looking toward the scene.
+        """
         stokes = self._core.stokes_spectra()
         return None if stokes is None else np.asarray(stokes)
 
     def spectrum(self, x: int, y: int) -> Spectrum:
-        """Returns the spectrum of the pixel in column `x`, row `y`, counted from 0 at the top left of the rendered
-        part.
+        """Returns the spectrum of the pixel in column `x`, row `y`, from 0 at the top left of the rendered part.
 
-        Raises `ValueError` if spectra were not asked for, and `IndexError` if there is no such pixel."""
+        Raises `ValueError` if spectra were not asked for, and `IndexError` if there is no such pixel.
+        """
         if self._spectra is None:
             raise ValueError("the image has no spectra: ask for them with spectral=True")
         x, y = _arguments.whole("x", x), _arguments.whole("y", y)
@@ -96,7 +100,8 @@ class Image(Layers):
 
         Warns if the scene asks for 16 bits and values were too large for them and became 65504. Creates the file's
         folder if it is missing. Raises `OSError` if the file cannot be written; an older file of that name is then left
-        untouched."""
+        untouched.
+        """
         if too_large := self._core.write_exr(_arguments.path("path", path)):
             warnings.warn(f"{too_large} values were too large for 16 bits and became 65504", stacklevel=2)
 

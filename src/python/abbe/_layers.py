@@ -17,7 +17,8 @@ BEAUTY = "beauty"
 class Layers:
     """The layers of an image by their names, as arrays: rows from the top, columns, and channels if there are several.
 
-    Where numpy expects an array, the image stands for its `rgb`."""
+    Where numpy expects an array, the image stands for its `rgb`.
+    """
 
     _core: Any
 
@@ -27,8 +28,7 @@ class Layers:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """The names of all layers; `"beauty"` is the image itself, stored in files as red, green and blue without a
-        name."""
+        """The names of all layers; `"beauty"` is the image itself: in files, red, green and blue without a name."""
         return tuple(self._core.layers)
 
     @property
@@ -84,5 +84,6 @@ class Layers:
     def rgb(self) -> npt.NDArray[np.float32]:
         """Linear red, green and blue, float32, height x width x 3: the radiance in the film's color space.
 
-        Raises `KeyError` if a file has no `"beauty"`, only named layers."""
+        Raises `KeyError` if a file has no `"beauty"`, only named layers.
+        """
         return self[BEAUTY]

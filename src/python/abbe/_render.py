@@ -74,13 +74,14 @@ class Scene:
     """A scene that was read and checked, to be rendered several times, or only checked.
 
     `source` is the path of a scene file, or a dict with the keys of one. A dict may hold numbers, texts, dicts, lists,
-    tuples, paths, numbers and arrays of numpy, and entries of the catalog, which stand for their names. Relative paths
-    in it are looked up in `folder`. An image has to be a file, not an array. `set` replaces values of the scene by the
+    tuples, paths, numbers and arrays of numpy, and entries of the catalog, which stand for their names. Files that it
+    names are looked up in `folder`. An image has to be a file, not an array. `set` replaces values of the scene by the
     paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`. Entries of lists are found by
     their name or by their number, counted from 1. A single word sets a variable of the scene: `{"frame": 7}` does what
     `--frame 7` does.
 
-    Raises `SceneError` with all its mistakes, and `FileNotFoundError` if there is no such file."""
+    Raises `SceneError` with all its mistakes, and `FileNotFoundError` if there is no such file.
+    """
 
     def __init__(
         self, source: Path | Mapping[str, Any], *, set: Mapping[str, Any] | None = None, folder: Path = ""
@@ -140,7 +141,8 @@ def plan(
 ) -> Plan:
     """Plans a render without rendering: how it would be done, why, and how long it would take.
 
-    The arguments are those of `render` that describe the image. The errors are the same too."""
+    The arguments are those of `render` that describe the image. The errors are the same too.
+    """
     account, on = _abbe.plan(_scene(scene, set, folder), locals())
     found = json.loads(account)
     seconds = found["processor_seconds"] and found["processor_seconds"] / on
@@ -180,16 +182,14 @@ def render(
     - `overscan`: pixels around the format: one number, or those to the left, above, to the right and below.
     - `crop`: the part of the image to render: first column, first row, width and height in pixels.
     - `layers`: names of layers to make beside the image, or `"all"`; `LAYERS` lists them. The layers of `film.stokes`
-    are
-      kept beside them, and `"all"` does not include polarization.
+      are kept beside them, and `"all"` does not include polarization.
     - `spectral`: whether to make spectra, for `Image.spectrum`.
     - `threads`: processor threads; all of them by default.
     - `stamp`: whether the file says when it was made and how long that took.
     - `progress`: is called twice a second, and at the end, with a `Progress`. An exception that it raises stops the
-    render.
+      render.
     - `checkpoint`: a file that keeps the work done so far, written `every` so many seconds, when the render is stopped,
-    and
-      at the end.
+      and at the end.
     - `resume`: continues from the checkpoint, if there is one, to the same image or to more samples.
 
     Ctrl-C stops a render within a second, or once its checkpoint is written, by `KeyboardInterrupt`. Other processes
@@ -199,7 +199,8 @@ def render(
     `Image.stats["warnings"]` lists, in sentences, what the author should know about the scene and the image.
 
     Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
-    `RenderError` if reading or writing a file fails."""
+    `RenderError` if reading or writing a file fails.
+    """
     asked = locals()
     tell = None
     if progress is not None:

@@ -121,8 +121,7 @@ class Illuminant(_Entry):
         self._core = _abbe.Tabulated("illuminant", _arguments.text("the name of an illuminant", name))
 
     def power(self, nm: npt.ArrayLike) -> Any:
-        """Returns its relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond their
-        ends."""
+        """Returns relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond them."""
         return _at(nm, self._core.at)
 
 
@@ -135,8 +134,7 @@ class Reflectance(_Entry):
         self._core = _abbe.Tabulated("reflectance", _arguments.text("the name of a reflectance", name))
 
     def reflectance(self, nm: npt.ArrayLike) -> Any:
-        """Returns the share of light that it reflects, 0 to 1; linear between tabulated wavelengths, constant beyond
-        their ends."""
+        """Returns the share of light that it reflects, 0 to 1; linear between tabulated wavelengths, flat beyond."""
         return _at(nm, self._core.at)
 
 
