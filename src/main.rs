@@ -40,11 +40,11 @@ fn listed(lines: Result<Vec<String>>) -> Result<ExitCode> {
     messages::answer_lines(&lines?).map(|()| ExitCode::SUCCESS)
 }
 
-/// Does one frame after another, until one is stopped.
+/// Checks, plans or renders one frame after another, until one is stopped.
 fn run(jobs: &Jobs) -> Result<ExitCode> {
     jobs.keep().catch_signals()?;
     if let Some(threads) = jobs.threads() {
-        // Plans without a render, and files, are made by those threads that belong to no render.
+        // Planning without a render and writing files use the global threads, as each render has threads of its own.
         rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
     }
     let (mut read, mut warned, count) = (None, HashSet::new(), jobs.count());
@@ -73,8 +73,8 @@ fn run(jobs: &Jobs) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses to render the first of several frames if the one with the least or the greatest number is wrong: what a
-/// value may be lies between two others, and so most mistakes of a frame are found before any is rendered.
+/// Refuses to render any of several frames if the one with the lowest or the highest number has a mistake. As the
+/// values that are allowed mostly form a range, this finds most mistakes before any frame is rendered.
 fn check_ends(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
     if !matches!(first.output, Output::Image { .. }) {
         return Ok(());
@@ -82,7 +82,7 @@ fn check_ends(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
     for job in jobs.ends() {
         let job = job?;
         if let (Some(frame), Err(error)) = (job.frame.filter(|_| job.frame != first.frame), checked(&job, source)) {
-            // What is wrong with all frames is told of the first.
+            // A mistake that all frames share is reported for the first frame.
             checked(first, source)?;
             messages::say(&format!("frame {frame} is wrong, so none is rendered"));
             return Err(error);
@@ -95,11 +95,11 @@ fn checked(job: &Job, source: &Source) -> Result<()> {
     job.options.apply(&mut source.compile_with(&job.set)?)
 }
 
-/// Does a frame. What was warned of in another one is not said again.
+/// Checks, plans or renders one frame. Prints each warning only once for all frames.
 fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<ExitCode> {
     let began = Instant::now();
     let mut scene = progress::during("reading the scene", || source.compile_with(&job.set))?;
-    // A plan is of the spectra as well.
+    // Spectra are only written beside an EXR. A plan that is followed covers them as well, so they stay.
     if let (Output::Image { exr: None, .. }, None) = (&job.output, &job.options.plan) {
         scene.format.spectral = None;
     }
@@ -116,7 +116,7 @@ fn do_one(job: &Job, source: &Source, warned: &mut HashSet<String>) -> Result<Ex
     }
 }
 
-/// Says how the scene is rendered, and writes it down if that is asked for.
+/// Prints how the scene is rendered, and writes the plan to `file` if one is given.
 fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
     let files = Vec::from_iter(file);
     check_outputs(scene, &files)?;
@@ -131,7 +131,7 @@ fn answer_plan(scene: &Scene, file: Option<&Path>) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the image to its file, or to standard output; answers how many values were too bright for it.
+/// Writes the image to its file, or to standard output. Returns the number of values that were too bright for it.
 fn write(image: &Image, exr: &Path) -> Result<u64> {
     if !is_standard(exr) {
         return image.write_exr(exr);
@@ -141,7 +141,7 @@ fn write(image: &Image, exr: &Path) -> Result<u64> {
     Ok(clamped)
 }
 
-/// Renders a scene, as far as an earlier run has not, and writes its files.
+/// Renders what an earlier run has not finished of a scene, and writes its files.
 fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instant) -> Result<ExitCode> {
     let outputs = Outputs::new(job, scene, [exr, png])?;
     let (images, files) = (outputs.images(), outputs.files());
@@ -177,11 +177,11 @@ fn image(job: &Job, scene: &Scene, [exr, png]: [Option<&Path>; 2], began: Instan
     written.end()
 }
 
-/// What a render writes.
+/// The outputs of a render.
 struct Outputs<'j> {
-    /// The image, to a file or to standard output.
+    /// The EXR image: a file, or standard output.
     exr: Option<&'j Path>,
-    /// A part of the image, in its place.
+    /// The file for a part of the image, which is written instead of `exr`.
     part: Option<PathBuf>,
     spectral: Option<PathBuf>,
     png: Option<&'j Path>,
@@ -205,18 +205,18 @@ impl<'j> Outputs<'j> {
         self.exr.filter(|exr| !is_standard(exr))
     }
 
-    /// The files of the image, the main one first.
+    /// Returns the files of the image, the main one first.
     fn images(&self) -> Vec<&Path> {
         let images = [self.part.as_deref(), self.exr_file(), self.spectral.as_deref(), self.png];
         images.into_iter().flatten().collect()
     }
 
-    /// All files.
+    /// Returns all files.
     fn files(&self) -> Vec<&Path> {
         self.images().into_iter().chain(self.report).collect()
     }
 
-    /// Writes all of a finished render, and says what it noticed.
+    /// Writes all outputs of a finished render, and prints its warnings and its report.
     fn write(&self, rendering: &Rendering, exposure: f64, took: Duration) -> Written<'_> {
         let mut written = Written::default();
         written.file(self.part.as_deref(), |part| rendering.write_part(part));
@@ -241,7 +241,8 @@ impl<'j> Outputs<'j> {
     }
 }
 
-/// Files of an image that are written: one that cannot be keeps no other from it.
+/// The files of an image that were written, and the errors of those that were not. One failure does not keep the other
+/// files from being written.
 #[derive(Default)]
 struct Written<'f> {
     files: Vec<&'f Path>,
@@ -261,7 +262,7 @@ impl<'f> Written<'f> {
         }
     }
 
-    /// Says which are there, and what went wrong.
+    /// Prints the names of the written files, and all errors but the last one, which it returns.
     fn end(mut self) -> Result<ExitCode> {
         self.files.into_iter().for_each(messages::print_written);
         let last = self.failed.pop();

@@ -378,7 +378,7 @@ fn samples_that_cannot_become_those_that_are_asked_for_are_refused() {
         let Error::Arguments { message, help: Some(help) } = refused else { panic!("{refused}") };
         assert!(message.contains(why), "{samples:?}: {message}");
         // With the samples that are named it goes on.
-        let named = format!("ask for {} samples per pixel, or delete it to begin anew", samples[0]);
+        let named = format!("ask for {} samples per pixel, or delete it to start over", samples[0]);
         assert!(help == named || why == "another plan", "{samples:?}: {help}");
         assert_eq!(raised(text, &options, [samples[0]; 2]).expect("it goes on").2, Resumed::Finished);
     }

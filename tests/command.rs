@@ -167,8 +167,8 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     let alone = |word: &str, help: &str| assert_refuses(&[word], 2, &refusal(&format!("command `{word}`"), help));
     alone("help", "did you mean render --help?");
     alone("catalogue", "did you mean render catalog?");
-    let before = "error: the command info stands before all other arguments\n\
-                  help: write render info, and what belongs to it after that; render info --help tells it\n";
+    let before = "error: the command info comes before all other arguments\n\
+                  help: write render info, and its arguments after that; render info --help lists them\n";
     assert_refuses(&["--threads", "1", "info", "a.exr"], 2, before);
     for mark in ["####", "@@@", "$F4", "$frame", "{frame}", "%s"] {
         let name = format!("f.{mark}.exr");

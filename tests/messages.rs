@@ -245,13 +245,13 @@ fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
             "cup.obj",
             "v 0 0 0\nf 1 1 1\n",
             "a mesh",
-            "in a scene, which is a TOML file, it stands as shape.mesh = { file = \"cup.obj\" }; README.md begins with one",
+            "in a scene, which is a TOML file, write it as shape.mesh = { file = \"cup.obj\" }; README.md begins with one",
         ),
         (
             "wood.png",
             "\u{1}PNG",
             "an image",
-            "in a scene, which is a TOML file, it stands as { image = \"wood.png\" } in place of a color",
+            "in a scene, which is a TOML file, write it as { image = \"wood.png\" } in place of a color",
         ),
         ("old.exr", "v/1\u{1}", "an image", "`render view old.exr` shows it; a scene is a TOML file"),
         (

@@ -127,7 +127,7 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
     // An image is made and kept all the same.
     for protocol in ["--json", "--progress openjd"] {
         let (code, _, told) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
-        let reason = "error: cannot write all there is to say to stdout: the disk is full\n";
+        let reason = "error: cannot write all output to stdout: the disk is full\n";
         assert!(code == Some(1) && told.ends_with(reason), "{protocol}: {told}");
         assert!(is_image(&folder.path_of("ball.exr")), "{protocol}");
         fs::remove_file(folder.path_of("ball.exr")).expect("it is there");

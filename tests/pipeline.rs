@@ -338,7 +338,7 @@ fn frames_are_rendered_one_after_another() {
     let fourth = bytes("t.4.exr");
     fs::remove_file(folder.path_of("t.4.exr")).expect("it was written");
     let done = frames(&[&several[..], &["--resume"]].concat());
-    assert!(done.code == Some(0) && done.stderr.matches("nothing is left to be done").count() == 3, "{}", done.stderr);
+    assert!(done.code == Some(0) && done.stderr.matches("nothing is left to do").count() == 3, "{}", done.stderr);
     assert!(bytes("t.4.exr") == fourth);
     let piped = fed(&folder, &["-", "--frame", "3-4", "--exr", "p.%d.exr", "--quiet"], &bytes("turn.toml"));
     assert!(piped.status.code() == Some(0) && bytes("p.3.exr") == bytes("t.3.exr"), "{}", text(&piped.stderr));

@@ -330,8 +330,8 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
     assert!(mesh.attributes.coordinates.is_empty() && mesh.attributes.bare == 0 && mesh.vertices.count() == 4);
     for (faces, message) in [
         ("3 0 1 2 6 0 0 1 0 1 1e39 0\n", "texture coordinates at vertex 2 (counted from 0) are not finite"),
-        ("3 0 1 4 6 0 0 1 0 1 1 0\n", "a face asks for vertex 4, but the 4 vertices count from 0"),
-        ("3 0 1 -1 6 0 0 1 0 1 1 0\n", "a face asks for a negative vertex, but the 4 vertices count from 0"),
+        ("3 0 1 4 6 0 0 1 0 1 1 0\n", "a face refers to vertex 4, but the 4 vertices are numbered from 0"),
+        ("3 0 1 -1 6 0 0 1 0 1 1 0\n", "a face refers to a negative vertex, but the 4 vertices are numbered from 0"),
     ] {
         assert_eq!(read(faces, false), Err(message.into()));
     }

@@ -466,8 +466,11 @@ fn a_time_for_less_samples_than_it_may_end_after_says_so() {
         rendering.plan().because.iter().find(|line| line.starts_with("takes all")).cloned()
     };
     let in_time = Options { time: Some(Duration::from_secs(3600)), samples: Some(4), ..Options::default() };
-    assert_eq!(told(in_time).as_deref(), Some("takes all 4 samples: a time ends no render before 8"));
-    assert_eq!(told(asks(0.1, 40)).as_deref(), Some("takes all 40 samples: fewer than 64 do not tell the error"));
+    assert_eq!(told(in_time).as_deref(), Some("takes all 4 samples: a time limit never ends a render before 8"));
+    assert_eq!(
+        told(asks(0.1, 40)).as_deref(),
+        Some("takes all 40 samples: the error cannot be estimated from fewer than 64")
+    );
 }
 
 #[test]

@@ -32,14 +32,14 @@ pub struct Query {
 
 /// A kind of entry.
 struct Kind {
-    /// What it is called: the title of the column of names.
+    /// The name of the kind, and the title of the column of names.
     name: &'static str,
-    /// What all that it has is called too.
+    /// Other words for all entries of the kind.
     all: &'static [&'static str],
-    /// The titles of the others.
+    /// The titles of the other columns.
     titles: &'static [&'static str],
     lines: fn(&[String]) -> Vec<Vec<String>>,
-    /// The names of all that it has.
+    /// The names of all entries.
     names: fn() -> Vec<&'static str>,
 }
 
@@ -75,7 +75,7 @@ const KINDS: [Kind; 4] = [
 ];
 
 impl Kind {
-    /// The lines of what is found, below the titles of their columns if these are asked for.
+    /// Returns the lines of the entries that match, below the titles of their columns if requested.
     fn found(&self, words: &[String], titled: bool) -> Vec<String> {
         let mut lines = (self.lines)(words);
         if titled && !lines.is_empty() {
@@ -85,10 +85,10 @@ impl Kind {
     }
 }
 
-/// The lines that answer a query, below the titles of their columns if these are asked for.
+/// Returns the lines that answer a query, below the titles of their columns if requested.
 ///
 /// # Errors
-/// Nothing is found; the help holds the nearest names.
+/// If nothing is found. The help contains the nearest names.
 pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
     let mut words: Vec<_> = query.words.iter().map(|word| word.to_lowercase()).collect();
     let one =
@@ -111,7 +111,7 @@ pub fn lines(query: &Query, titled: bool) -> Result<Vec<String>> {
     Error::refuse(message, help)
 }
 
-/// The three names that differ least from what is wanted, of those that share half their letters with it.
+/// Returns up to three nearest names, of those whose edit distance from `wanted` is at most half the shorter length.
 fn nearest(wanted: &str, mut names: Vec<&str>) -> String {
     let changes = |name: &str| strsim::damerau_levenshtein(wanted, &name.to_lowercase());
     names.retain(|name| 2 * changes(name) <= name.chars().count().min(wanted.chars().count()));
@@ -120,13 +120,13 @@ fn nearest(wanted: &str, mut names: Vec<&str>) -> String {
     names[..names.len().min(3)].join(", ")
 }
 
-/// Whether every word is in one of the names, or is said of the entry.
+/// Returns whether every word is part of a name, or equal to `said`, the family of the entry.
 fn matches(words: &[String], names: &[&str], said: &str) -> bool {
     let names: Vec<_> = names.iter().map(|name| name.to_lowercase()).collect();
     words.iter().all(|word| word == said || names.iter().any(|name| name.contains(word)))
 }
 
-/// What opticians call the glass of a maker.
+/// Returns the optical family of a maker's glass, flint or crown, or an empty text for any other glass.
 fn family(glass: &Glass) -> &'static str {
     let maker = glass.key.split('/').next().unwrap_or_default();
     match glass.v_d().filter(|_| GLASS_MAKERS.contains(&maker)) {

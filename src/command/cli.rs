@@ -203,7 +203,7 @@ fn crop(text: &str) -> std::result::Result<Window, String> {
     window.ok_or_else(|| "a crop is four whole numbers of pixels, such as 100,50,320,180".into())
 }
 
-/// Layers that are asked for.
+/// The layers in the argument of `--layers`.
 #[derive(Clone)]
 struct LayerList(Vec<Layer>);
 
@@ -214,38 +214,38 @@ fn layers(text: &str) -> std::result::Result<LayerList, String> {
     Layer::of_names(text.split(',').map(str::trim)).map(LayerList)
 }
 
-/// What is wanted of a scene, frame by frame.
+/// The jobs that the arguments describe: one, or one per frame.
 pub struct Jobs(Box<Arguments>);
 
 impl Jobs {
-    /// Number of renders.
+    /// Returns the number of jobs.
     pub fn count(&self) -> u64 {
         self.0.frame.as_ref().map_or(1, Frames::count)
     }
 
-    /// Processor threads that are asked for.
+    /// Returns the requested number of processor threads.
     pub fn threads(&self) -> Option<usize> {
         self.0.threads.map(usize::from)
     }
 
-    /// What is kept of them.
+    /// Returns the flags for checkpoints, snapshots and parts.
     pub fn keep(&self) -> &keep::Flags {
         &self.0.keep
     }
 
-    /// Each by itself.
+    /// Returns one job after another.
     pub fn each(&self) -> impl Iterator<Item = Result<Job>> {
         let numbers = self.0.frame.iter().flat_map(Frames::numbers).map(Some);
         let without = self.0.frame.is_none().then_some(None);
         numbers.chain(without).map(|frame| job((*self.0).clone(), frame))
     }
 
-    /// The frames with the least and the greatest number.
+    /// Returns the jobs of the frames with the lowest and the highest number.
     pub fn ends(&self) -> impl Iterator<Item = Result<Job>> {
         self.0.frame.iter().flat_map(Frames::ends).map(|frame| job((*self.0).clone(), Some(frame)))
     }
 
-    /// Refuses what several frames cannot have.
+    /// Refuses arguments that do not work with several frames.
     fn check(&self) -> Result<()> {
         let Arguments { exr, png, report, plan_file, progress, scene, .. } = &*self.0;
         if self.count() == 1 {
@@ -254,40 +254,40 @@ impl Jobs {
         if progress.is_some() {
             return Error::refuse("--progress is of one frame", "give the farm a task for each: --frame 1");
         }
-        // Without a scene of its own, --exr has the scene.
+        // Without a scene argument, the argument of --exr is the scene.
         let exr = exr.iter().flatten().filter(|_| scene.is_some());
         let files = exr.chain(png).chain(report).chain(plan_file);
         files.into_iter().try_for_each(|path| check_numbered(path))
     }
 }
 
-/// A scene and what is wanted of it.
+/// A scene, and what to do with it.
 pub struct Job {
-    /// The frame, if it has a number.
+    /// The number of the frame, if one is given.
     pub frame: Option<u32>,
     pub scene: PathBuf,
-    /// Values in place of the scene's.
+    /// Values that replace those of the scene, as `KEY=VALUE`.
     pub set: Vec<String>,
     pub output: Output,
     pub exposure: f64,
     pub options: Options,
     pub keep: keep::Flags,
-    /// Where all that is known of the render is written.
+    /// The file for the report on the render.
     pub report: Option<PathBuf>,
 }
 
-/// What is wanted of the scene.
+/// What to make of a scene.
 pub enum Output {
     Image {
         exr: Option<PathBuf>,
         png: Option<PathBuf>,
     },
-    /// The plan, and the file that it is written to, if one is.
+    /// The plan, and the file to write it to, if any.
     Plan(Option<PathBuf>),
     Check,
 }
 
-/// What is asked for.
+/// What the command line requests.
 pub enum Request {
     Render(Jobs),
     Catalog(catalog::Query),
@@ -299,12 +299,12 @@ pub enum Request {
     Answer(String),
 }
 
-/// Whether a farm listens, of words that may be wrong otherwise.
+/// Returns whether the arguments, which may contain mistakes, include `--progress` for a farm.
 fn asks_for_farm(words: &[OsString]) -> bool {
     words.iter().filter_map(|word| word.to_str()).any(|word| word.split('=').next() == Some("--progress"))
 }
 
-/// Reads the command line; prints clap's own errors by itself and exits.
+/// Parses the command line. Prints clap's own errors and exits, unless a program or a farm reads the messages.
 pub fn parse() -> Result<Request> {
     let words: Vec<OsString> = std::env::args_os().collect();
     let below = BELOW.iter().find(|(name, ..)| words.get(1).is_some_and(|first| first == name));
@@ -329,7 +329,7 @@ pub fn parse() -> Result<Request> {
     })
 }
 
-/// A command below this one: its name, its arguments, and what is asked for by words of which the first is the name.
+/// A subcommand: its name, its arguments, and a parser for its words, the first of which is its name.
 type Below = (&'static str, fn() -> Command, fn(&[OsString]) -> Result<Request>);
 
 const BELOW: [Below; 7] = [
@@ -349,7 +349,7 @@ const BELOW: [Below; 7] = [
     ("man", manual::Manual::command, |words| read(words, |manual::Manual {}| Request::Answer(manual::page(whole())))),
 ];
 
-/// The command with all commands below it.
+/// Returns the command with all its subcommands.
 fn whole() -> Command {
     let below = BELOW.map(|(name, arguments, _)| arguments().name(name).bin_name(format!("render {name}")));
     Arguments::command().subcommands(below).disable_help_subcommand(true)
@@ -363,7 +363,7 @@ fn read<A: Parser>(words: &[OsString], request: fn(A) -> Request) -> Result<Requ
     A::try_parse_from(words).map_or_else(refused, |arguments| Ok(request(arguments)))
 }
 
-/// What clap has to say: help and version are an answer like any other, a mistake ends the command.
+/// Converts what clap reports: help and the version become answers, mistakes become errors or end the process.
 fn told(said: clap::Error) -> Result<Request> {
     if let (ErrorKind::ValueValidation, Some(why)) = (said.kind(), said.source()) {
         // Such as `--layers <NAMES>`.
@@ -393,7 +393,7 @@ fn told(said: clap::Error) -> Result<Request> {
     Ok(Request::Answer(text))
 }
 
-/// The range that clap says a number is not in, in words.
+/// Finds the allowed range of a number in clap's message, and returns it in words.
 fn within(said: &str) -> Option<String> {
     let (_, range) = said.split_once(" is not in ")?;
     let (first, last) = range.split_once("..=")?;
@@ -456,9 +456,9 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     Ok(Job { frame, scene, set, output, exposure, options, keep, report })
 }
 
-/// `--exr` takes an image to write, or nothing; right before the scene it belongs to the scene.
+/// Tells the scene from the image. `--exr` may take an image, but right before the only path it takes the scene.
 ///
-/// `idle` is the flag that asks for no image, if one does.
+/// `idle` is the flag that renders nothing, if one is given.
 fn scene_and_image(
     scene: Option<PathBuf>,
     exr: Option<Option<PathBuf>>,
@@ -483,7 +483,7 @@ fn scene_and_image(
     }
 }
 
-/// The scene's name with the ending .exr, after the number of its frame, in the current folder.
+/// Returns the name of the scene, followed by the number of its frame and `.exr`, in the current folder.
 fn beside(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
     if is_standard(scene) {
         let message = "a scene from standard input has no name for its image";

@@ -55,7 +55,7 @@ pub struct Query {
     png: Option<PathBuf>,
 }
 
-/// Compares, and returns the exit code.
+/// Compares the images, and returns the exit code.
 pub fn run(query: &Query) -> ExitCode {
     match compared(query) {
         Ok(true) => ExitCode::SUCCESS,
@@ -107,7 +107,7 @@ fn compared(query: &Query) -> Result<bool> {
     Ok(agrees)
 }
 
-/// The answer for equal images.
+/// Returns what to add to the answer if the images are equal.
 fn of_equal(found: &Difference) -> String {
     match &*found.layers_apart {
         _ if !found.is_equal => String::new(),
@@ -120,7 +120,7 @@ fn of_equal(found: &Difference) -> String {
     }
 }
 
-/// The answer for images that differ; `gathers` says that an image has a photon map.
+/// Returns the rows on how the images differ. `gathers` tells whether a photon map was used for one of them.
 fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     let mut put = |key: &str, text: String| rows.push(vec![key.to_owned(), text]);
@@ -139,7 +139,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
     if let Some(alpha) = &found.alpha {
         let [largest, error] = [alpha.largest, alpha.relative_mse].map(number);
         let known = if alpha.contradicts() {
-            format!("{} pixels are empty in one and full in the other, more than chance makes", alpha.opposite)
+            format!("{} pixels are empty in one and full in the other, more than chance explains", alpha.opposite)
         } else {
             "of its noise nothing is known".into()
         };
@@ -155,7 +155,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
         if noise.beyond > 0 && gathers {
             put(
                 "photon map",
-                "its noise is told in part: a few values may be beyond by chance, fewer with more samples".into(),
+                "its noise is known in part: a few values may differ more by chance, fewer with more samples".into(),
             );
         }
     }
@@ -176,7 +176,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
     rows
 }
 
-/// A pixel with its values in both images.
+/// Describes a pixel with its values in both images.
 fn of_pixel(pixel: &WorstPixel) -> String {
     let values = |values: &[f64]| values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" ");
     let ([x, y], [a, b]) = (pixel.at, pixel.values.each_ref().map(|of| values(of)));
@@ -187,5 +187,5 @@ fn of_noise(found: &Difference, noise: &Noise) -> String {
     let [pixel, channel] = noise.at;
     let ([x, y], channel) = (found.bounds.place(pixel), &found.channels[channel]);
     let beyond = if noise.beyond > 0 { format!("; {} beyond it", noise.beyond) } else { String::new() };
-    format!("worst {:.1} in {channel} of ({x}, {y}), chance makes up to {:.1}{beyond}", noise.worst, noise.threshold)
+    format!("worst {:.1} in {channel} of ({x}, {y}), chance explains up to {:.1}{beyond}", noise.worst, noise.threshold)
 }

@@ -1,4 +1,4 @@
-//! What is said with `--json`: an object a line. `tools/events.schema.json` tells all of their keys.
+//! The events that `--json` prints, one object per line. `tools/events.schema.json` describes all of their keys.
 
 use std::path::Path;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use super::stdout::tell;
 #[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event<'e> {
-    /// The scene is right.
+    /// The scene has no mistakes.
     Checked {
         #[serde(serialize_with = "shown")]
         scene: &'e Path,
@@ -23,26 +23,26 @@ pub enum Event<'e> {
     },
     /// A frame begins, the `number`th of `count`.
     Frame { frame: u32, number: u64, count: u64 },
-    /// How it will be rendered.
+    /// How the scene will be rendered.
     Plan(PlanAccount<'e>),
-    /// How far it is, in camera samples; a photon counts as the samples that take as long.
+    /// The work done so far, in camera samples. A photon counts as the number of samples that take as long.
     Progress { done: u64, total: u64, seconds: f64, seconds_left: Option<f64> },
-    /// What rendering noticed.
+    /// The report on a finished render.
     Report(Box<RenderAccount<'e>>),
     /// A file that was written.
     Written {
         #[serde(serialize_with = "shown")]
         path: &'e Path,
     },
-    /// Words for people.
+    /// A message for people.
     Note { message: &'e str },
-    /// Something to know that stops nothing.
+    /// A warning, which stops nothing.
     Warning { message: &'e str },
     /// What went wrong.
     Error { message: String, file: Option<String>, line: Option<usize>, column: Option<usize>, help: Option<&'e str> },
 }
 
-/// All that is known of a render, for a file.
+/// The contents of the file for the report on a render.
 #[derive(Serialize)]
 struct Account<'e> {
     plan: Event<'e>,
@@ -51,15 +51,15 @@ struct Account<'e> {
     written: Vec<String>,
 }
 
-/// A path as people read it: one that is no text has no other form.
+/// Serializes a path as it is shown to people. A path that is not Unicode has no other form in JSON.
 fn shown<S: Serializer>(path: &Path, serializer: S) -> std::result::Result<S::Ok, S::Error> {
     serializer.collect_str(&path.display())
 }
 
-/// Writes all that is known of a render as JSON: what `--json` says of its plan and its end.
+/// Writes the report on a render as JSON: what `--json` prints about its plan and its end.
 ///
 /// # Errors
-/// If it cannot be written; a file that was there before is then untouched.
+/// If the file cannot be written. An existing file is then left as it is.
 pub fn write_account(path: &Path, plan: Event, report: Event, written: &[&Path]) -> Result<()> {
     let written = written.iter().map(|file| file.display().to_string()).collect();
     let text = serde_json::to_string_pretty(&Account { plan, report, written });
@@ -76,7 +76,7 @@ impl<'e> Event<'e> {
         Self::Report(Box::new(RenderAccount::new(image, took, expected)))
     }
 
-    /// All that an error says.
+    /// Returns an event for each mistake in a scene, or a single one for any other error.
     pub fn errors(error: &'e Error) -> Vec<Self> {
         let mut lines = Lines::default();
         let mistake = |mistake: &'e Diagnostic| {
@@ -98,12 +98,12 @@ impl<'e> Event<'e> {
         }
     }
 
-    /// The event as a line of JSON; none where a path in it is no text.
+    /// Returns the event as a line of JSON, or none if it cannot be serialized.
     pub fn line(&self) -> Option<String> {
         serde_json::to_string(self).ok()
     }
 
-    /// Says it on stdout. Where nobody listens the work goes on.
+    /// Prints the event on stdout. If nobody reads it, the work goes on.
     pub fn tell(&self) {
         self.line().iter().for_each(|line| tell(line));
     }

@@ -1,11 +1,11 @@
-//! Frames: which ones, and the number of each in the names of its files.
+//! Frames: which ones to render, and their numbers in file names.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use abbe::{Error, Result};
 
-/// Frames that are rendered one after another, as they were listed.
+/// Frames that are rendered one after another, in the order of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames(Vec<Run>);
 
@@ -18,7 +18,7 @@ struct Run {
 }
 
 impl Frames {
-    /// Their numbers, each once.
+    /// Returns the number of each frame once.
     pub fn numbers(&self) -> impl Iterator<Item = u32> {
         let of_run = |(place, run): (usize, &Run)| {
             let before = &self.0[..place];
@@ -27,14 +27,14 @@ impl Frames {
         self.0.iter().enumerate().flat_map(of_run)
     }
 
-    /// The least and the greatest number.
+    /// Returns the lowest and the highest number.
     pub fn ends(&self) -> impl Iterator<Item = u32> {
         let least = self.0.iter().map(|run| run.first).min();
         let greatest = self.0.iter().map(|run| run.last - (run.last - run.first) % run.step).max();
         least.into_iter().chain(greatest)
     }
 
-    /// Number of frames.
+    /// Returns the number of frames.
     pub fn count(&self) -> u64 {
         match &self.0[..] {
             [run] => u64::from((run.last - run.first) / run.step) + 1,
@@ -56,7 +56,7 @@ impl Run {
 impl FromStr for Frames {
     type Err = String;
 
-    /// Of `7`, `1-24`, `1-24x2`, or several of these with commas between.
+    /// Parses `7`, `1-24`, `1-24x2`, or several of these separated by commas.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
         text.split(',').map(|run| run.trim().parse()).collect::<std::result::Result<_, _>>().map(Self)
     }
@@ -69,7 +69,7 @@ impl FromStr for Run {
         let number = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok()).flatten();
         let (range, step) = text.split_once('x').map_or((text, Some(1)), |(range, step)| (range, number(step)));
         let (first, last) = range.split_once('-').unwrap_or((range, range));
-        // As other programs write it.
+        // Other programs write ranges with `..` or `:`.
         let dashed = text.replace("..", "-").replace(':', "-");
         match (number(first), number(last), step) {
             (Some(first), Some(last), Some(_)) if last < first => {
@@ -82,13 +82,14 @@ impl FromStr for Run {
     }
 }
 
-/// More digits than any number of a frame has.
+/// The maximum number of digits for a frame in a file name, more than any frame number has.
 const MOST_DIGITS: usize = 20;
 
-/// The path with the number of the frame wherever it says `%04d`, or another number of digits; `%%` is a percent.
+/// Replaces `%04d`, or another number of digits, by the number of the frame, and `%%` by a percent sign.
 ///
 /// # Errors
-/// If the path asks for a number and there is none, or asks for one as other programs do.
+/// If the path needs a number and no frame is given, or if a frame is given and the path has a place for it only in the
+/// notation of other programs.
 pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     let Some(text) = path.to_str() else { return Ok(path.to_owned()) };
     let (mut name, mut rest, mut is_numbered) = (String::new(), text, false);
@@ -117,10 +118,10 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
     }
 }
 
-/// Refuses a file of several frames whose name has no number.
+/// Refuses the name of a file for several frames if it contains no number.
 ///
 /// # Errors
-/// If it is one.
+/// If it contains none, or one in the notation of other programs.
 pub fn check_numbered(path: &Path) -> Result<()> {
     if numbered(path, Some(0))? != numbered(path, Some(1))? {
         return Ok(());
@@ -137,8 +138,8 @@ fn one_name(path: &str) -> String {
     format!("{path} would be the name of every frame")
 }
 
-/// The least number of digits that stands behind a percent, as in `%04d`, `%4d` or `%d`, and what follows. A `%d` that
-/// a letter follows is part of a word, as in `50%dark`.
+/// Parses what follows a percent sign, as in `%04d`, `%4d` or `%d`: returns the minimum number of digits, and the rest
+/// of the text. A `%d` before a letter is part of a word, as in `50%dark`.
 fn digits(text: &str) -> Option<(usize, &str)> {
     let rest = text.trim_start_matches(|letter: char| letter.is_ascii_digit());
     let (number, rest) = (&text[..text.len() - rest.len()], rest.strip_prefix('d')?);
@@ -149,7 +150,7 @@ fn digits(text: &str) -> Option<(usize, &str)> {
     Some((digits, rest))
 }
 
-/// What stands for the number of a frame in other programs.
+/// Finds the placeholder that other programs use for the number of a frame.
 fn foreign(text: &str) -> Option<&str> {
     let run = |of: char| {
         let from = &text[text.find([of, of].iter().collect::<String>().as_str())?..];

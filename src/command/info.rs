@@ -30,10 +30,10 @@ pub struct Query {
     file: PathBuf,
 }
 
-/// Most characters of an attribute that are shown: lists of names can be as long as a book.
+/// The maximum number of characters shown of an attribute. Lists of names can be as long as a book.
 const MOST_SHOWN: usize = 200;
 
-/// The lines that answer a query.
+/// Returns the lines that answer a query.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -73,7 +73,7 @@ fn row(key: &str, value: &str) -> Vec<String> {
     vec![short(key), short(value)]
 }
 
-/// A text of a bounded length.
+/// Shortens a long text and adds its length.
 fn short(text: &str) -> String {
     match text.chars().count() {
         count if count > MOST_SHOWN => {
@@ -83,7 +83,7 @@ fn short(text: &str) -> String {
     }
 }
 
-/// Size, windows, storage and color.
+/// Returns the rows on size, windows, storage and color.
 fn picture(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
     let [width, height] = file.display.size;
     let mut rows = vec![row("size", &format!("{width} x {height} pixels"))];
@@ -102,7 +102,7 @@ fn picture(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
     rows
 }
 
-/// How the pixels that are there lie in the full image; nothing if they are just it.
+/// Returns a row on the stored pixels and how they lie in the full image, or none if they cover exactly that.
 fn window(full: &PixelBounds, there: &PixelBounds) -> Option<(&'static str, String)> {
     if full == there {
         return None;
@@ -127,7 +127,7 @@ fn chromaticities(found: &Primaries) -> String {
     format!("red {red}, green {green}, blue {blue}, white {white}{known}")
 }
 
-/// Where the camera stands, where it looks, and how much it sees.
+/// Returns the rows on the position, direction and field of view of the camera.
 fn camera(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
     let Some(matrix) = part.camera else { return Vec::new() };
     let mut rows = match place(&matrix) {
@@ -152,7 +152,8 @@ fn camera(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
     rows
 }
 
-/// Position and direction of a camera by its matrix for row vectors, if that only turns and moves.
+/// Returns the position and the direction of a camera from its matrix for row vectors, if this only rotates and
+/// translates.
 fn place(matrix: &CameraMatrix) -> Option<([f64; 3], [f64; 3])> {
     let row = |i: usize| -> [f64; 3] { std::array::from_fn(|j| matrix[4 * i + j].into()) };
     let dot = |a: [f64; 3], b: [f64; 3]| -> f64 { (0..3).map(|i| a[i] * b[i]).sum() };
@@ -165,7 +166,7 @@ fn triple(values: [f64; 3]) -> String {
     format!("({})", values.map(number).join(", "))
 }
 
-/// A line for each channel of a part.
+/// Returns a table with a line for each channel of a part.
 fn channels(file: &ExrFile, part: &Part) -> Vec<String> {
     let head = ["layer", "channel", "type", "min", "mean", "max", ""].map(str::to_owned).to_vec();
     let mut rows = vec![head];

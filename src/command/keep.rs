@@ -1,4 +1,4 @@
-//! Renders that lose nothing: checkpoints and snapshots.
+//! Checkpoints and snapshots, so that a stopped render loses nothing.
 
 use std::cell::Cell;
 use std::ffi::OsStr;
@@ -39,7 +39,7 @@ pub struct Flags {
     shard: Option<Shard>,
 }
 
-/// Time between checkpoints where --resume is given without --checkpoint.
+/// The time between checkpoints if --resume is given without --checkpoint.
 const OFTEN: Duration = Duration::from_secs(60);
 
 pub fn time(text: &str) -> std::result::Result<Duration, String> {
@@ -54,22 +54,23 @@ fn shard(text: &str) -> std::result::Result<Shard, String> {
 }
 
 impl Flags {
-    /// The part of the image that is made.
+    /// Returns the part of the image to render.
     pub fn shard(&self) -> Shard {
         self.shard.unwrap_or_default()
     }
 
-    /// What stands in the way of it, if a flag asks for no image, or none is written as an EXR.
+    /// Refuses flags that do not fit the other arguments. `idle` is the flag that renders nothing, if one is given, and
+    /// `exr` and `png` tell whether these images are written.
     ///
     /// # Errors
-    /// If anything does.
+    /// If there is such a flag.
     pub fn check(&self, idle: Option<&str>, exr: bool, png: bool, stamp: bool) -> Result<()> {
         let keeps = [("--checkpoint", self.checkpoint.is_some()), ("--resume", self.resume)];
-        // A part has a plan of its own where the whole would stop by its error or a time.
+        // If an error or a time ends the render, each part has a plan of its own, so --plan may go with --shard.
         let is_planned = idle == Some("--plan");
         let flags = [("--snapshot", self.snapshot.is_some()), ("--shard", self.shard.is_some() && !is_planned)];
         if let Some((flag, _)) = keeps.into_iter().chain(flags).find(|(_, given)| *given && idle.is_some()) {
-            return Error::refuse(format!("{flag} is of a render, and nothing is rendered"), "leave it out");
+            return Error::refuse(format!("{flag} belongs to a render, and nothing is rendered"), "leave it out");
         }
         if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
@@ -87,7 +88,7 @@ impl Flags {
     /// Refuses to keep anything of an image that goes to standard output.
     ///
     /// # Errors
-    /// If anything is to be kept.
+    /// If a flag asks to keep something.
     pub fn check_standard(&self) -> Result<()> {
         let keeps = self.checkpoint.or(self.snapshot).is_some() || self.resume || self.shard.is_some();
         if keeps {
@@ -97,44 +98,44 @@ impl Flags {
         Ok(())
     }
 
-    /// Lets Ctrl-C stop the command, at once or after what is done is kept.
+    /// Lets Ctrl-C stop the command, either at once or after saving what is done.
     ///
     /// # Errors
-    /// If it cannot be caught.
+    /// If Ctrl-C cannot be caught.
     pub fn catch_signals(&self) -> Result<()> {
         signals::catch(self.checkpoint.or(self.snapshot).is_none() && !self.resume)
     }
 
-    /// Where the checkpoint of a render to a file is, if one is kept.
+    /// Returns the path of the checkpoint of a render to `file`, if one is kept.
     pub fn checkpoint(&self, file: &Path) -> Option<PathBuf> {
         let mut name = file.file_stem().unwrap_or(OsStr::new("image")).to_owned();
         name.push(".checkpoint");
         (self.checkpoint.is_some() || self.resume).then(|| file.with_file_name(name))
     }
 
-    /// Where a part of an image is written, if one is made.
+    /// Returns the path of the part of an image, if only a part is rendered.
     pub fn part(&self, image: &Path) -> Option<PathBuf> {
         self.shard.map(|shard| image.with_extension(format!("{}-of-{}.part", shard.number(), shard.count())))
     }
 }
 
-/// What is kept of a render, and when.
+/// The files that keep the state of a render, and when they are written.
 pub struct Keep {
     files: Files,
     checkpoints: Timer,
     snapshots: Timer,
     resume: bool,
-    /// What the files of a finished render depend on beside its samples.
+    /// What the files of a finished render depend on besides its samples.
     way: String,
 }
 
-/// Where something of a render is kept.
+/// The files that keep the state of a render.
 struct Files {
-    /// Where the checkpoint is, if one is kept.
+    /// The path of the checkpoint, if one is kept.
     checkpoint: Option<PathBuf>,
-    /// The image that is kept fresh, if one is.
+    /// The path of the image that is updated during the render, if one is.
     snapshot: Option<PathBuf>,
-    /// Whether it shows the samples so far.
+    /// Whether the last update of the snapshot succeeded.
     has_snapshot: Cell<bool>,
 }
 
@@ -145,7 +146,7 @@ impl Files {
 
     fn take_snapshot(&self, rendering: &Rendering) -> Result<()> {
         let Some(path) = &self.snapshot else { return Ok(()) };
-        // Before the first samples, photons have shown a part of their light.
+        // Before the first camera samples, the image would show only a part of the photons' light.
         if rendering.camera_samples() == 0 {
             return Ok(());
         }
@@ -157,10 +158,11 @@ impl Files {
 }
 
 impl Keep {
-    /// Of a render to a file, and its checkpoint if one is kept; `way` is what its files depend on beside its samples.
+    /// Prepares to keep a render to `file`, with a checkpoint if its path is given. `way` is what the files of the
+    /// render depend on besides its samples.
     ///
     /// # Errors
-    /// If a checkpoint of an earlier run would be lost.
+    /// If the checkpoint of an earlier run or another file would be overwritten.
     pub fn new(flags: &Flags, file: &Path, checkpoint: Option<PathBuf>, way: String) -> Result<Self> {
         if let Some(there) = checkpoint.as_deref().filter(|path| !flags.resume && path.exists()) {
             let name = there.display();
@@ -168,7 +170,7 @@ impl Keep {
                 let help = "name another image, or move that file away";
                 return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), help);
             }
-            let help = "add --resume to go on from it, or delete it to begin anew";
+            let help = "add --resume to go on from it, or delete it to start over";
             return Error::refuse(format!("{name} is there from an earlier run"), help);
         }
         let snapshot = flags.snapshot.map(|_| file.to_owned());
@@ -181,20 +183,21 @@ impl Keep {
         })
     }
 
-    /// Whether an earlier run has finished the same render and written its files, which is said. It takes no plan to
-    /// know.
+    /// Returns whether an earlier run has finished the same render and written its files, and reports it. Needs no
+    /// plan.
     pub fn has_finished(&self, scene: &Scene, options: &Options, outputs: &[&Path]) -> bool {
-        // A plan that is followed is looked at in any case.
+        // A plan that is followed is checked in any case.
         let path = self.files.checkpoint.as_deref().filter(|_| self.resume && options.plan.is_none());
         let finished = path.filter(|path| has_finished(path, scene, options.shard, outputs, &self.way));
         finished.inspect(|path| say_finished(path)).is_some()
     }
 
-    /// Goes on from the checkpoint, if it shall and there is one. Returns whether anything is left to be done:
-    /// `outputs` are the files that shall be there in the end.
+    /// Resumes from the checkpoint, if requested and if there is one. Returns whether anything is left to do. `outputs`
+    /// are the files that have to exist in the end.
     ///
     /// # Errors
-    /// If the checkpoint is of something else, or damaged.
+    /// If the checkpoint is damaged or of another render, or if it has more samples than requested but not all of the
+    /// files.
     pub fn resume(&self, rendering: &mut Rendering, outputs: &[&Path]) -> Result<bool> {
         let Some(path) = self.files.checkpoint.as_deref().filter(|_| self.resume) else { return Ok(true) };
         if !path.exists() {
@@ -218,7 +221,7 @@ impl Keep {
             Resumed::Finished => Ok(true),
             Resumed::HasMore(samples) => match missing {
                 None => {
-                    say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to be done"));
+                    say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to do"));
                     Ok(false)
                 }
                 Some(missing) => Error::refuse(
@@ -229,10 +232,10 @@ impl Keep {
         }
     }
 
-    /// Renders what is left; returns whether all of it was, or somebody stopped it.
+    /// Renders what is left. Returns true if the image is finished, and false if somebody stopped the render.
     ///
     /// # Errors
-    /// If it was stopped, and what is done cannot be kept.
+    /// If the render was stopped and cannot be saved.
     pub fn run(&mut self, rendering: &mut Rendering, progress: &Progress) -> Result<bool> {
         signals::begin_work();
         let mut looked = rendering.error();
@@ -254,7 +257,7 @@ impl Keep {
             }
             if advance == Advance::Stopped {
                 let kept = self.keep(rendering);
-                // The render is worth more than what could not be kept of it, and may yet be written.
+                // The render is worth more than a failed save: it continues, and its image may still be written.
                 kept.unwrap_or_else(|error| {
                     progress.warn(&format!("the render goes on, but {}", problem(&error)));
                 });
@@ -262,11 +265,11 @@ impl Keep {
         }
     }
 
-    /// Keeps what is done of a render that was stopped. One that fails does not keep the other from being written.
+    /// Saves a stopped render as a checkpoint and as a snapshot. If one fails, the other is still written.
     fn keep_at_last(&self, rendering: &Rendering, progress: &Progress) -> Result<()> {
         let (saved, taken) = (self.files.save(rendering), self.files.take_snapshot(rendering));
         if self.files.checkpoint.is_some() && saved.is_ok() {
-            // The render can go on without its snapshot.
+            // The render can be resumed without its snapshot.
             taken.err().iter().for_each(|error| progress.warn(&problem(error)));
             return Ok(());
         }
@@ -281,26 +284,26 @@ impl Keep {
         saved.and(taken)
     }
 
-    /// Writes what is due.
+    /// Writes the checkpoint, and the snapshot if it is due.
     fn keep(&mut self, rendering: &Rendering) -> Result<()> {
         let Self { files, checkpoints, snapshots, .. } = self;
         let mut save = || checkpoints.run(|| files.save(rendering));
         if !snapshots.is_due() {
             return save();
         }
-        // The time of the checkpoint counts as well.
+        // The snapshot timer counts the time of the checkpoint as well.
         snapshots.run(|| save().and(files.take_snapshot(rendering)))
     }
 
-    /// Writes the checkpoint of a finished render and the files that are written of it, if one is kept. Where it cannot
-    /// be written the image is there all the same.
+    /// Writes the checkpoint of a finished render and records its written files, if one is kept. A failure is only a
+    /// warning, because the image exists all the same.
     pub fn finish(&self, rendering: &Rendering, written: &[&Path]) {
         let kept =
             self.files.checkpoint.as_ref().map_or(Ok(()), |path| rendering.save_finished(path, written, &self.way));
         kept.unwrap_or_else(|error| warn(&format!("the render is finished, but {}", problem(&error))));
     }
 
-    /// Says what was kept, and how to go on.
+    /// Prints what was kept, and how to resume.
     pub fn say_how_to_resume(&self) {
         let Some(path) = &self.files.checkpoint else {
             if !self.files.has_snapshot.get() {
@@ -318,26 +321,28 @@ impl Keep {
 
 fn say_finished(checkpoint: &Path) {
     let name = checkpoint.display();
-    say(&format!("{name} has all samples that are needed, and the image is written: nothing is left to be done"));
+    say(&format!("{name} has all samples that are needed, and the image is written: nothing is left to do"));
 }
 
-/// How many samples of a pixel will do, about, where that is known and more than there are.
+/// Estimates how many samples per pixel will be taken in total. Returns none if that is not known, or if there are
+/// already as many.
 fn more_samples(rendering: &Rendering, error: Option<&ImageError>) -> Option<u32> {
     let most = rendering.plan().method.stop.as_ref()?.most;
     let times = rendering.work() as f64 / rendering.done().max(1) as f64;
     more_than(error?.noise.samples, times, most)
 }
 
-/// So many times as many as are taken, but no more than may be, if those are more. Work is known to a few photons only.
+/// Returns `taken` multiplied by `times`, but at most `most`, if that is more than `taken`. The work is known only to
+/// within a few photons, so `times` may be slightly too large.
 fn more_than(taken: u32, times: f64, most: u32) -> Option<u32> {
     let wanted = ((f64::from(taken) * times).round() as u32).min(most);
     (wanted > taken).then_some(wanted)
 }
 
-/// A word as the shell takes it.
+/// Quotes a word for the shell.
 fn quoted(word: &OsStr) -> String {
     let Some(word) = word.to_str() else {
-        // Shells take $'\xe9' for a byte.
+        // Shells read $'\xe9' as a byte.
         let of_byte = |&byte: &u8| match byte {
             b'\'' | b'\\' => format!("\\{}", char::from(byte)),
             b' '..=b'~' => char::from(byte).into(),

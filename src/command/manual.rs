@@ -26,20 +26,20 @@ Examples:
 #[command(name = "render man", bin_name = "render man", after_help = MANUAL)]
 pub struct Manual {}
 
-/// What completes the words of a command in a shell.
+/// Returns the completion script of a command for a shell.
 pub fn completions(query: &Completions, mut command: Command) -> String {
     let mut script = Vec::new();
     clap_complete::generate(query.shell, &mut command, "render", &mut script);
     String::from_utf8_lossy(&script).into_owned()
 }
 
-/// The manual page of a command and of all commands below it.
+/// Returns the manual page of a command and all its subcommands.
 pub fn page(command: Command) -> String {
     let below: Vec<Command> = command.get_subcommands().cloned().collect();
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
     let man = Man::new(command);
     let mut page = Vec::new();
-    // Memory takes all that is written.
+    // Writing to memory cannot fail.
     let _ = man.render_title(&mut page);
     let _ = man.render_name_section(&mut page);
     let _ = man.render_synopsis_section(&mut page);
@@ -53,7 +53,7 @@ pub fn page(command: Command) -> String {
     String::from_utf8_lossy(&page).into_owned()
 }
 
-/// Adds what the page has of a command below.
+/// Adds a subcommand to the page.
 fn add_command(command: Command, page: &mut Vec<u8>) {
     let name = command.get_bin_name().unwrap_or_else(|| command.get_name()).to_owned();
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
@@ -64,7 +64,7 @@ fn add_command(command: Command, page: &mut Vec<u8>) {
     told.extend(format!(".PP\n{}.\n", escaped(about.trim_end_matches('.'))).bytes());
     let _ = man.render_options_section(&mut told);
     let told = String::from_utf8_lossy(&told);
-    // They stand in a section already.
+    // The lines stand in a section already, and need no headings and definitions of their own.
     let lines =
         told.lines().filter(|line| !line.starts_with(".SH ") && !line.starts_with(".ie") && !line.starts_with(".el"));
     page.extend(format!(".SS \"{}\"\n", escaped(&name)).bytes());
@@ -72,7 +72,7 @@ fn add_command(command: Command, page: &mut Vec<u8>) {
     page.extend(format!(".PP\n{}", after_help(&after)).bytes());
 }
 
-/// What stands below the options of a help, in roff: what an example does stands below it, whatever the width.
+/// Converts the text below the options of a help to roff. What an example does is put below it, at any width.
 fn after_help(text: &str) -> String {
     // The commands have a section of their own.
     let text = text.find("Examples:").filter(|_| text.starts_with("Commands:")).map_or(text, |start| &text[start..]);
@@ -88,7 +88,7 @@ fn after_help(text: &str) -> String {
     roff.collect()
 }
 
-/// A line of text that roff shows as it is.
+/// Escapes a line of text for roff.
 fn escaped(line: &str) -> String {
     let line = line.replace('\\', "\\e").replace('-', "\\-");
     if line.starts_with(['.', '\'']) { format!("\\&{line}") } else { line }

@@ -1,4 +1,4 @@
-//! What people meant who gave arguments that there are not.
+//! Suggestions for arguments that do not exist.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use abbe::film::Layer;
 use clap::error::{ContextKind, ErrorKind};
 
-/// What may be taken for a command, and the flag that is meant.
+/// Words that people may take for commands, and the flags that they mean.
 const FLAGS: [(&str, &str); 8] = [
     ("plan", "--plan"),
     ("check", "--check"),
@@ -37,15 +37,15 @@ const ELSEWHERE: [(&[&str], &str); 12] = [
     (&["--denoise"], "--layers albedo,N, and then denoise the image: python tools/denoise.py frame.exr"),
 ];
 
-/// Most letters that are wrong in a command.
+/// The maximum number of wrong letters in a misspelled command.
 const WRONG: usize = 2;
 
-/// A message on an argument that there is not, and what to write in place of it; none where that is not known. The
-/// `commands` are those that there are. Where nothing is `said`, the scene may still be a command.
+/// Returns a message on an argument that does not exist, and what to write instead, if that is known. `commands` are
+/// those that exist. If clap accepts the words, `said` is none, but the scene may still be a misspelled command.
 pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) -> Option<(String, String)> {
     let first = || words.get(1)?.to_str().filter(|first| !first.starts_with('-'));
     let Some(said) = said else {
-        // A scene of three letters is near half of all commands.
+        // A name of three letters is close to half of all commands, so a short name must match more closely.
         let is_file = |name: &str| [name.into(), format!("{name}.toml")].iter().any(|name| Path::new(name).exists());
         return first().filter(|name| !is_file(name)).and_then(|name| near_command(name, commands, name.len() / 4));
     };
@@ -63,8 +63,8 @@ pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) 
         return match commands.iter().find(|command| words.iter().any(|word| word == *command)) {
             Some(command) => {
                 let whole = format!("render {command}");
-                let help = format!("write {whole}, and what belongs to it after that; {whole} --help tells it");
-                Some((format!("the command {command} stands before all other arguments"), help))
+                let help = format!("write {whole}, and its arguments after that; {whole} --help lists them");
+                Some((format!("the command {command} comes before all other arguments"), help))
             }
             None => out_of_place(&given),
         };
@@ -72,7 +72,7 @@ pub fn meant(said: Option<&clap::Error>, words: &[OsString], commands: &[&str]) 
     near_command(first, commands, WRONG)
 }
 
-/// The command that was meant by a word of which at most so many letters are wrong.
+/// Returns a message on a word, with the command that it resembles, if at most `most` letters are wrong.
 fn near_command(word: &str, commands: &[&str], most: usize) -> Option<(String, String)> {
     let wrong = |command: &str| strsim::damerau_levenshtein(word, command);
     let known = commands.iter().map(|&command| (command, command)).chain(FLAGS);
@@ -80,14 +80,14 @@ fn near_command(word: &str, commands: &[&str], most: usize) -> Option<(String, S
     Some((format!("there is no command `{word}`"), format!("did you mean render {here}?")))
 }
 
-/// Flags that take a list, and what is in it.
+/// Flags that take a list, and what the list contains.
 const LISTS: [(&str, &str); 3] = [
     ("--layers", "names of layers"),
     ("--crop", "the numbers of a crop"),
     ("--overscan", "the numbers of an overscan"),
 ];
 
-/// The message on a list whose entries are separate arguments: how they are joined.
+/// Returns a message on a list whose entries are separate arguments, and how to join them.
 fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
     let (from, (flag, what)) = words.iter().enumerate().find_map(|(place, word)| {
         let list = LISTS.iter().find(|(flag, _)| word == flag)?;
@@ -103,7 +103,7 @@ fn apart(given: &str, words: &[OsString]) -> Option<(String, String)> {
     })
 }
 
-/// The message on a setting that is not one word behind a `--set` of its own.
+/// Returns a message on a setting that is not a single word after its own `--set`.
 fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
     let is_setting = |word: &OsString| word.to_str().is_some_and(|word| word.contains('='));
     if words.windows(2).any(|pair| pair[0] == "--set" && !is_setting(&pair[1])) {
@@ -115,7 +115,7 @@ fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
     words.windows(2).any(follows).then(said)
 }
 
-/// What to write in place of an argument that a command does not have; its name is the first word.
+/// Returns what to write instead of an argument that a subcommand does not have. The first word is its name.
 pub fn meant_below(said: &clap::Error, words: &[OsString]) -> Option<(String, String)> {
     let given = match said.kind() {
         ErrorKind::UnknownArgument => said.get(ContextKind::InvalidArg)?.to_string(),
@@ -126,7 +126,7 @@ pub fn meant_below(said: &clap::Error, words: &[OsString]) -> Option<(String, St
     is_image.then(|| (format!("merge has no argument {given}"), help.to_owned()))
 }
 
-/// What was meant by a file that no argument names.
+/// Returns a message on a file name that belongs to no argument, and what was meant.
 fn out_of_place(given: &str) -> Option<(String, String)> {
     match given.rsplit_once('.')?.1 {
         "toml" => {

@@ -1,4 +1,4 @@
-//! The `merge` command: one image of the parts that several machines made.
+//! The `merge` command: makes one image of the parts that several machines have rendered.
 
 use std::path::{Path, PathBuf};
 
@@ -41,7 +41,7 @@ pub struct Query {
     progress: Option<Protocol>,
 }
 
-/// Writes the image.
+/// Merges the parts, and writes the image.
 ///
 /// # Errors
 /// If parts are missing, do not belong together or are damaged, or the image cannot be written.
@@ -66,7 +66,7 @@ pub fn run(query: &Query) -> Result<()> {
         print_written(&path);
     }
     if *delete {
-        // The image is written all the same.
+        // The image is already written, so a failure is only a warning.
         for error in parts.iter().filter_map(|part| delete_part(part).err()) {
             warn(&problem(&error));
         }
@@ -74,8 +74,7 @@ pub fn run(query: &Query) -> Result<()> {
     Ok(())
 }
 
-/// Deletes a part and the checkpoint of the render that made it, if it is there. That of a part which has got another
-/// name is not known.
+/// Deletes a part, and the checkpoint of its render if there is one. The checkpoint of a renamed part is not known.
 fn delete_part(part: &Path) -> Result<()> {
     let checkpoint = part.with_extension("checkpoint");
     let has_its_name = part.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("-of-"));

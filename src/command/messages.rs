@@ -1,6 +1,7 @@
-//! What the command says: to the person who runs it, on stderr; to a program, as JSON on stdout.
+//! Messages of the command: on stderr for the person who runs it, as JSON on stdout for a program.
 //!
-//! Where nobody can be told, as where stderr is a closed pipe or a full disk, nothing is said and the work goes on.
+//! If nobody can be told, because stderr is a closed pipe or the disk is full, messages are dropped and the work goes
+//! on.
 
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -20,16 +21,16 @@ use super::openjd;
 use super::problem::{problem, reason};
 use super::stdout;
 
-/// To whom it speaks.
+/// The reader of the messages.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Listener {
     /// A person.
     Person,
-    /// A person who wants to know of errors and warnings alone.
+    /// A person who wants only warnings and errors.
     Busy,
     /// A program.
     Program,
-    /// Whoever runs a task of Open Job Description; what people read is in its log.
+    /// A farm that runs a task of Open Job Description. Messages for people go to its log.
     Farm,
 }
 
@@ -42,7 +43,7 @@ pub enum Protocol {
 
 static LISTENER: OnceLock<Listener> = OnceLock::new();
 
-/// Decides to whom all is said from now on; the first decision stays.
+/// Chooses the reader of all messages from now on. Only the first call has an effect.
 pub fn speak_to(listener: Listener) {
     let _ = LISTENER.set(listener);
 }
@@ -51,10 +52,10 @@ pub fn listener() -> Listener {
     *LISTENER.get().unwrap_or(&Listener::Person)
 }
 
-/// Most mistakes of a scene that are shown.
+/// The maximum number of mistakes in a scene that are shown.
 const MOST_SHOWN: usize = 20;
 
-/// One plain line, or several, which a busy person can do without.
+/// Prints one plain line, or several, unless the reader wants only warnings and errors.
 pub fn say(line: &str) {
     match listener() {
         Listener::Person => print(line),
@@ -64,7 +65,7 @@ pub fn say(line: &str) {
     }
 }
 
-/// Says that one of several frames begins.
+/// Reports that one of several frames begins.
 pub fn say_frame(frame: u32, number: u64, count: u64) {
     match listener() {
         Listener::Program => Event::Frame { frame, number, count }.tell(),
@@ -72,10 +73,10 @@ pub fn say_frame(frame: u32, number: u64, count: u64) {
     }
 }
 
-/// Says it and ends the process. Other threads wait for that with what they want to say.
+/// Prints a line and ends the process. Holds a lock until then, so that other threads print nothing after it.
 pub fn say_last(line: &str, code: u8) -> ! {
     let _stderr = std::io::stderr().lock();
-    // An image that is sent there must not hold it up.
+    // A thread that is sending an image to stdout holds this lock, and must not delay the end.
     let _stdout = matches!(listener(), Listener::Program | Listener::Farm).then(|| std::io::stdout().lock());
     say(line);
     std::process::exit(code.into())
@@ -85,10 +86,10 @@ fn print(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// What was asked for, on stdout. A reader that stops listening ends it without a word.
+/// Prints an answer on stdout. If the reader stops reading, this is no error.
 ///
 /// # Errors
-/// If it cannot be written for another reason.
+/// If the answer cannot be written for another reason.
 pub fn answer(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -102,22 +103,22 @@ pub fn answer(text: &str) -> Result<()> {
 /// Prints lines as an answer on stdout.
 ///
 /// # Errors
-/// As of [`answer`].
+/// Those of [`answer`].
 pub fn answer_lines(lines: &[String]) -> Result<()> {
     answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
 }
 
-/// An image on stdout, which nobody may miss a part of.
+/// Sends an image to stdout, all of which has to arrive.
 ///
 /// # Errors
-/// If it cannot be written, or nobody reads it to its end.
+/// If the image cannot be written, or is not read to its end.
 pub fn send(image: &[u8]) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
     let sent = stdout.write_all(image).and_then(|()| stdout.flush());
     sent.map_err(|source| Error::Io { doing: "write", path: "the image to stdout".into(), source })
 }
 
-/// The cells of each line as one text, every column as wide as its widest cell.
+/// Joins the cells of each line. Each column is as wide as its widest cell.
 pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
     let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<_> = (0..lines.first().map_or(0, Vec::len)).map(width).collect();
@@ -128,7 +129,7 @@ pub fn aligned(lines: &[Vec<String>]) -> Vec<String> {
     lines.iter().map(line).collect()
 }
 
-/// Something to know that stops nothing.
+/// Prints a warning, which stops nothing.
 pub fn warn(message: &str) {
     match listener() {
         Listener::Program => Event::Warning { message }.tell(),
@@ -136,7 +137,7 @@ pub fn warn(message: &str) {
     }
 }
 
-/// Says how many values were too large for the file, if any were.
+/// Warns of values that were too large for the file, if there are any.
 pub fn warn_of_clamped(format: &Format, clamped: u64) {
     if clamped > 0 {
         let lossless = if format.compression.is_of_16_bits() { " with compression = \"zip\"" } else { "" };
@@ -147,7 +148,7 @@ pub fn warn_of_clamped(format: &Format, clamped: u64) {
     }
 }
 
-/// Says which exposure shows something, if nearly all of a picture is white or black; `exr` is the image's file.
+/// Suggests a better exposure if nearly all of a picture is white or black. `exr` is the file of the image.
 pub fn warn_of_exposure(image: &Image, png: &Path, exr: Option<&Path>, stops: f64) {
     let Some(found) = Misexposure::of_film(image.film(), stops) else { return };
     let (png, flag) = (png.display(), format!("--exposure {}", found.stops));
@@ -155,15 +156,14 @@ pub fn warn_of_exposure(image: &Image, png: &Path, exr: Option<&Path>, stops: f6
     warn(&format!("{}: {again} shows more", found.shows.told_of(&png.to_string())));
 }
 
-/// Whether lines for the program that listens were lost, which is said on stderr.
+/// Returns whether lines for a program were lost, and reports this on stderr.
 pub fn has_lost_lines() -> bool {
     let lost = stdout::lost();
-    lost.iter()
-        .for_each(|why| print(&format!("error: cannot write all there is to say to stdout: {}", reason("write", why))));
+    lost.iter().for_each(|why| print(&format!("error: cannot write all output to stdout: {}", reason("write", why))));
     lost.is_some()
 }
 
-/// What went wrong, where, and what to do.
+/// Prints what went wrong, where, and what to do about it.
 pub fn print_error(error: &Error) {
     if listener() == Listener::Farm {
         openjd::fail(&summary(error));
@@ -179,7 +179,7 @@ pub fn print_error(error: &Error) {
     }
 }
 
-/// An error in one line.
+/// Describes an error in one line.
 fn summary(error: &Error) -> String {
     let Error::Scene(mistakes) = error else { return problem(error) };
     let [first, more @ ..] = &**mistakes else { return problem(error) };
@@ -188,7 +188,7 @@ fn summary(error: &Error) -> String {
     format!("{}:{line}:{column}: {}{more}", first.file.display(), first.message)
 }
 
-/// All that is wrong with a scene, in the order of its files, and how much that is.
+/// Prints the mistakes in a scene, in the order of its files, and their number if there are several.
 fn print_mistakes(mistakes: &[Diagnostic]) {
     let shown = &mistakes[..mistakes.len().min(MOST_SHOWN)];
     print(&shown.iter().map(underlined).collect::<Vec<_>>().join("\n\n"));
@@ -202,7 +202,7 @@ fn print_mistakes(mistakes: &[Diagnostic]) {
     print(&format!("\n{count} mistakes in {}{more}", files.join(", ")));
 }
 
-/// The mistake with its line, the word underlined.
+/// Returns a mistake with its line in the file, where the wrong part is underlined.
 fn underlined(diagnostic: &Diagnostic) -> String {
     let path = diagnostic.file.display().to_string();
     // An empty span, as at the end of a file, is shown as one column.
@@ -217,20 +217,20 @@ fn underlined(diagnostic: &Diagnostic) -> String {
     renderer.render(&[group])
 }
 
-/// Whether what is written there may have colors.
+/// Returns whether text written to a stream may have colors.
 pub fn is_colored(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-/// All that a program has asked for.
+/// Prints an event as the whole answer to a program.
 fn answer_event(event: &Event) -> Result<()> {
     event.line().map_or(Ok(()), |line| answer_lines(&[line]))
 }
 
-/// Says that a scene has no mistakes.
+/// Reports that a scene has no mistakes.
 ///
 /// # Errors
-/// If a program is to be answered, and the answer cannot be written.
+/// If a program reads the answer, and it cannot be written.
 pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
     if listener() == Listener::Program {
         return answer_event(&Event::Checked { scene, objects });
@@ -243,7 +243,7 @@ pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
 /// Prints on stdout how a scene would be rendered.
 ///
 /// # Errors
-/// As of a text.
+/// Those of [`answer`].
 pub fn answer_plan(plan: &Plan) -> Result<()> {
     match listener() {
         Listener::Program => answer_event(&Event::plan(plan)),
@@ -251,7 +251,8 @@ pub fn answer_plan(plan: &Plan) -> Result<()> {
     }
 }
 
-/// How a scene is rendered. On a terminal, only how long it takes, how accurate it is and what is left out.
+/// Prints how a scene is rendered. On a terminal, prints only how long it takes, how accurate it is and what is left
+/// out.
 pub fn print_plan(plan: &Plan) {
     match listener() {
         Listener::Program => Event::plan(plan).tell(),
@@ -264,7 +265,7 @@ pub fn print_plan(plan: &Plan) {
     }
 }
 
-/// Says that a file was written.
+/// Reports that a file was written.
 pub fn print_written(path: &Path) {
     match listener() {
         Listener::Program => Event::Written { path }.tell(),
@@ -272,8 +273,8 @@ pub fn print_written(path: &Path) {
     }
 }
 
-/// How far the image is off while it is rendered, in one line, and how many samples will do in what time, if that is
-/// known.
+/// Describes in one line the error of an image that is being rendered. `more` holds the total number of samples per
+/// pixel that will be taken and the time left, if they are known.
 pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
     let asked = error.asked.map_or(String::new(), |asked| format!("; {} is asked for", percent(asked)));
     let more =
@@ -283,7 +284,7 @@ pub fn so_far(error: &ImageError, more: Option<&(u32, String)>) -> String {
     format!("{} samples per pixel: the image is off by at most {off}{rare}{asked}{more}", error.noise.samples)
 }
 
-/// Says how large the error of the image is, and whether that was asked for.
+/// Prints the error of a finished image, its sources and where the noise is worst.
 fn print_error_of_image(error: &ImageError) {
     let noise = &error.noise;
     let [at_most, expected, of_color] = [error.at_most(), noise.expected, error.model].map(percent);
@@ -303,7 +304,7 @@ fn print_error_of_image(error: &ImageError) {
     ));
 }
 
-/// What a render by a plan noticed.
+/// Prints the warnings and the report of a finished render.
 pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Duration) {
     let report = image.report();
     if listener() == Listener::Program {
@@ -312,7 +313,9 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
     image.warnings().iter().for_each(|warning| warn(warning));
     match (image.error(), report.stopped_by) {
         (Some(error), _) => print_error_of_image(error),
-        (None, Some(_)) => say(&format!("fewer than {FIRST_LOOK} samples per pixel do not tell the error")),
+        (None, Some(_)) => {
+            say(&format!("the error cannot be estimated from fewer than {FIRST_LOOK} samples per pixel"))
+        }
         (None, None) => {}
     }
     if listener() == Listener::Program {
@@ -322,7 +325,7 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
         let share = percent(report.dropped + report.stopped);
         say(&format!("paths that were not followed to their ends: {share} of the weight"));
     }
-    // Where the plan has measured it, a bound has no more to say.
+    // If the plan has measured the effect of polarization, the bound adds nothing.
     if report.polarization_of_tile > TOLD && plan.polarization_error.is_none() {
         let is_uneven = report.polarization_of_tile > 1.05 * report.polarization;
         let [all, tile] = [report.polarization, report.polarization_of_tile].map(at_most);
@@ -333,10 +336,10 @@ pub fn print_report(image: &Image, plan: &Plan, took: Duration, expected: Durati
     }
 }
 
-/// A bound in words; one above 1 says no more than that there is none.
+/// Returns a bound in words. A bound of 1 or more limits nothing.
 fn at_most(share: f64) -> String {
     if share < 1.0 { format!("at most {:.1} %", 100.0 * share) } else { "most".into() }
 }
 
-/// The share of the light from which on it is said what polarization may change.
+/// The share of the light that polarization may change without being reported.
 const TOLD: f64 = 0.01;

@@ -1,4 +1,4 @@
-//! What the command says, reads and keeps: a client of the library.
+//! The parts of the command, a client of the library: its arguments, its messages and the files that it keeps.
 
 pub mod catalog;
 pub mod cli;

@@ -1,25 +1,25 @@
-//! What a task of Open Job Description says of itself on stdout: lines that whoever runs it looks for.
+//! Messages of a task of Open Job Description: lines on stdout that the runner of the task looks for.
 //!
 //! <https://github.com/OpenJobDescription/openjd-specifications/wiki/How-Jobs-Are-Run#stdoutstderr-messages>
 
 use super::stdout;
 
-/// How far the task is: a share of its work, from 0 to 1. Only all of it is 100 %.
+/// Reports the share of the work that is done, from 0 to 1. Only finished work is shown as 100 %.
 pub fn progress(share: f64) {
     tell("progress", &percent(share));
 }
 
-/// What it does now.
+/// Reports what the task is doing.
 pub fn status(words: &str) {
     tell("status", words);
 }
 
-/// Why it fails.
+/// Reports why the task fails.
 pub fn fail(words: &str) {
     tell("fail", words);
 }
 
-/// Says it in one line. Where nobody listens the work goes on.
+/// Prints a message in one line. If nobody reads it, the work goes on.
 fn tell(kind: &str, words: &str) {
     stdout::tell(&format!("openjd_{kind}: {}", line(words)));
 }

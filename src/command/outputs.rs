@@ -1,4 +1,4 @@
-//! What the command may write.
+//! Checks of what the command is about to write.
 
 use std::cmp::Reverse;
 use std::fs;
@@ -13,12 +13,12 @@ pub fn ends_in(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
-/// Whether a path stands for standard input or output.
+/// Returns whether a path stands for standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Refuses an image on standard output that has nowhere to go, or more than one file.
+/// Refuses an image on standard output if that is a terminal, or if the image has spectra, which need a second file.
 pub fn check_standard(spectral: bool) -> Result<()> {
     if spectral {
         let message = "spectra are written beside the image, and standard output has no place beside it";
@@ -30,7 +30,7 @@ pub fn check_standard(spectral: bool) -> Result<()> {
     Ok(())
 }
 
-/// Refuses a picture that is called anything but a PNG.
+/// Refuses a picture whose name does not end in .png.
 pub fn check_png(png: Option<&Path>) -> Result<()> {
     match png.filter(|png| !ends_in(png, "png")) {
         Some(png) => {
@@ -41,8 +41,8 @@ pub fn check_png(png: Option<&Path>) -> Result<()> {
     }
 }
 
-/// Refuses a file of words, such as `--report frame.json`, that is called an image, which it might replace, or is to go
-/// to standard output.
+/// Refuses a text file, such as `--report frame.json`, if it has the name of an image, which it might replace, or would
+/// go to standard output.
 pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()> {
     let refused = |message: String| Error::refuse(message, format!("for instance: {flag} {example}"));
     match file {
@@ -54,7 +54,7 @@ pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()>
     }
 }
 
-/// Refuses an output that is the input itself, by another name or a link.
+/// Refuses an output that is the input itself, under another name or through a link.
 pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
     let real = |path: &Path| fs::canonicalize(path).ok();
     match real(output).filter(|output| real(input).as_ref() == Some(output)) {
@@ -63,7 +63,7 @@ pub fn spare(input: &Path, what: &str, output: &Path) -> Result<()> {
     }
 }
 
-/// Refuses an output that the scene is read from, or that is another output by the same or another name.
+/// Refuses an output that is a file of the scene, or the same file as another output, whatever its name.
 pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
     let [own, others @ ..] = &scene.files[..] else { return Ok(()) };
     let another = |message: String| Error::refuse(message, "name another file");
@@ -75,7 +75,7 @@ pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
         if read.contains(file) {
             return another(format!("{name} is a file that the scene reads"));
         }
-        // A device takes what it is given.
+        // A device can be written twice.
         let is_file = !output.exists() || output.is_file();
         if is_file && written[..number].contains(file) {
             return another(format!("{name} would be written twice"));
@@ -84,7 +84,7 @@ pub fn check_outputs(scene: &Scene, outputs: &[&Path]) -> Result<()> {
     Ok(())
 }
 
-/// The one name of a file that may not be there yet, without links.
+/// Returns the unique path, without links, of a file that may not exist yet.
 fn full(path: &Path) -> PathBuf {
     let in_folder = || {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -94,7 +94,7 @@ fn full(path: &Path) -> PathBuf {
     fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
-/// Refuses what is no number of stops.
+/// Refuses an exposure that is not a finite number of stops.
 pub fn check_exposure(stops: Option<f64>) -> Result<()> {
     match stops.filter(|stops| !stops.is_finite()) {
         Some(_) => Error::refuse("an exposure is a finite number of stops", "for instance: --exposure 1"),
@@ -102,27 +102,27 @@ pub fn check_exposure(stops: Option<f64>) -> Result<()> {
     }
 }
 
-/// Folders that were made for files, in which nothing may stand yet.
+/// Folders that were created for files and may still be empty.
 static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn made() -> MutexGuard<'static, Vec<PathBuf>> {
     MADE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes those in which nothing stands.
+/// Removes all created folders that are empty.
 pub fn remove_empty_folders() {
     let mut made = made();
     made.sort_by_key(|folder| Reverse(folder.components().count()));
-    // One that is not empty stays.
+    // A folder that is not empty cannot be removed, and stays.
     made.drain(..).for_each(|folder| drop(fs::remove_dir(folder)));
 }
 
-/// Folders that are made for files; those in which nothing stands in the end are removed.
+/// Folders that are created for files, and removed in the end if they are empty.
 #[must_use]
 pub struct Folders(());
 
 impl Folders {
-    /// Finds out before a long render whether files can be written, and makes the folders that are missing.
+    /// Checks before a long render whether files can be written, and creates the folders that are missing.
     pub fn of_files(files: &[&Path]) -> Result<Self> {
         let all = Self(());
         for file in files {

@@ -1,10 +1,10 @@
-//! What went wrong with a file, in plain words.
+//! Descriptions of errors in plain words.
 
 use std::io::ErrorKind;
 
 use abbe::Error;
 
-/// What went wrong with a file or what was asked for, in one line.
+/// Describes in one line what went wrong with a file or a request.
 pub fn problem(error: &Error) -> String {
     match error {
         Error::Io { doing, path, source } => format!("cannot {doing} {}: {}", path.display(), reason(doing, source)),
@@ -12,7 +12,7 @@ pub fn problem(error: &Error) -> String {
     }
 }
 
-/// What the system said, in plain words where it is terse.
+/// Describes an error of the system, in plain words if its own message is terse.
 pub fn reason(doing: &str, error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound if doing == "read" => "there is no such file".into(),

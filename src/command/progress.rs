@@ -21,17 +21,17 @@ pub struct Progress {
     counts: Arc<Counts>,
 }
 
-/// What is done, and what is to be done.
+/// The work that is done, and the work to do.
 struct Counts {
     start: Instant,
-    /// When it ends, done or not.
+    /// The time after which the render ends, finished or not.
     limit: Option<Duration>,
-    /// What an earlier run has done.
+    /// The work that an earlier run has done.
     before: u64,
     done: AtomicU64,
-    /// All that is to be done if there is time, as far as it is known.
+    /// The total work if time allows, as far as it is known.
     work: AtomicU64,
-    /// Whether it is known; else it is the most that may be done.
+    /// Whether the total work is known. If not, `work` is the maximum.
     is_known: AtomicBool,
 }
 
@@ -40,7 +40,7 @@ impl Counts {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// All that will be done: what there is time for, at the pace so far.
+    /// Returns the total work that will be done within the time limit, at the pace so far.
     fn total(&self) -> u64 {
         let (done, work) = (self.done(), self.work.load(Ordering::Relaxed));
         let Some(limit) = self.limit.filter(|_| done > self.before) else { return work };
@@ -49,7 +49,7 @@ impl Counts {
         in_time.clamp(done.min(work), work)
     }
 
-    /// Seconds left, if that is known.
+    /// Returns the seconds left, if they are known.
     fn left(&self) -> Option<f64> {
         let (done, total) = (self.done(), self.total().max(1));
         let parts = [self.before, done].map(|count| count as f64 / total as f64);
@@ -57,15 +57,15 @@ impl Counts {
         is_known.then(|| left(parts, self.start.elapsed().as_secs_f64()))
     }
 
-    /// The time passed, and that left.
+    /// Returns the time passed and the time left, in words.
     fn said(&self) -> String {
         times(self.start.elapsed().as_secs_f64(), self.left())
     }
 }
 
-/// What is shorter says nothing, but for a bar on a terminal.
+/// The time before the first line for people. Shorter work shows no progress, except for a bar on a terminal.
 const QUIET: Duration = Duration::from_secs(10);
-/// The time between two lines.
+/// The time between two lines for people.
 const PERIOD: Duration = Duration::from_secs(30);
 /// The time between two lines for a program.
 const TICK: Duration = Duration::from_secs(1);
@@ -73,7 +73,7 @@ const TICK: Duration = Duration::from_secs(1);
 const LOGGED: Duration = Duration::from_secs(5);
 
 impl Progress {
-    /// Progress of a render, some of which an earlier run may have done.
+    /// Begins to show the progress of a render, part of which an earlier run may have done.
     pub fn new(rendering: &Rendering) -> Self {
         let (work, before) = (rendering.work(), rendering.done());
         let counts = Arc::new(Counts {
@@ -86,7 +86,7 @@ impl Progress {
         });
         let is_shown = listener() == Listener::Person && std::io::stderr().is_terminal();
         let new = || ProgressBar::new(work).with_position(before).with_style(style()).with_message(counts.said());
-        // There is none on terminals that cannot go back in a line.
+        // Terminals that cannot move back in a line have no bar.
         let bar = is_shown.then(new).filter(|bar| !bar.is_hidden());
         BAR.lock().unwrap_or_else(PoisonError::into_inner).clone_from(&bar);
         let lines = bar.is_none().then(|| {
@@ -104,7 +104,7 @@ impl Progress {
         Self { bar, lines, counts }
     }
 
-    /// Learns anew how much is to be done in all.
+    /// Updates the total work.
     pub fn expect(&self, rendering: &Rendering) {
         let is_known = rendering.is_work_known();
         self.counts.work.store(rendering.work(), Ordering::Relaxed);
@@ -112,17 +112,17 @@ impl Progress {
         self.advance(0);
     }
 
-    /// Says something while it goes on.
+    /// Prints a line during the render.
     pub fn say(&self, line: &str) {
         self.aside(|| say(line));
     }
 
-    /// Warns of something while it goes on.
+    /// Prints a warning during the render.
     pub fn warn(&self, message: &str) {
         self.aside(|| warn(message));
     }
 
-    /// Speaks without the bar in its way.
+    /// Hides the bar while `speak` prints something.
     fn aside(&self, speak: impl FnOnce()) {
         match &self.bar {
             Some(bar) => bar.suspend(speak),
@@ -130,7 +130,7 @@ impl Progress {
         }
     }
 
-    /// Counts those that are done; may be called from any thread.
+    /// Adds to the work done. May be called from any thread.
     pub fn advance(&self, work: u64) {
         self.counts.done.fetch_add(work, Ordering::Relaxed);
         if let Some(bar) = &self.bar {
@@ -140,12 +140,12 @@ impl Progress {
         }
     }
 
-    /// The time that is left as people say it, if it can be told.
+    /// Returns the time left in words, if it is known.
     pub fn left(&self) -> Option<String> {
         self.counts.left().map(spoken)
     }
 
-    /// Removes the bar and says how long it took, beside the time that was expected.
+    /// Removes the bar, prints how long the render took and how long it was expected to take, and returns the former.
     pub fn finish(mut self, expected: Duration) -> Duration {
         let (start, work) = (self.counts.start, self.counts.work.load(Ordering::Relaxed));
         self.stop();
@@ -154,7 +154,7 @@ impl Progress {
         took
     }
 
-    /// Removes the bar.
+    /// Stops the lines or removes the bar.
     fn stop(&mut self) {
         drop(self.lines.take());
         if self.bar.take().is_some() {
@@ -169,7 +169,7 @@ impl Drop for Progress {
     }
 }
 
-/// Does work of which nobody knows how much there is, and says from time to time that it goes on.
+/// Does work of unknown length, and prints from time to time that it goes on.
 pub fn during<T>(doing: &'static str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let _lines = Lines::new(QUIET, PERIOD, move || say(&going_on(doing, start.elapsed().as_secs_f64())));
@@ -179,26 +179,26 @@ pub fn during<T>(doing: &'static str, work: impl FnOnce() -> T) -> T {
 /// The bar on the terminal, if there is one.
 static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Removes the bar where the command ends at once.
+/// Removes the bar when the command ends at once.
 pub fn clear() {
     BAR.lock().unwrap_or_else(PoisonError::into_inner).take().iter().for_each(ProgressBar::finish_and_clear);
 }
 
-/// The bar, with what is said of it.
+/// Returns the style of the bar, with a percentage and a message beside it.
 fn style() -> ProgressStyle {
     let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %, {msg}");
     style.unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// Says how much of the work is done.
+/// Prints how much of the work is done.
 fn speak(counts: &Counts) {
     let (done, total, seconds) = (counts.done(), counts.total(), counts.start.elapsed().as_secs_f64());
     let left = counts.left();
     tell([done, total], seconds, left, &line(share([done, total]), seconds, left));
 }
 
-/// Says how much is done of how much, after and before how many seconds: to a program in numbers, to all others in
-/// words.
+/// Reports the work done and the total work, the seconds passed and the seconds left: in numbers to a program, in words
+/// to all others.
 fn tell(parts: [u64; 2], seconds: f64, seconds_left: Option<f64>, words: &str) {
     let [done, total] = parts;
     match listener() {
@@ -213,12 +213,12 @@ fn share([done, total]: [u64; 2]) -> f64 {
     done as f64 / total.max(1) as f64
 }
 
-/// Seconds left after `passed` seconds, in which the part that is done has grown from `before` to `part`.
+/// Returns the seconds left after `passed` seconds, in which the share that is done has grown from `before` to `part`.
 fn left([before, part]: [f64; 2], passed: f64) -> f64 {
     passed * (1.0 - part).max(0.0) / (part - before)
 }
 
-/// What is said at the end. Of a short render the time expected says nothing.
+/// Returns the line for the end of a render. The expected time of a short render means nothing, and is left out.
 fn rendered(took: Duration, expected: Duration) -> String {
     let [took, expected] = [took, expected].map(|time| time.as_secs_f64());
     let compared = if took.max(expected) < 2.0 {
@@ -229,7 +229,7 @@ fn rendered(took: Duration, expected: Duration) -> String {
     format!("rendered in {took:.1} s{compared}")
 }
 
-/// A thread that speaks from time to time until it is dropped.
+/// A thread that prints from time to time until it is dropped.
 struct Lines {
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
@@ -252,18 +252,18 @@ impl Lines {
 impl Drop for Lines {
     fn drop(&mut self) {
         drop(self.stop.take());
-        // A thread that could not speak has nothing more to say.
+        // If the thread has panicked, it has nothing more to print.
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 
-/// How far the work is after `seconds`, and how many are left, if that is known.
+/// Returns a line on the share of the work done, the seconds passed, and the seconds left if they are known.
 fn line(part: f64, passed: f64, left: Option<f64>) -> String {
     let percent = (100.0 * part).floor().min(99.0);
     format!("{percent} %, {}", times(passed, left))
 }
 
-/// A line on work that has taken `passed` seconds so far.
+/// Returns a line on work that has taken `passed` seconds so far.
 fn going_on(doing: &str, passed: f64) -> String {
     format!("{doing}, {}", times(passed, None))
 }
@@ -273,7 +273,7 @@ fn times(passed: f64, left: Option<f64>) -> String {
     format!("{} passed{left}", spoken(passed))
 }
 
-/// A time in the unit in which people would say it.
+/// Formats a time in the unit that people would use.
 fn spoken(seconds: f64) -> String {
     match seconds {
         seconds if seconds < 99.5 => format!("{seconds:.0} s"),
@@ -303,7 +303,7 @@ mod tests {
         let lines = Lines::new(Duration::from_millis(1), Duration::from_millis(1), move || tell.send(()).unwrap_or(()));
         assert_eq!(told.iter().take(5).count(), 5);
         drop(lines);
-        // This ends because what speaks is gone with the thread.
+        // This ends because the sender was dropped with the thread.
         told.iter().for_each(drop);
         let (tell, told) = channel();
         drop(Lines::new(Duration::from_secs(3600), PERIOD, move || tell.send(()).unwrap_or(())));

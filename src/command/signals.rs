@@ -1,4 +1,4 @@
-//! Ctrl-C, and signals that would end a command without a word.
+//! Ctrl-C, and signals that would end a command without a message.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -12,48 +12,48 @@ use super::progress;
 
 /// Whether the command was told to stop.
 static STOPPED: AtomicBool = AtomicBool::new(false);
-/// Whether anything is done that could be lost.
+/// Whether work has begun that could be lost.
 static HAS_BEGUN: AtomicBool = AtomicBool::new(false);
-/// Whether any file of the image is written.
+/// Whether a file of the image has been written.
 static HAS_WRITTEN: AtomicBool = AtomicBool::new(false);
-/// What it says then, if nothing of the render is kept.
+/// The message if nothing of the render is kept.
 pub const NOTHING_KEPT: &str = "stopped; nothing of this image was kept. With --checkpoint 60s, what is done is kept";
-/// The same before there was anything.
+/// The message if there was nothing to keep yet.
 const NOTHING_DONE: &str = "stopped before anything of this image was rendered";
-/// The same when some of its files are there.
+/// The message if only some files of the image have been written.
 const NOT_ALL_WRITTEN: &str = "stopped before all files of this image were written";
-/// The exit code of a command that was.
+/// The exit code of a command that was stopped.
 pub const STOPPED_CODE: u8 = 130;
-/// Signals that come so soon after the first one are the same one: `timeout` sends it to a command, and again to all
-/// that the command belongs to.
+/// Further signals within this time after the first one are copies of it: `timeout` sends one to the command, and
+/// another to its whole process group.
 const ECHO: Duration = Duration::from_millis(500);
 
-/// Whether the command was told to stop.
+/// Returns whether the command was told to stop.
 pub fn is_stopped() -> bool {
     STOPPED.load(Ordering::Relaxed)
 }
 
-/// Begins another image; returns whether the command was told to stop during the last one.
+/// Begins another image. Returns whether the command was told to stop during the last one.
 pub fn begin_image() -> bool {
     HAS_BEGUN.store(false, Ordering::Relaxed);
     HAS_WRITTEN.store(false, Ordering::Relaxed);
     is_stopped()
 }
 
-/// Notes that something of the image is done from now on.
+/// Records that the work on the image begins.
 pub fn begin_work() {
     HAS_BEGUN.store(true, Ordering::Relaxed);
 }
 
-/// Notes that a file of the image is written.
+/// Records that a file of the image has been written.
 pub fn note_written() {
     HAS_WRITTEN.store(true, Ordering::Relaxed);
 }
 
-/// Lets Ctrl-C stop the command, at once or after what is done is kept; a second one stops it at once.
+/// Lets Ctrl-C stop the command, either at once or after saving what is done. A second Ctrl-C stops it at once.
 ///
 /// # Errors
-/// If it cannot be caught.
+/// If Ctrl-C cannot be caught.
 pub fn catch(stops_at_once: bool) -> Result<()> {
     let mut first = None;
     handle(move || {
@@ -81,16 +81,16 @@ pub fn catch(stops_at_once: bool) -> Result<()> {
     })
 }
 
-/// Removes what was begun of files, and folders that were made for them alone.
+/// Removes unfinished files, and the folders that were created only for them.
 fn leave_no_rest() {
     remove_unfinished();
     remove_empty_folders();
 }
 
-/// Lets Ctrl-C end a command that keeps nothing, without what it has begun to write.
+/// Lets Ctrl-C end a command that keeps nothing, and removes the files that it has begun to write.
 ///
 /// # Errors
-/// If it cannot be caught.
+/// If Ctrl-C cannot be caught.
 pub fn catch_plainly() -> Result<()> {
     handle(|| {
         leave_no_rest();
@@ -98,8 +98,8 @@ pub fn catch_plainly() -> Result<()> {
     })
 }
 
-/// Installs what is done on Ctrl-C, and lets SIGHUP, the end of the terminal, be ignored if `nohup` had it so: a
-/// handler would end what is to outlive its terminal.
+/// Installs a handler for Ctrl-C. SIGHUP, sent at the end of the terminal, stays ignored if it was, as under `nohup`: a
+/// handler would end a command that is meant to outlive its terminal.
 fn handle(stop: impl FnMut() + Send + 'static) -> Result<()> {
     let was_ignored = ignore_end_of_terminal();
     let caught = ctrlc::set_handler(stop);
@@ -109,28 +109,28 @@ fn handle(stop: impl FnMut() + Send + 'static) -> Result<()> {
     caught.map_err(|error| Error::Arguments { message: format!("cannot catch Ctrl-C: {error}"), help: None })
 }
 
-/// Ignores SIGHUP; returns whether it was ignored before.
+/// Ignores SIGHUP. Returns whether it was ignored before.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 fn ignore_end_of_terminal() -> bool {
-    // SAFETY: both the signal and what becomes of it exist, and nothing of ours is run by it.
+    // SAFETY: the signal and its action are valid constants, and the action runs no code of ours.
     unsafe { libc::signal(libc::SIGHUP, libc::SIG_IGN) == libc::SIG_IGN }
 }
 
-/// There is no such signal elsewhere.
+/// Other systems have no such signal.
 #[cfg(not(unix))]
 fn ignore_end_of_terminal() -> bool {
     false
 }
 
-/// Lets a file that grows beyond what `ulimit -f` allows be an error of writing like any other.
+/// Ignores SIGXFSZ, so that a file larger than `ulimit -f` allows is an ordinary write error.
 #[cfg(unix)]
 #[allow(unsafe_code)]
 pub fn report_large_files() {
-    // SAFETY: both the signal and what becomes of it exist, and nothing of ours is run by it.
+    // SAFETY: the signal and its action are valid constants, and the action runs no code of ours.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
 }
 
-/// There is no such signal elsewhere.
+/// Other systems have no such signal.
 #[cfg(not(unix))]
 pub fn report_large_files() {}

@@ -1,12 +1,12 @@
-//! Lines on stdout for the program that listens there. Where it does not listen any more the work goes on.
+//! Lines on stdout for a program. If it stops reading, the work goes on.
 
 use std::io::{Error, ErrorKind, Write};
 use std::sync::OnceLock;
 
-/// Why the first line that was lost could not be written.
+/// Why the first lost line could not be written.
 static LOST: OnceLock<Error> = OnceLock::new();
 
-/// Says a line at once. That it is lost, as on a full disk, is kept in mind; that nobody reads it is not.
+/// Prints a line and flushes it. Remembers an error such as a full disk, but ignores that nobody reads the line.
 pub fn tell(line: &str) {
     let mut stdout = std::io::stdout().lock();
     match writeln!(stdout, "{line}").and_then(|()| stdout.flush()) {
@@ -17,7 +17,7 @@ pub fn tell(line: &str) {
     }
 }
 
-/// Why lines were lost, if any were.
+/// Returns why lines were lost, if any were.
 pub fn lost() -> Option<&'static Error> {
     LOST.get()
 }

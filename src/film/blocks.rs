@@ -134,7 +134,8 @@ impl BlockReader {
             Ok((content, [])) => Ok(content),
             // The checksum is right, so the content is undamaged.
             _ => {
-                let message = "it was written by another build of the renderer; read it with that one, or make it anew";
+                let message =
+                    "it was written by another build of the renderer; read it with that build, or create it again";
                 Err(Error::Decode { path: self.path.clone(), message: message.to_owned() })
             }
         }
@@ -175,7 +176,7 @@ impl BlockReader {
 
     /// Returns the error for a file that is not as it was written.
     pub fn damaged(&self) -> Error {
-        let message = "it is damaged or cut short; delete it and make it anew".to_owned();
+        let message = "it is damaged or truncated; delete it and create it again".to_owned();
         Error::Decode { path: self.path.clone(), message }
     }
 }

@@ -286,7 +286,7 @@ fn decode_error(path: &Path, said: &str) -> Error {
 /// Returns why the pixels of a file are not read, if that is so.
 fn unread(headers: &[Header]) -> Option<String> {
     let of_part = |header: &Header| match header {
-        Header { deep: true, .. } => Some("a deep image, which has many values to a pixel".into()),
+        Header { deep: true, .. } => Some("a deep image, which has many values per pixel".into()),
         Header { channels, .. } if channels.list.iter().any(|channel| channel.sampling != Vec2(1, 1)) => {
             Some("channel subsampling, by which several pixels share a value".into())
         }

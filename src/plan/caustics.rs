@@ -281,7 +281,7 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
     } else if scene.materials.iter().any(|named| named.material.lobes().is_diffuse()) {
-        Some("with diffuse_bounces 0, diffuse surfaces are lit straight from the lights alone")
+        Some("with diffuse_bounces 0, diffuse surfaces are lit directly by the lights alone")
     } else {
         Some("there is no diffuse or rough surface to show one")
     }
@@ -313,13 +313,13 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
     let line = |ways: &str, object: usize, but: &str| {
         let name = &scene.materials[scene.objects[object].material as usize].name;
-        format!("left out: light of point lights that reaches a {lit} surface by way of {ways} ({name}){but}")
+        format!("left out: light of point lights that reaches a {lit} surface via {ways} ({name}){but}")
     };
     let sent_on = if method.light_vertices { "; some of what it sends on is found at light vertices" } else { "" };
     let Some(pass) = &method.light_pass else {
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
-    let unseen = ", seen in a mirror or through glass or by way of another surface";
+    let unseen = ", seen in a mirror, through glass or via another surface";
     let of_aimed = smooth().find(|&object| Smoothness::sent_to(scene, object, &pass.to).is_some());
     let of_aimed = of_aimed.filter(|_| pass.map.is_none()).map(|object| line("smooth ones", object, unseen));
     let of_left = |smooth: Smoothness, ways: &str| {

@@ -160,9 +160,9 @@ fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
         lines.push(format!("max_bounces {bounces}: light of longer paths is left out; the report says how much"));
     }
     match scene.render.diffuse_bounces.filter(|_| wide(true)) {
-        Some(0) => lines.push("diffuse_bounces 0: diffuse surfaces are lit straight from the lights alone".into()),
+        Some(0) => lines.push("diffuse_bounces 0: diffuse surfaces are lit directly by the lights alone".into()),
         Some(bounces) => lines.push(format!(
-            "diffuse_bounces {bounces}: light that diffuse surfaces send on more often is left out; the report says how much"
+            "diffuse_bounces {bounces}: light of more diffuse bounces is left out; the report says how much"
         )),
         None => {}
     }

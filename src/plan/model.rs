@@ -127,7 +127,7 @@ const BEYOND: &str = "some color may be missed by more than is tolerated";
 fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
     match candidates[chosen].bound() {
         _ if plain => {
-            "every color is a number or rgb under the film's white, so more lanes would show nothing more".into()
+            "every color is a number or rgb under the film's white, so more lanes would change nothing".into()
         }
         bound if bound <= tolerance => "the fewest lanes that miss no color by more than is tolerated".into(),
         _ if chosen + 1 == candidates.len() => format!("the most lanes there are; {BEYOND}"),

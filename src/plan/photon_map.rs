@@ -89,7 +89,7 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
     let chance = match map.chance {
         1.0.. => String::new(),
         chance => format!(
-            "; it is read at {} of the places that paths reach, chosen by chance, which saves time",
+            "; it is read at {} of the places that paths reach, chosen at random, which saves time",
             percent(chance)
         ),
     };

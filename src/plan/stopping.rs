@@ -38,9 +38,9 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
         let samples = samples.filter(|_| error.is_some() || time.is_some())?;
         let all = if samples == 1 { "one sample".into() } else { format!("all {samples} samples") };
         return Some(match is_part {
-            true => format!("takes {all}: a part of an image does not tell the error of the whole"),
-            false if error.is_none() => format!("takes {all}: a time ends no render before {FEWEST}"),
-            false => format!("takes {all}: fewer than {FIRST_LOOK} do not tell the error"),
+            true => format!("takes {all}: a part of an image does not show the error of the whole"),
+            false if error.is_none() => format!("takes {all}: a time limit never ends a render before {FEWEST}"),
+            false => format!("takes {all}: the error cannot be estimated from fewer than {FIRST_LOOK}"),
         });
     };
     let within = |error: f64| {

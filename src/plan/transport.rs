@@ -36,8 +36,8 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
     };
     let leaves = |object: &Object| Some(format!("light leaves {} in every direction", object.name));
     let why = match scattering {
-        _ if basis.draws_wavelengths() => Some("each sample carries other wavelengths".to_owned()),
-        _ if scene.camera.has_lens() => Some("each sample sees through another point of the lens".to_owned()),
+        _ if basis.draws_wavelengths() => Some("each sample draws its own wavelengths".to_owned()),
+        _ if scene.camera.has_lens() => Some("each sample looks through its own point of the lens".to_owned()),
         None => anywhere(),
         Some(object) => match (scene.render.diffuse_bounces, rough, extended_light(scene)) {
             (Some(0), Some(rough), _) => leaves(rough),
@@ -51,7 +51,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
             DETERMINISTIC,
             format!(
                 "transport deterministic: no random light path, 1 sample per pixel is exact{}; branches end below weight {CUTOFF:e}",
-                if asks_for_more(scene) { " and more are the same again, so samples = 1 is enough" } else { "" }
+                if asks_for_more(scene) { " and more samples repeat it, so samples = 1 is enough" } else { "" }
             ),
         ),
         Some(why) => (
@@ -103,7 +103,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,
         Branching::Beyond([x, y]) => Some(format!(
-            "light has too many ways through glass and over mirrors to follow all of them, as at pixel ({x}, {y})"
+            "light has too many paths through glass and over mirrors to follow all of them, as at pixel ({x}, {y})"
         )),
     }
 }

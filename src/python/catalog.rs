@@ -40,7 +40,7 @@ pub(super) struct Tabulated {
     grid: data::Grid,
 }
 
-/// A value for each wavelength in nm, given as the bytes of an array of 64-bit floats.
+/// Returns a value for each wavelength in nm, given as the bytes of an array of 64-bit floats.
 fn each(bytes: &[u8], value: impl Fn(f64) -> f64) -> Plane {
     let values: Vec<f64> = bytes.as_chunks().0.iter().map(|nm| value(f64::from_ne_bytes(*nm))).collect();
     let shape = vec![values.len()];
@@ -127,7 +127,7 @@ pub(super) fn names(kind: &str) -> Vec<&'static str> {
     }
 }
 
-/// The name of an entry of the catalog; none of anything else.
+/// Returns the name of an entry of the catalog, or none for anything else.
 pub(super) fn name_of(value: &Bound<'_, PyAny>) -> Option<&'static str> {
     let entry = value.getattr("_core").ok()?.getattr("entry").ok()?;
     entry.cast::<Entry>().ok().map(|entry| entry.get().name)

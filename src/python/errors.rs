@@ -1,4 +1,4 @@
-//! Errors as exceptions.
+//! Errors as Python exceptions.
 
 use std::fs::create_dir_all;
 use std::io::ErrorKind;
@@ -15,10 +15,10 @@ pyo3::import_exception!(abbe._errors, SceneError);
 /// A mistake as the arguments of `abbe.Mistake`: key, message, help, file, line and column.
 type Mistake = (Option<String>, String, Option<String>, String, usize, usize);
 
-/// What the system says where there is no such file.
+/// The system's error number for a missing file.
 const NO_SUCH_FILE: i32 = 2;
 
-/// The exception that an error is.
+/// Converts an error to an exception.
 pub(super) fn raised(error: Error) -> PyErr {
     match error {
         Error::Scene(ref mistakes) => {
@@ -42,7 +42,7 @@ pub(super) fn raised(error: Error) -> PyErr {
     }
 }
 
-/// The exception for a file that cannot be read, maybe because it is not there.
+/// Converts an error of reading a file, which may not exist, to an exception.
 pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
     match error {
         Error::Arguments { message, help } if !path.exists() => {
@@ -53,20 +53,20 @@ pub(super) fn raised_of(path: &Path, error: Error) -> PyErr {
     }
 }
 
-/// What is wrong with an argument, and what to do.
+/// Returns an exception for an argument: what is wrong with it, and what to do.
 pub(super) fn refuse<T>(message: impl Into<String>, help: &str) -> PyResult<T> {
     Err(OptionsError::new_err((message.into(), Some(help.to_owned()))))
 }
 
-/// What cannot be sent to another process, nor kept as bytes, and what can in its place.
+/// Returns an exception for an object that cannot be sent to another process or kept as bytes, with help on what can.
 pub(super) fn no_pickle<T>(what: &str, help: &str) -> PyResult<T> {
     Err(PyTypeError::new_err(format!("{what} cannot be pickled: {help}")))
 }
 
-/// A file to write, which ends as its kind does; makes its folder if that is missing.
+/// Checks that a file to write has the ending of its kind, and creates its folder if that is missing.
 ///
 /// # Errors
-/// If it ends otherwise, or its folder cannot be made.
+/// If the file has another ending, or its folder cannot be created.
 pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
     if !path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)) {
         let message = match path.as_os_str().is_empty() {
@@ -77,7 +77,7 @@ pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
     }
     let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { return Ok(()) };
     match create_dir_all(folder) {
-        // A file that stands there is told when the image is written.
+        // A file in place of the folder is reported when the image is written.
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
             Err(raised(Error::Io { doing: "make", path: folder.to_owned(), source: error }))
         }
@@ -85,7 +85,7 @@ pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
     }
 }
 
-/// What should not happen, in words.
+/// Returns an exception for something that should never happen.
 pub(super) fn defect(what: &str) -> PyErr {
     RenderError::new_err((format!("this is a defect of Abbe: {what}"), None::<String>))
 }
@@ -96,7 +96,8 @@ fn mistake(found: &Diagnostic, lines: &mut Lines) -> Mistake {
     (key, message, help, file.display().to_string(), line, column)
 }
 
-/// The flags of a command line are arguments of the same name; a whole command stays as it is.
+/// Removes the dashes of flags from a message, as arguments in Python have the same names. Leaves a whole command as it
+/// is.
 pub(super) fn for_python(words: &str) -> String {
     if words.contains("render --") { words.to_owned() } else { words.replace("--", "") }
 }

@@ -1,4 +1,4 @@
-//! Images in files, whoever made them, and how far they are apart.
+//! Images in files of any program, and how much they differ.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use super::options::stops;
 use super::plane::Plane;
 use super::work;
 
-/// What a rendered image is called, which has no file.
+/// The name of a rendered image, which has no file.
 const IMAGE: &str = "the image";
 
 /// An OpenEXR file.
@@ -115,7 +115,7 @@ impl Exr {
 }
 
 impl Exr {
-    /// Whether a layer holds two ranks of a Cryptomatte, of which alpha is a share like any other.
+    /// Returns whether a layer holds two ranks of a Cryptomatte, where alpha is a share like any other.
     fn is_matte(&self, name: &str) -> bool {
         let attributes = self.file.parts.iter().flat_map(|part| &part.attributes);
         let mut names = attributes.filter(|(key, _)| key.starts_with("cryptomatte/") && key.ends_with("/name"));
@@ -123,13 +123,13 @@ impl Exr {
     }
 }
 
-/// The image itself for looking, or else the first layer.
+/// Returns a picture of the image itself, or of the first layer if there is none.
 fn picture(file: &ExrFile, path: &Path, stops: f64) -> Result<Picture> {
     let layer = file.layer(None, &path.display().to_string())?;
     Ok(Picture::of_layer(file, &layer, Exposure { stops, ..Exposure::default() }).0)
 }
 
-/// The numbers of a layer, side by side: what a file has as 16 or 32 bits, as 32.
+/// Returns the channels of a layer as interleaved 32-bit numbers, whether the file holds 16 or 32 bits.
 fn plane(layer: &ExrLayer, whole: bool) -> Plane {
     let channels = if whole { layer.channels.clone() } else { layer.values() };
     let [width, height] = layer.part.bounds.size;

@@ -19,7 +19,7 @@ use super::work;
 #[pyclass(frozen, module = "abbe._abbe")]
 pub(super) struct Image {
     pub(super) image: Arc<abbe::Image>,
-    /// All that is known of it, as JSON.
+    /// The report, the plan and the warnings of its render, as JSON.
     pub(super) account: String,
 }
 
@@ -65,7 +65,7 @@ impl Image {
         let spectral = film.spectral.as_ref()?;
         let bands = spectral.bands.count();
         let mut place = packed(film, &spectral.values, spectral.numbers(), 0..bands);
-        // A single band is one still.
+        // A single band still gets an axis.
         if bands == 1 {
             place.shape.push(1);
             place.strides.push(size_of::<f32>());
@@ -125,7 +125,7 @@ impl Image {
 }
 
 impl Image {
-    /// What is said of a layer that is not there.
+    /// Returns the exception for a layer that does not exist.
     fn missing(&self, name: &str) -> PyErr {
         let layers = self.layers();
         let layer = name.split_once('.').map_or(name, |(layer, _)| layer);
@@ -141,7 +141,7 @@ impl Image {
     }
 }
 
-/// What each pixel has.
+/// Finds a layer or channel that every image has.
 fn of_pixels(film: &Film, name: &str) -> Option<Place> {
     let rgb = offset_of!(Pixel, rgb);
     let (start, channels) = match name {
@@ -156,7 +156,7 @@ fn of_pixels(film: &Film, name: &str) -> Option<Place> {
     Some(of_each(film, &film.pixels, size_of::<Pixel>(), start, channels))
 }
 
-/// What was asked for beside that.
+/// Finds a requested layer, or one of its channels.
 fn of_layers(film: &Film, name: &str) -> Option<Place> {
     let layer = |name: &str| film.layers.iter().find(|layer| layer.name == name);
     let (found, channels) = match layer(name) {
@@ -171,13 +171,14 @@ fn of_layers(film: &Film, name: &str) -> Option<Place> {
     Some(packed(film, &found.values, found.layer.channels().len(), channels))
 }
 
-/// Some of the numbers of each pixel, of which each has so many.
+/// Returns the place of the numbers `some` of each pixel, which has `each` of them.
 fn packed(film: &Film, values: &[f32], each: usize, some: Range<usize>) -> Place {
     let size = size_of::<f32>();
     of_each(film, values, each * size, some.start * size, some.len())
 }
 
-/// So many numbers of each pixel, one behind the other, which begin at `start` of the `step` bytes that it has.
+/// Returns the place of `channels` consecutive numbers of each pixel, which begin at `start` of the `step` bytes of the
+/// pixel.
 fn of_each<T>(film: &Film, whole: &[T], step: usize, start: usize, channels: usize) -> Place {
     let (mut shape, mut strides) =
         (vec![film.height as usize, film.width as usize], vec![film.width as usize * step, step]);

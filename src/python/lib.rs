@@ -1,7 +1,8 @@
 //! The library as an extension module of Python, `abbe._abbe`.
 //!
-//! What people import is the package in `src/python/abbe`: it has the words, the types and the arrays, and asks here
-//! for the rest. Memory goes to Python by its address, with the object that owns it; nothing here is unsafe.
+//! People import the package in `src/python/abbe`, which has the documentation, the types and the arrays, and calls
+//! this module for the rest. Memory is passed to Python by its address, with the object that owns it. Nothing here is
+//! unsafe.
 
 #![deny(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What is asked for beside the scene.
+//! Options of a render besides its scene.
 
 use std::time::Duration;
 
@@ -12,10 +12,10 @@ use pyo3::types::{PyBool, PyDict, PyString};
 use super::errors::refuse;
 use super::text::shown;
 
-/// The arguments of a render as the library takes them, of all that are given; None leaves one to the scene.
+/// Converts the arguments of a render to the options of the library. None leaves an option to the scene.
 ///
 /// # Errors
-/// If one of them is none of those that it may be.
+/// If an argument has a value that is not allowed.
 pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     let threads: Option<usize> = number(given, "threads", "a whole number of 1 or more")?;
     let most = Options::MOST_THREADS;
@@ -37,7 +37,7 @@ pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     })
 }
 
-/// What `read` makes of an argument; none if it is None, or not there.
+/// Reads an argument with `read`. Returns none if the argument is None or missing.
 fn maybe<'py, T>(
     given: &Bound<'py, PyDict>,
     name: &str,
@@ -46,12 +46,12 @@ fn maybe<'py, T>(
     given.get_item(name)?.filter(|value| !value.is_none()).as_ref().map(read).transpose()
 }
 
-/// What an argument says, which is `wanted`.
+/// Converts an argument. `wanted` describes the values that are allowed.
 fn get<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, wanted: &str) -> PyResult<Option<T>> {
     maybe(given, name, |value| value.extract().or_else(|_| refuse_value(name, wanted, value)))
 }
 
-/// A number that an argument says; True and False are none, though Python counts with them.
+/// Converts an argument to a number. Refuses True and False, which Python counts as numbers.
 fn number<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str, wanted: &str) -> PyResult<Option<T>> {
     match given.get_item(name)?.filter(is_truth) {
         Some(truth) => refuse_value(name, wanted, &truth),
@@ -59,7 +59,7 @@ fn number<'py, T: FromPyObjectOwned<'py>>(given: &Bound<'py, PyDict>, name: &str
     }
 }
 
-/// Whether it is True or False, of Python or numpy.
+/// Returns whether a value is True or False, of Python or numpy.
 fn is_truth(value: &Bound<'_, PyAny>) -> bool {
     value.is_instance_of::<PyBool>() || value.get_type().name().is_ok_and(|name| name == "bool_" || name == "bool")
 }
@@ -68,10 +68,10 @@ fn refuse_value<T>(name: &str, wanted: &str, value: &Bound<'_, PyAny>) -> PyResu
     refuse(format!("{name} is {wanted}, not {}", shown(value)), "help(abbe.render) says all arguments")
 }
 
-/// Stops of exposure that light can be multiplied by.
+/// Checks an exposure in stops.
 ///
 /// # Errors
-/// If they are no finite number.
+/// If the exposure is not finite.
 pub(super) fn stops(exposure: f64) -> PyResult<f64> {
     match exposure.is_finite() {
         true => Ok(exposure),
@@ -79,10 +79,10 @@ pub(super) fn stops(exposure: f64) -> PyResult<f64> {
     }
 }
 
-/// Seconds, or a text such as `"10m"`, of the argument `name`.
+/// Converts the argument `name`, which is a number of seconds or a text such as `"10m"`.
 ///
 /// # Errors
-/// If it is none.
+/// If it is neither, or not above 0.
 pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
     let found = match value.cast::<PyString>() {
         Ok(text) => duration(&text.to_cow()?),
@@ -112,7 +112,7 @@ fn overscan(value: &Bound<'_, PyAny>) -> PyResult<Overscan> {
     }
 }
 
-/// Four whole numbers; True and False are none.
+/// Converts a value to four whole numbers. True and False do not count as numbers.
 fn four<'py, T: FromPyObjectOwned<'py>>(value: &Bound<'py, PyAny>) -> Option<[T; 4]> {
     let numbers = value.extract().ok()?;
     let has_truth = value.try_iter().ok()?.flatten().any(|number| is_truth(&number));
@@ -133,7 +133,7 @@ fn crop(value: &Bound<'_, PyAny>) -> PyResult<Window> {
     }
 }
 
-/// A list of names, or the word for all of them.
+/// Converts a list of names, or the word for all layers.
 fn layers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Layer>> {
     if let Ok(word) = value.cast::<PyString>() {
         let word = word.to_cow()?;

@@ -1,4 +1,4 @@
-//! Numbers that numpy looks at where they are.
+//! Numbers that numpy reads in place.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 /// Numbers in memory that somebody owns, by the array interface of numpy: they are not copied, and cannot be written.
 #[pyclass(frozen, module = "abbe._abbe")]
 pub(super) struct Plane {
-    /// As long as numpy looks.
+    /// The owner of the memory, kept alive as long as numpy uses it.
     _owner: Arc<dyn Any + Send + Sync>,
     address: usize,
     shape: Vec<usize>,
@@ -18,9 +18,9 @@ pub(super) struct Plane {
     kind: &'static str,
 }
 
-/// A number that numpy knows.
+/// A type of numbers that numpy supports.
 pub(super) trait Number: Copy + Send + Sync + 'static {
-    /// Its type in the array interface.
+    /// The name of the type in the array interface.
     const KIND: &'static str;
 }
 
@@ -36,23 +36,23 @@ impl Number for u32 {
     const KIND: &'static str = if cfg!(target_endian = "big") { ">u4" } else { "<u4" };
 }
 
-/// Where numbers of 32 bits lie within what somebody owns.
+/// The place of 32-bit numbers in memory that something else owns.
 pub(super) struct Place {
-    /// Of the first.
+    /// The address of the first number.
     pub(super) address: usize,
     pub(super) shape: Vec<usize>,
-    /// In bytes.
+    /// The strides in bytes.
     pub(super) strides: Vec<usize>,
 }
 
 impl Plane {
-    /// Numbers that lie in memory which `owner` keeps as it is.
+    /// Creates a plane of numbers in memory that `owner` keeps unchanged.
     pub(super) fn of(owner: Arc<dyn Any + Send + Sync>, place: Place) -> Self {
         let Place { address, shape, strides } = place;
         Self { _owner: owner, address, shape, strides, kind: f32::KIND }
     }
 
-    /// Numbers one behind the other.
+    /// Creates a plane that owns its contiguous numbers.
     pub(super) fn owned<N: Number>(numbers: Vec<N>, shape: Vec<usize>) -> Self {
         let numbers = Arc::new(numbers);
         let within = |axis: usize| shape[axis + 1..].iter().product::<usize>();

@@ -19,9 +19,9 @@ use super::options::{options, time};
 use super::scene::Scene;
 use super::work::{self, Work};
 
-/// How often a program hears of progress.
+/// The time between two reports of progress.
 const PERIOD: Duration = Duration::from_millis(500);
-/// How long a render that was told to stop is waited for where it keeps nothing.
+/// The maximum time to wait for a stopped render that keeps nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// How a scene will be rendered, as JSON, and on how many threads.
@@ -68,7 +68,7 @@ pub(super) fn render(
     });
     let rendered = rendered.inspect_err(|_| {
         state.stop.store(true, Relaxed);
-        // What is done is kept before it is said that it was stopped; who has not begun has nothing to keep.
+        // What is done is saved before the exception is raised. A render that has not begun has nothing to save.
         let patience = if keeps && state.has_begun() { Duration::MAX } else { PATIENCE };
         let _ = work.wait(py, patience);
     });
@@ -77,7 +77,7 @@ pub(super) fn render(
     Ok(image)
 }
 
-/// What the one who renders and the one who waits tell one another.
+/// What the rendering thread and the waiting thread tell each other.
 #[derive(Default)]
 struct State {
     stop: AtomicBool,
@@ -88,7 +88,7 @@ struct State {
 }
 
 impl State {
-    /// Reports that a render begins, with the work done so far and all of it.
+    /// Reports that a render begins, with the work done so far and the total work. Returns when it began.
     fn begin(&self, done: u64, work: u64) -> Instant {
         self.done.store(done, Relaxed);
         self.work.store(work, Relaxed);
@@ -118,7 +118,7 @@ struct Job {
     state: Arc<State>,
 }
 
-/// All that is known of a render.
+/// The account of a render for Python: its report, its plan and its warnings.
 #[derive(Serialize)]
 struct Account<'a> {
     #[serde(flatten)]
@@ -128,13 +128,13 @@ struct Account<'a> {
 }
 
 impl Job {
-    /// The image, unless it was stopped.
+    /// Returns the image, or none if the render was stopped.
     fn run(self) -> Result<Option<Image>> {
         let kept = self.checkpoint.as_ref();
         kept.map_or(Ok(()), Checkpoint::spare)?;
         let mut rendering = Rendering::new(&self.scene, &self.options)?;
         if self.state.stop.load(Relaxed) {
-            // Nobody waits any longer, and there is nothing to keep.
+            // Nobody waits any longer, and there is nothing to save.
             return Ok(None);
         }
         kept.map_or(Ok(()), |kept| kept.go_on(&mut rendering))?;
@@ -145,7 +145,7 @@ impl Job {
         if !is_finished {
             return saved.map(|()| None);
         }
-        // The image is there all the same.
+        // A failure is only a warning, because the image exists all the same.
         warnings.extend(saved.err().map(|error| format!("the render is finished, but {error}")));
         let (took, expected, image) = (began.elapsed(), rendering.expected(), rendering.image());
         warnings.extend(image.warnings());
@@ -154,7 +154,8 @@ impl Job {
         Ok(Some(Image { image: Arc::new(image), account }))
     }
 
-    /// Takes all samples, and keeps them now and then. Answers whether all were taken, or somebody stopped it.
+    /// Takes all samples, and saves them now and then. Returns true if all were taken, and false if somebody stopped
+    /// the render.
     fn advance(&self, rendering: &mut Rendering, warnings: &mut Vec<String>) -> Result<bool> {
         let state = &self.state;
         let count = |more| {
@@ -171,7 +172,7 @@ impl Job {
                 return Ok(false);
             }
             if let Some(kept) = self.checkpoint.as_ref().filter(|_| advance == Advance::Stopped) {
-                // The render is worth more than what could not be kept of it.
+                // The render is worth more than a failed save, so it continues.
                 let saved = timer.run(|| rendering.save(&kept.path));
                 warnings.extend(saved.err().map(|error| format!("the render went on, but {error}")));
             }
@@ -180,7 +181,7 @@ impl Job {
 }
 
 impl Checkpoint {
-    /// Refuses to lose what an earlier run has kept.
+    /// Refuses to overwrite the checkpoint of an earlier run, or a file that is no checkpoint.
     fn spare(&self) -> Result<()> {
         let name = self.path.display();
         if self.path.is_dir() {
@@ -200,12 +201,12 @@ impl Checkpoint {
             true => Ok(()),
             false => Error::refuse(
                 format!("{name} is there from an earlier run"),
-                "add resume=True to go on from it, or delete it to begin anew",
+                "add resume=True to go on from it, or delete it to start over",
             ),
         }
     }
 
-    /// Goes on from what an earlier run has kept, if there is anything.
+    /// Resumes from the checkpoint of an earlier run, if requested and if there is one.
     fn go_on(&self, rendering: &mut Rendering) -> Result<()> {
         if !self.resume || !self.path.exists() {
             return Ok(());

@@ -12,7 +12,7 @@ use pyo3::types::{PyDict, PyMapping};
 use super::errors::{for_python, no_pickle, raised, raised_of, refuse};
 use super::{text, work};
 
-/// The same error, in which mistakes in settings, of which each has a line, are told by their keys.
+/// Identifies mistakes in settings by their keys. Each line of the text `SETTINGS` is a setting.
 fn by_key(error: Error, keys: &[String]) -> Error {
     let Error::Scene(mut mistakes) = error else { return error };
     let is_of_setting = |mistake: &&mut Diagnostic| mistake.file.as_os_str() == SETTINGS;

@@ -1,4 +1,4 @@
-//! What a program has built of dicts, lists, numbers and texts, as the text of a scene: the same keys and values in
+//! Converts the dicts, lists, numbers and texts of a program to the text of a scene, with the same keys and values in
 //! the same order.
 
 use std::fmt::Write;
@@ -12,13 +12,13 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, P
 use super::catalog;
 use super::errors::raised;
 
-/// Most dicts and lists within one another: more than a scene has, and fewer than TOML may have.
+/// The maximum depth of nested dicts and lists: more than a scene has, and less than TOML may have.
 const DEEPEST: usize = 64;
 
-/// The text of a scene, and the arrays of its meshes beside it.
+/// Returns the text of a scene, and the arrays of its meshes beside it.
 ///
 /// # Errors
-/// If there is something in it that has no place in a scene, all of it with its keys.
+/// If it contains values that have no place in a scene. All of them are reported with their keys.
 pub(super) fn scene(table: &Bound<'_, PyMapping>, file: &Path) -> PyResult<(String, Vec<Rows>)> {
     let mut writer = Writer::default();
     for entry in table.items()? {
@@ -28,21 +28,21 @@ pub(super) fn scene(table: &Bound<'_, PyMapping>, file: &Path) -> PyResult<(Stri
     writer.finish(file)
 }
 
-/// The lists of a mesh that are long, of numbers of points and of coordinates.
+/// The long lists of a mesh: one of point numbers, and those of coordinates.
 const FACES: &str = "faces";
 const REAL: [&str; 3] = ["points", "normals", "uv"];
 
-/// A value by itself, as it stands behind `KEY=`.
+/// Returns the text of a single value, as it is written after `KEY=`.
 ///
 /// # Errors
-/// If it is nothing that a scene may have; `key` says where it is.
+/// If it is not a value that a scene may have. `key` tells where it is.
 pub(super) fn value(key: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     let mut writer = Writer { path: vec![Step::Key(key.to_owned())], is_alone: true, ..Writer::default() };
     writer.value(value)?;
     writer.finish(Path::new("set")).map(|(text, _)| text)
 }
 
-/// A step on the way to a value.
+/// A step on the path to a value.
 enum Step {
     Key(String),
     Entry(usize),
@@ -51,9 +51,9 @@ enum Step {
 #[derive(Default)]
 struct Writer {
     text: String,
-    /// Arrays that the text has a mark of.
+    /// The arrays that the text refers to by marks.
     rows: Vec<Rows>,
-    /// Whether it is a value by itself, which has no arrays beside it.
+    /// Whether the text is a single value, which has no arrays beside it.
     is_alone: bool,
     path: Vec<Step>,
     mistakes: Vec<Diagnostic>,
@@ -68,7 +68,7 @@ impl Writer {
         Err(raised(Error::Scene(self.mistakes.into_iter().map(file).collect())))
     }
 
-    /// Keeps a mistake. Writing continues, so that all are reported together.
+    /// Records a mistake. Writing continues, so that all mistakes are reported together.
     fn refuse<'h>(&mut self, message: impl Into<String>, help: impl Into<Option<&'h str>>) -> PyResult<()> {
         let mut path = String::new();
         for step in &self.path {
@@ -133,7 +133,8 @@ impl Writer {
         Ok(())
     }
 
-    /// What becomes one of the others: of numpy, a path, a time, a number or dict of a type of its own.
+    /// Writes a value that is converted first: an array or number of numpy, a path, a time, an entry of the catalog, or
+    /// a number or dict of another type.
     fn other(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let is = |method: &str| value.hasattr(method).unwrap_or(false);
         if is("tolist") {
@@ -174,7 +175,7 @@ impl Writer {
         }
     }
 
-    /// The list that it writes, if that is one of a mesh in the scene itself.
+    /// Returns the name of the list that is being written, if it is a long list of a mesh in the scene itself.
     fn list_of_mesh(&self) -> Option<&str> {
         match self.path.as_slice() {
             _ if self.is_alone => None,
@@ -185,7 +186,8 @@ impl Writer {
         }
     }
 
-    /// What a value stands for, which may stand for another in turn: but not without end.
+    /// Writes a value that another one was converted to. It is converted again only if it is a number, so that this
+    /// ends.
     fn deeper(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let is_plain = value.is_instance_of::<PyInt>()
             || value.is_instance_of::<PyFloat>()
@@ -193,7 +195,7 @@ impl Writer {
             || value.is_instance_of::<PyList>();
         match value.extract::<f64>() {
             _ if is_plain => self.value(value),
-            // A number of more digits than Python has, such as a long double of numpy.
+            // A number with more digits than a float of Python, such as a long double of numpy.
             Ok(number) => self.value(&PyFloat::new(value.py(), number)),
             Err(_) => self.foreign(value),
         }
@@ -234,23 +236,24 @@ impl Writer {
         Ok(())
     }
 
-    /// A text in quotes on one line. What JSON escapes, TOML reads; it refuses one character more.
+    /// Writes a text in quotes on one line, with the escapes of JSON, which TOML understands. TOML also requires one
+    /// for U+007F.
     fn quoted(&mut self, text: &str) {
         let quoted = serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007F");
         self.text.push_str(&quoted);
     }
 }
 
-/// Whether an array of numpy hides some of its values.
+/// Returns whether an array of numpy hides some of its values.
 fn is_masked(array: &Bound<'_, PyAny>) -> bool {
     let any = array.getattr("mask").and_then(|mask| mask.call_method0("any"));
     any.and_then(|any| any.is_truthy()).unwrap_or(false)
 }
 
-/// The rows of an array of numpy with two dimensions; none if its numbers are better told one by one.
+/// Returns the rows of a two-dimensional array of numpy, or none if its numbers are better written one by one.
 ///
 /// # Errors
-/// What numpy raises: that there is too little memory.
+/// The exception of numpy if there is too little memory.
 fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> PyResult<Option<Rows>> {
     let asked = || -> PyResult<((usize, usize), String)> {
         Ok((array.getattr("shape")?.extract()?, array.getattr("dtype")?.getattr("kind")?.extract()?))
@@ -268,12 +271,12 @@ fn rows(array: &Bound<'_, PyAny>, is_whole: bool) -> PyResult<Option<Rows>> {
     Ok(numbers.filter(|_| count > 0 && width > 0).map(|numbers| Rows { width, numbers }))
 }
 
-/// A number of each eight bytes.
+/// Converts each eight bytes to a number.
 fn each<T>(bytes: &[u8], number: impl Fn([u8; 8]) -> T) -> Vec<T> {
     bytes.as_chunks().0.iter().map(|eight| number(*eight)).collect()
 }
 
-/// A value as Python shows it, if that is short.
+/// Returns a value as Python shows it, if that is short.
 pub(super) fn shown(value: &Bound<'_, PyAny>) -> String {
     let shown = value.repr().map(|text| text.to_string()).unwrap_or_default();
     if shown.is_empty() || shown.chars().count() > 40 { "another value".into() } else { shown }

@@ -1,4 +1,4 @@
-//! Work that takes its time: without the lock of the interpreter, and so that Ctrl-C is heard.
+//! Long work, done without the lock of the interpreter and in such a way that Ctrl-C is noticed.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process;
@@ -12,12 +12,12 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::errors::{defect, raised};
 
-/// How long Python waits for its turn at most.
+/// The maximum time between two checks for signals.
 const TICK: Duration = Duration::from_millis(50);
-/// Bytes of a thread's stack: as many as a command has.
+/// The bytes of a thread's stack, as many as the command has.
 const STACK: usize = 8 << 20;
-/// The process that worked first, whose threads share work. One that is forked of it has only the memory of them, and
-/// would wait for them without end.
+/// The process that worked first, all of whose work shares its threads. A process forked from it only has a copy of
+/// their memory, and would wait for them forever.
 static FIRST: OnceLock<u32> = OnceLock::new();
 
 /// Work on a thread of its own.
@@ -25,19 +25,19 @@ pub(super) struct Work<T> {
     answer: Mutex<Receiver<Option<T>>>,
 }
 
-/// Does work, and raises what a signal raises meanwhile; the work then comes to its end unheard.
+/// Does work. If a signal raises an exception meanwhile, raises it, and ignores the result of the work, which goes on.
 ///
 /// # Errors
-/// What a signal raises, and if the work has panicked.
+/// The exception of a signal, or a defect if the work panics.
 pub(super) fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     Work::begin(work)?.finish(py, &mut || Ok(()))
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Begins it.
+    /// Begins the work.
     ///
     /// # Errors
-    /// If there can be no thread.
+    /// If no thread can be started.
     pub(super) fn begin(work: impl FnOnce() -> T + Send + 'static) -> PyResult<Self> {
         let (tell, answer) = sync_channel(1);
         let threads = threads_of_forked()?;
@@ -46,17 +46,17 @@ impl<T: Send + 'static> Work<T> {
                 Some(threads) => threads.install(work),
                 None => work(),
             };
-            // Whoever does not wait any longer need not know.
+            // If nobody waits any longer, the result is not needed.
             let _ = tell.send(catch_unwind(AssertUnwindSafe(work)).ok());
         };
         Builder::new().name("abbe".into()).stack_size(STACK).spawn(answered)?;
         Ok(Self { answer: Mutex::new(answer) })
     }
 
-    /// Waits for what comes of it; `meanwhile` is done now and then, with the lock of the interpreter.
+    /// Waits for the result. Calls `meanwhile` now and then, with the lock of the interpreter.
     ///
     /// # Errors
-    /// What a signal or `meanwhile` raises, and if the work has panicked.
+    /// The exception of a signal or of `meanwhile`, or a defect if the work panics.
     pub(super) fn finish(&self, py: Python<'_>, meanwhile: &mut dyn FnMut() -> PyResult<()>) -> PyResult<T> {
         loop {
             if let Some(answer) = self.wait(py, TICK)? {
@@ -67,7 +67,7 @@ impl<T: Send + 'static> Work<T> {
         }
     }
 
-    /// What comes of it within a time, if anything does.
+    /// Waits for the result for a limited time. Returns none if it is not there by then.
     ///
     /// # Errors
     /// If the work has panicked.
@@ -84,10 +84,11 @@ impl<T: Send + 'static> Work<T> {
     }
 }
 
-/// Threads for one piece of work in a process that was forked of the first one; none in that, which has its own.
+/// Returns threads for one piece of work in a process forked from the first one. The first process has threads of its
+/// own, and gets none.
 ///
 /// # Errors
-/// If there can be no threads.
+/// If no threads can be started.
 fn threads_of_forked() -> PyResult<Option<ThreadPool>> {
     if *FIRST.get_or_init(process::id) == process::id() {
         return Ok(None);

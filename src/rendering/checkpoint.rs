@@ -109,7 +109,7 @@ pub(super) fn resume(
     };
     let saved: Identity = blocks.block()?;
     if let Some(difference) = identity.difference(&saved) {
-        return refuse(path, &difference, "delete it to begin anew, or name another image");
+        return refuse(path, &difference, "delete it to start over, or name another image");
     }
     let Finished { written, .. } = blocks.block()?;
     let resumed = match passes.restore(blocks)? {
@@ -117,7 +117,7 @@ pub(super) fn resume(
         trace::Restored::Continues => Resumed::Continues,
         trace::Restored::HasMore(samples) => Resumed::HasMore(samples),
         trace::Restored::Refused(why, samples) => {
-            return refuse(path, &why, &format!("ask for {samples} samples per pixel, or delete it to begin anew"));
+            return refuse(path, &why, &format!("ask for {samples} samples per pixel, or delete it to start over"));
         }
     };
     Ok((resumed, written))

@@ -76,7 +76,7 @@ impl Identity {
         let value = |name: &str| self.0.iter().find(|(known, _)| known == name).map(|(_, value)| value);
         let (name, theirs) = other.0.iter().find(|(name, theirs)| value(name) != Some(theirs))?;
         Some(match name.as_str() {
-            SCENE => "it was made of another scene, or of this one before it was changed".into(),
+            SCENE => "it was made from another scene, or from this one before it was changed".into(),
             PLAN => {
                 "it was made by another plan: other --samples or another --error may need one, as where photons are \
                  gathered, or light vertices or adaptive sampling begin"

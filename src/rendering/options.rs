@@ -106,7 +106,7 @@ fn check_render(render: &RenderText) -> Result<()> {
         return Error::refuse(message, "--error 0.01 asks for one percent");
     }
     if render.is_part && render.samples.is_none() && (render.error.is_some() || render.time.is_some()) {
-        let message = "a part of an image does not tell the error of the whole, nor how much others do in a time";
+        let message = "a part of an image shows neither the error of the whole nor what others do in a given time";
         return Error::refuse(message, "say how many samples all parts take: --samples 512");
     }
     Ok(())
@@ -143,7 +143,7 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     if bytes > MOST_OF_LAYERS {
         let gigabytes = bytes / 1_000_000_000;
         let message = format!("{} channels of layers would take {gigabytes} GB of memory", scene.layer_channels());
-        return Error::refuse(message, "ask for fewer layers, or make a part of the image at a time with --crop");
+        return Error::refuse(message, "ask for fewer layers, or render a part of the image at a time with --crop");
     }
     if scene.format.has_stokes() && scene.render.polarization == PolarizationText::Off {
         let message = "Stokes vectors are asked for, and the scene turns polarization off";

@@ -30,7 +30,7 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     }
     if report.by_chance > 0 {
         let share = format!("in {} of {} camera samples", report.by_chance, report.samples);
-        let what = "light had too many ways to follow all, and went on by chance: these pixels have noise";
+        let what = "light had too many paths to follow all, and some were chosen at random: these pixels have noise";
         warnings.push(format!("{share} {what}"));
     }
     warnings
@@ -86,7 +86,7 @@ fn missed(error: &ImageError) -> Option<String> {
 /// Warns of an image without any light, whose noise is unknown.
 fn unmeasured(report: &Report, error: &ImageError) -> Option<String> {
     let is_dark = report.light == 0.0 && error.alpha.is_none() && error.asked.is_some();
-    is_dark.then(|| "no light was found in any pixel, so that nothing tells how far the image is off".into())
+    is_dark.then(|| "no light was found in any pixel, so the error of the image is unknown".into())
 }
 
 /// Describes rare light and its path.

@@ -13,12 +13,12 @@ const KINDS: [(&[&str], &str, &str); 11] = [
     (
         &["png", "jpg", "jpeg", "hdr"],
         "an image",
-        "in a scene, which is a TOML file, it stands as { image = \"FILE\" } in place of a color",
+        "in a scene, which is a TOML file, write it as { image = \"FILE\" } in place of a color",
     ),
     (
         &["ply", "obj", "gltf", "glb"],
         "a mesh",
-        "in a scene, which is a TOML file, it stands as shape.mesh = { file = \"FILE\" }; README.md begins with one",
+        "in a scene, which is a TOML file, write it as shape.mesh = { file = \"FILE\" }; README.md begins with one",
     ),
     (&["stl", "fbx", "dae", "3ds", "abc"], "a mesh or a scene of another program", EXPORT),
     (&["pbrt"], "a scene of pbrt", EXPORT),

@@ -228,7 +228,9 @@ impl Document {
             None => (0..count as u32).collect(),
         };
         match corners.iter().find(|&&corner| corner as usize >= count) {
-            Some(corner) => Err(format!("a face asks for vertex {corner}, but its {count} vertices count from 0")),
+            Some(corner) => {
+                Err(format!("a face refers to vertex {corner}, but its {count} vertices are numbered from 0"))
+            }
             None => Ok(corners),
         }
     }

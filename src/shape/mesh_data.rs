@@ -43,5 +43,5 @@ pub(super) const NO_VERTEX: u32 = u32::MAX;
 /// Returns the error message for a corner beyond the last vertex.
 pub(super) fn no_such_vertex(corner: u32, count: usize) -> String {
     let vertex = if corner == NO_VERTEX { "a negative vertex".into() } else { format!("vertex {corner}") };
-    format!("a face asks for {vertex}, but the {count} vertices count from 0")
+    format!("a face refers to {vertex}, but the {count} vertices are numbered from 0")
 }

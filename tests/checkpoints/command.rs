@@ -47,11 +47,11 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     for (words, told) in [
         (
             "s.toml --resume",
-            "s.checkpoint has all samples that are needed, and the image is written: nothing is left to be done",
+            "s.checkpoint has all samples that are needed, and the image is written: nothing is left to do",
         ),
         (
             "s.toml --resume --checkpoint 1h",
-            "s.checkpoint has all samples that are needed, and the image is written: nothing is left to be done",
+            "s.checkpoint has all samples that are needed, and the image is written: nothing is left to do",
         ),
     ] {
         // No plan is made for it.
@@ -70,7 +70,7 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     done(&folder, "s.toml --resume --exr s.exr --png s.png --exposure 2");
     assert!(folder.read("s.png") != picture && folder.read("s.exr") == image);
     let asked = "s.toml --resume --exr s.exr --png s.png --exposure 2";
-    assert!(done(&folder, asked).stderr.contains("nothing is left to be done"));
+    assert!(done(&folder, asked).stderr.contains("nothing is left to do"));
     // An image that was lost is written again.
     fs::remove_file(folder.path_of("s.exr")).expect("it is there");
     done(&folder, "s.toml --resume");
@@ -78,7 +78,7 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     refused(
         &folder,
         "s.toml --checkpoint 1h",
-        "error: s.checkpoint is there from an earlier run\nhelp: add --resume to go on from it, or delete it to begin anew",
+        "error: s.checkpoint is there from an earlier run\nhelp: add --resume to go on from it, or delete it to start over",
     );
 }
 
@@ -86,7 +86,7 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
 fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs() {
     let folder = folder();
     done(&folder, "s.toml --resume --samples 4");
-    let begin_anew = "help: delete it to begin anew, or name another image";
+    let begin_anew = "help: delete it to start over, or name another image";
     for (flags, difference) in [
         ("--seed 4", "its seed is 3, not 4"),
         ("--crop 0,0,8,8", "its crop is none, not 0,0,8,8"),
@@ -98,7 +98,7 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         refused(&folder, &format!("s.toml --resume --samples 4 {flags}"), &message);
     }
     folder.write("s.toml", GLASS.replace("index = 1.5", "index = 1.6"));
-    let difference = "it was made of another scene, or of this one before it was changed";
+    let difference = "it was made from another scene, or from this one before it was changed";
     let message = format!("error: cannot go on from s.checkpoint: {difference}\n{begin_anew}");
     refused(&folder, "s.toml --resume --samples 4", &message);
     #[cfg(unix)]
@@ -206,7 +206,7 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
         (asked.replace("N", "P"), format!("{cannot}its list of layers is N, not P")),
         (
             asked.replace("s.toml", "other.toml"),
-            format!("{cannot}it was made of another scene, or of this one before it was changed"),
+            format!("{cannot}it was made from another scene, or from this one before it was changed"),
         ),
     ] {
         refused(&folder, &format!("{words} --plan-file new/folder/s.plan"), &format!("error: {message}\n{help}"));
@@ -269,8 +269,11 @@ fn parts_of_a_scene_that_asks_for_an_error_follow_a_plan_for_parts() {
 fn flags_that_have_no_place_are_refused() {
     let folder = folder();
     for (words, message) in [
-        ("s.toml --plan --resume", "error: --resume is of a render, and nothing is rendered\nhelp: leave it out"),
-        ("s.toml --check --shard 1/2", "error: --shard is of a render, and nothing is rendered\nhelp: leave it out"),
+        ("s.toml --plan --resume", "error: --resume belongs to a render, and nothing is rendered\nhelp: leave it out"),
+        (
+            "s.toml --check --shard 1/2",
+            "error: --shard belongs to a render, and nothing is rendered\nhelp: leave it out",
+        ),
         (
             "s.toml --png a.png --shard 1/2",
             "error: --shard makes a part of an EXR, and no picture\n\

@@ -106,7 +106,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
     assert!((noise.threshold - 4.281).abs() < 2e-3, "{noise:?}");
     let lines = [
         "a.exr and b.exr differ",
-        "z worst 10.0 in G of (7, 3), chance makes up to 4.3; 1 beyond it",
+        "z worst 10.0 in G of (7, 3), chance explains up to 4.3; 1 beyond it",
         "worst pixel (7, 3): 0.5 0.5 0.5 and 0.5 0.35858 0.5",
     ];
     assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
@@ -116,7 +116,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
     assert_says(
         &diff(&folder, &a, &gathered, &[]),
         1,
-        &["a.exr and b.exr differ", "photon map its noise is told in part"],
+        &["a.exr and b.exr differ", "photon map its noise is known in part"],
     );
     // Four are within what the largest of so many is by chance.
     b.channel("G")[67] = 0.5 - 4.0 * 2e-4_f32.sqrt();
@@ -250,7 +250,7 @@ fn images_whose_alpha_alone_differs_do_not_agree() {
 #[test]
 fn alpha_that_is_empty_here_and_full_there_is_no_noise() {
     let folder = Folder::new();
-    let [told_apart, unknown] = ["more than chance makes", "of its noise nothing is known"];
+    let [told_apart, unknown] = ["more than chance explains", "of its noise nothing is known"];
     for (samples, opposite, code, said) in
         [("4", 157, 1, told_apart), ("4", 156, 0, unknown), ("16", 1, 1, told_apart), ("", 200, 0, unknown)]
     {

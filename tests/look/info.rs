@@ -110,7 +110,7 @@ fn of_a_file_whose_values_are_not_read_all_else_is_told() {
     folder.write("deep.exr", include_bytes!("deep.exr"));
     folder.write("chroma.exr", subsampled());
     let told = lines(&folder, "deep.exr");
-    assert!(told[0].ends_with("; its values are not read: a deep image, which has many values to a pixel"), "{told:?}");
+    assert!(told[0].ends_with("; its values are not read: a deep image, which has many values per pixel"), "{told:?}");
     assert_says(&told, &["size 8 x 4 pixels", "storage zips, ", "R R half - - -", "Z Z float - - -"]);
     let told = lines(&folder, "chroma.exr");
     let why = "channel subsampling, by which several pixels share a value";

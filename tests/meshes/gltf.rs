@@ -227,7 +227,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
     let cases = [
         (r#""count":18"#, r#""count":19"#, "accessor 1 reaches beyond buffer view 1"),
         (r#""count":18"#, r#""count":18446744073709551615"#, "accessor 1 reaches beyond buffer view 1"),
-        (r#""count":5"#, r#""count":4"#, "a face asks for vertex 4, but its 4 vertices count from 0"),
+        (r#""count":5"#, r#""count":4"#, "a face refers to vertex 4, but its 4 vertices are numbered from 0"),
         (r#""byteOffset":60"#, r#""byteOffset":18446744073709551615"#, "buffer view 1 reaches beyond buffer 0"),
         (r#""byteLength":78"#, r#""byteLength":79"#, "buffer 0 has 78 bytes, not 79"),
         (r#""byteLength":60"#, r#""byteLength":60,"byteStride":0"#, "accessor 0 reaches beyond buffer view 0"),

@@ -312,7 +312,7 @@ fn a_mask_without_holes_leaves_nothing_to_chance_beside_a_holdout() {
     }
     for (render, more) in [("", false), ("samples = 1", false), ("samples = 8", true), ("error = 0.01", true)] {
         let because = plan(&scene("1", render)).because.concat();
-        assert_eq!(because.contains("and more are the same again, so samples = 1 is enough"), more, "{render}");
+        assert_eq!(because.contains("and more samples repeat it, so samples = 1 is enough"), more, "{render}");
     }
 }
 

@@ -187,10 +187,10 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
     let flat = "quad = { center = [0, 5, 0], u = [3, 0, 0], v = [0, 0, 3] }";
     for shape in [flat, "plane = { point = [0, 5, 0], normal = [0, -1, 0] }", "cube = { center = [0, 6, 0], size = 2 }"]
     {
-        let told = "light 1 (point) stands exactly in the surface of object 3";
+        let told = "light 1 (point) lies exactly in the surface of object 3";
         assert_warns(&stage(&(ceiling(shape) + &point(5.0))), &[told]);
         assert_warns(&stage(&(ceiling(shape) + &point(5.0 - 1e-9))), &[]);
-        assert_warns(&stage(&(ceiling(shape) + spot)), &["light 1 (spot) stands exactly in the surface of object 3"]);
+        assert_warns(&stage(&(ceiling(shape) + spot)), &["light 1 (spot) lies exactly in the surface of object 3"]);
     }
     let lamp =
         |y: f64| body("lamp", LAMP, &[&format!("quad = {{ center = [0, {y:?}, 0], u = [1, 0, 0], v = [0, 0, 1] }}")]);
@@ -207,7 +207,7 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
         let size = 2.0 * y;
         body("water", "dielectric = { index = 1.33 }", &[&format!("cube = {{ center = [0, 0, 8], size = {size:?} }}")])
     };
-    let told = "the camera stands exactly in the surface of object 3, neither inside nor outside";
+    let told = "the camera lies exactly in the surface of object 3, neither inside nor outside";
     assert_warns(&stage(&(water(2.0) + &environment(1.0))), &[told]);
     assert_warns(&stage(&(water(2.0 + 1e-9) + &environment(1.0))), &[]);
 }

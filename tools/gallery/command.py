@@ -28,15 +28,19 @@ MEASURED = SCENES / "pictures/measured.json"
 FIRST = "rainbow"  # the picture on top of README.md, scenes/rainbow.png
 ORDER = "gem rainbow water pond pool window lens prism bubble coatings highlighter metals illuminants still_life large/instances large/landscape cornell smallpt classic spheres".split()
 
+PARTS = ". "  # between the lines of a plan in measured.json
+
 HEAD = """# The gallery
 
-Written by `tools/gallery.py`. Times are processor time divided by two, for two cores, at the scene's own size and samples (in proportion,
-where a picture shows fewer); the plan's words are those of `render --plan` on color and photons. `--samples 16` is enough for a quick look.
-Meshes and images come from `python tools/gallery.py make`; only those of the landscape have to be made before rendering.
+Every scene in this folder, with the command that renders it. For a quick look, add `--samples 16`. All meshes and images are in the repository,
+except for those of the landscape: `python tools/gallery.py make` makes them.
 
-The error is the relMSE of noise, the mean of (x - mean)^2 / (mean^2 + 0.01) over pixels and channels, from two renders with different seeds of
-a fifth of the width, or half where photons are kept in a map or light vertices are looked at. The last column is the time that 640 x 360 pixels take to an error of 0.01, were
-both in proportion to the samples.
+Times are processor time divided by two, as on two cores, at the scene's own size and samples. Where a picture shows fewer samples, its time is scaled
+up in proportion. Below each picture is what `render --plan` says about color and photons.
+
+relMSE is the noise: the mean of (x - mean)^2 / (mean^2 + 0.01) over pixels and channels. It comes from two renders with different seeds at a fifth of
+the width, or at half of it for scenes with a photon map or light vertices. The last column is the time for 640 x 360 pixels to reach a relMSE of
+0.01, if time and noise are in proportion to the samples. `tools/gallery.py` writes this page.
 """
 
 
@@ -173,7 +177,7 @@ def plan_of(name):
 
 def words(plan):
     """Returns the lines of a plan that the page quotes: the color model, and the photons if there are any."""
-    return ". ".join(line for line in plan.splitlines() if line.startswith(("model ", "photon tracing: ", "photon map: ")))
+    return PARTS.join(line for line in plan.splitlines() if line.startswith(("model ", "photon tracing: ", "photon map: ")))
 
 
 def reduced(name, share=5):
@@ -234,7 +238,8 @@ def readme():
         if "plan" in measured.get(name, {}):
             samples, seconds, plan = (measured[name][key] for key in ("samples", "seconds", "plan"))
             shown = "1 sample" if samples == 1 else f"{samples} samples"
-            text += f"\nAbout {max(1, round(seconds))} s; the picture shows {shown}. The plan: {plan}.\n"
+            text += f"\nAbout {max(1, round(seconds))} s; the picture shows {shown}. The plan:\n\n"
+            text += "".join(f"- {part}\n" for part in plan.split(PARTS))
     return text
 
 

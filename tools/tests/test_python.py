@@ -750,7 +750,7 @@ def test_views_and_other_orders_of_arrays_are_the_same():
         ({"points": np.full((600, 3), 1e31)}, "points: row 0: a coordinate is at most 1e30"),
         (
             {"faces": np.array([[0, 1, 2], [0, 9999, 1]])},
-            "faces: row 1: there is no point 9999: the 528 points count from 0",
+            "faces: row 1: there is no point 9999: the 528 points are numbered from 0",
         ),
         ({"faces": np.array([[0, 1, -2]])}, "faces[0][2]: an entry of `faces` is a whole number of 0 or more, not -2"),
         ({"faces": np.array([[0.0, 1.0, 2.0]])}, "faces[0][0]: an entry of `faces` is a whole number"),

@@ -88,7 +88,7 @@ pub fn run(query: &Query) -> Result<()> {
     }
 }
 
-/// The layer, or of a spectrum that nobody asked for the band in its middle.
+/// Returns the layer, or the middle band of a spectrum if no layer was named. Refuses a spectrum named without a band.
 fn one_band<'f>(query: &Query, file: &'f ExrFile, layer: ExrLayer<'f>, shown: &str) -> Result<ExrLayer<'f>> {
     let Some(centers) = layer.bands_nm().filter(|centers| centers.len() > 1) else { return Ok(layer) };
     let middle = centers.len() / 2;
@@ -99,7 +99,7 @@ fn one_band<'f>(query: &Query, file: &'f ExrFile, layer: ExrLayer<'f>, shown: &s
     Error::refuse(message, format!("name one by its wavelength: {}.{}nm", layer.name, centers[middle]))
 }
 
-/// A layer as a picture; says what is to be known of it.
+/// Returns a layer as a picture, and prints what to know about it.
 fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> {
     if query.layer.is_none() && layer.name != BEAUTY {
         say(&format!("there are no R, G and B: this is {}", layer.name));
@@ -117,7 +117,8 @@ fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> 
     Ok(picture)
 }
 
-/// Mattes as a picture, or one of them, if what is asked for and is no layer is a name of mattes.
+/// Returns the mattes named `wanted` as a picture, or a single one of them. `unknown` is the error for a name that does
+/// not exist.
 fn of_mattes(query: &Query, wanted: Option<&str>, file: &ExrFile, shown: &str, unknown: Error) -> Result<Picture> {
     let Some(wanted) = wanted else { return Err(unknown) };
     let all = Mattes::all(file);
@@ -129,7 +130,7 @@ fn of_mattes(query: &Query, wanted: Option<&str>, file: &ExrFile, shown: &str, u
     refuse_curves(query, wanted).and(picture)
 }
 
-/// Refuses an exposure or a curve of what has no colors.
+/// Refuses an exposure or a tone curve for something without colors.
 fn refuse_curves(query: &Query, name: &str) -> Result<()> {
     let given = [("--exposure", query.exposure.is_some()), ("--tone", query.tone.is_some())];
     match given.iter().find(|(_, given)| *given) {

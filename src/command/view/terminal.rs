@@ -1,4 +1,4 @@
-//! Pictures in the languages of terminals.
+//! Pictures as text for terminals.
 
 use std::env::var_os;
 use std::fmt::Write;
@@ -9,16 +9,16 @@ use abbe::look::Picture;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
-/// Columns where nothing says how many there are.
+/// The number of columns of a terminal that does not tell it.
 const COLUMNS: usize = 80;
-/// Pixels of a column, about, where a terminal shows them by themselves.
+/// The approximate width of a column in pixels, on terminals that show pixels.
 const PIXELS_OF_COLUMN: usize = 8;
-/// Most bytes of an escape sequence of the kitty graphics protocol.
+/// The maximum number of bytes of data in an escape sequence of the kitty graphics protocol.
 const CHUNK: usize = 4096;
-/// Levels of red, green and blue in sixels, of which terminals have 256 at once.
+/// The levels of red, green and blue in sixels. Terminals have 256 colors at once.
 const LEVELS: usize = 6;
 
-/// The text that draws a picture where stdout leads, no wider than that.
+/// Returns the text that draws a picture on the terminal of stdout, and no wider than that.
 pub fn drawn(picture: &Picture, sixel: bool) -> Result<String> {
     let columns = columns();
     let pixels = fitted(picture, columns * PIXELS_OF_COLUMN, 1);
@@ -35,7 +35,7 @@ fn columns() -> usize {
     seen.or_else(told).filter(|columns| (1..10_000).contains(columns)).unwrap_or(COLUMNS)
 }
 
-/// Whether the terminal says that it is one of those that know the protocol; inside of tmux and screen none does.
+/// Returns whether the terminal says that it supports the kitty graphics protocol. Inside tmux and screen, none does.
 fn knows_kitty() -> bool {
     let said = |name: &str, words: &[&str]| {
         let value = var_os(name).map(|value| value.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -48,7 +48,8 @@ fn knows_kitty() -> bool {
     std::io::stdout().is_terminal() && known && !inside
 }
 
-/// The picture, scaled to a width of at most `most` pixels; its height is a multiple of `rows` if it has that many.
+/// Scales a picture down to at most `most` pixels in width. Its new height is a multiple of `rows`, unless it had
+/// fewer.
 fn fitted(picture: &Picture, most: usize, rows: usize) -> Picture {
     let [width, height] = [picture.width(), picture.height()];
     if width <= most {
@@ -58,7 +59,7 @@ fn fitted(picture: &Picture, most: usize, rows: usize) -> Picture {
     picture.scaled(most, lines.min(height))
 }
 
-/// Characters whose upper half is one pixel and whose lower half is another.
+/// Draws characters whose upper half is one pixel and whose lower half is another.
 fn blocks(picture: &Picture) -> String {
     let bytes = picture.bytes();
     let rows: Vec<&[[u8; 3]]> = bytes.chunks_exact(picture.width()).collect();
@@ -81,7 +82,7 @@ fn blocks(picture: &Picture) -> String {
     text
 }
 
-/// The kitty graphics protocol: a PNG in base64, in chunks of which all but the last say that more follows.
+/// Draws with the kitty graphics protocol: a PNG in base64, in chunks, of which all but the last say that more follows.
 fn kitty(png: &[u8], columns: usize) -> String {
     let encoded = BASE64_STANDARD.encode(png);
     let last = encoded.len().div_ceil(CHUNK) - 1;
@@ -95,8 +96,8 @@ fn kitty(png: &[u8], columns: usize) -> String {
     text + "\n"
 }
 
-/// Sixels: bands of six rows, drawn one color after another, of a cube of 216 colors between which pixels are dithered
-/// in an ordered pattern (Bayer 1973).
+/// Draws sixels: bands of six rows, one color after another. The colors are a cube of 216, between which pixels are
+/// dithered with an ordered pattern (Bayer 1973).
 fn sixels(picture: &Picture) -> String {
     const PATTERN: [[usize; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
     let width = picture.width();
@@ -137,7 +138,7 @@ mod tests {
     fn two_rows_of_pixels_are_one_row_of_characters() {
         let picture = Picture::of_grays(2, [0.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
         let first = "\x1b[38;2;0;0;0;48;2;255;255;255m▀\x1b[38;2;255;255;255;48;2;255;255;255m▀\x1b[0m\n";
-        // The last row has no lower half, and what stays the same is not said again.
+        // The last row has no lower half, and colors that stay the same are not repeated.
         assert_eq!(blocks(&picture), format!("{first}\x1b[38;2;0;0;0m▀▀\x1b[0m\n"));
     }
 

@@ -245,7 +245,7 @@ fn unseen(light: &Light<Curve>) -> &'static str {
             "lights nothing that the camera sees: `toward` points from the scene to the sun, and nothing opaque may stand between"
         }
         Light::Environment(_) => {
-            "lights nothing that the camera sees: opaque surfaces close it out on all sides, or all but a hole that no ray found; open them, or leave it out"
+            "lights nothing that the camera sees: opaque surfaces shut it out on all sides, or all but a hole that no ray found; open them, or leave it out"
         }
         _ => "lights nothing that the camera sees: turn it, or move it from behind what hides it",
     }

@@ -45,7 +45,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let sensor = camera.maybe("sensor_width", |value| sensor_width(value, kind?));
         let (position, target, up) = (position?, target?, up?);
         if (target.it - position).try_normalize().is_none() {
-            return target.place.refuse("the camera looks at the very point where it stands");
+            return target.place.refuse("the camera looks at its own position");
         }
         let (projection, shift, lens, near, sensor, film) = (projection?, shift?, lens?, near?, sensor?, film?);
         let size = [film.width, film.height];
@@ -119,14 +119,14 @@ fn projection(context: &mut Context, camera: &mut Fields, kind: Option<Projectio
 fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
     match kind {
         ProjectionKind::Perspective => {
-            let help = "in millimeters: 36 of a full-frame camera, 24.9 of Super 35";
+            let help = "in millimeters: 36 for a full-frame camera, 24.9 for Super 35";
             value.within(
                 above_0_to(WIDEST_SENSOR),
                 &format!("a sensor is above 0 to {WIDEST_SENSOR:e} mm wide"),
                 Some(help),
             )
         }
-        _ => value.advise("only a perspective camera has a focal length, which its sensor tells", "leave it out"),
+        _ => value.advise("only a perspective camera has a focal length and a sensor", "leave it out"),
     }
 }
 
@@ -177,6 +177,6 @@ fn filter(value: Value) -> Option<PolarizingFilter> {
 
 /// Reads the transmittance of a polarizer across its axis, relative to that along the axis.
 pub(super) fn extinction(value: Value) -> Option<f64> {
-    let help = "of what is let through along the axis: 0 of a perfect polarizer, about 0.0001 of a sheet";
+    let help = "relative to the transmittance along the axis: 0 for a perfect polarizer, about 0.0001 for a sheet";
     value.within(0.0..=1.0, "an extinction lies between 0 and 1", Some(help))
 }

@@ -58,7 +58,7 @@ pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
         return Some(Thin::Pane { index: spectrum(fields, "index"), transmittance });
     }
     if let Some(transmittance) = transmittance {
-        let help = "what a film absorbs is by its extinction: write `k`";
+        let help = "a film absorbs by its extinction coefficient: write `k`";
         return transmittance
             .refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()));
     }

@@ -209,7 +209,7 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), CurveError> {
     if are_swapped(samples) {
         let [value, nm] = samples[0].map(shown);
         let refusal = CurveError::new(format!("a first wavelength of {value} nm is far from visible light"));
-        return Err(refusal.help(format!("the wavelength stands before its value: write [{nm}, {value}]")).at(0));
+        return Err(refusal.help(format!("the wavelength comes before its value: write [{nm}, {value}]")).at(0));
     }
     if let Some(i) = samples.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
         let [before, after] = [samples[i][0], samples[i + 1][0]];
@@ -243,7 +243,7 @@ fn file_of_samples<'d>(
     // Without a column, the second one is read.
     let column = text.column.unwrap_or(Spanned { place, it: 2 });
     if column.it < 2 {
-        return column.place.refuse("the values stand in column 2 or later: column 1 holds the wavelengths");
+        return column.place.refuse("the values are in column 2 or later: column 1 holds the wavelengths");
     }
     if let Some(help) = image_called(file) {
         return place.advise(format!("{file} is an image, not a table of samples"), help);
@@ -386,7 +386,7 @@ fn absorption(context: &mut Context, place: Value, name: &str) -> Option<CurveKi
     let Some(glass) = data::glass(name) else { return unknown_glass(name).tell(place) };
     if glass.extinction.is_empty() {
         let message = format!("the catalog does not know the absorption of {}", glass.key);
-        let help = "`render catalog glass` lists who has it; or write { samples = [[nm, per unit], ..] }";
+        let help = "`render catalog glass` lists the glasses that have it; or write { samples = [[nm, per unit], ..] }";
         return place.advise(message, help);
     }
     let Some(meters) = context.meters_per_unit else {

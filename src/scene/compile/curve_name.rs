@@ -30,7 +30,7 @@ pub(super) fn in_quotes(text: &str) -> Option<String> {
     let has_unit = || text.split_once(' ').is_some_and(|(number, unit)| number.parse::<f64>().is_ok() && is_unit(unit));
     match share(text) {
         Some(share) => Some(format!("write {share}")),
-        None if has_unit() => Some("a number stands alone, without quotes and unit".into()),
+        None if has_unit() => Some("a number is written without quotes and unit".into()),
         None if ends_in(Path::new(text), TABLES) => Some(format!("write {{ file = {text:?} }}")),
         None => image_called(text),
     }

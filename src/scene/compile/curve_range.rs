@@ -108,7 +108,7 @@ pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError>
     }
     if nm > MAX_THICKNESS_NM {
         let refusal = CurveError::new(format!("{name} is at most {MAX_THICKNESS_NM} nm, not {value} nm{place}"));
-        return Err(refusal.help("no eye sees how light interferes in more: for glass, leave the layer out"));
+        return Err(refusal.help("interference in a thicker layer is invisible: for glass, leave the layer out"));
     }
     let refusal = CurveError::new(format!("{name} of {value} nm{place} is less than that of an atom"));
     let in_nm = nm * 1e9;

@@ -13,7 +13,7 @@ pub(super) fn diffuse<'d>(fields: &mut Fields<'d>) -> Option<Diffuse<Asked<'d>>>
 
 fn fluorescence<'d>(fields: &mut Fields<'d>) -> Option<Fluorescence<Asked<'d>>> {
     let [absorption, emission] = ["absorption", "emission"].map(|key| spectrum(fields, key));
-    let help = "photons that leave, of each that is absorbed: 0.9 of most highlighters";
+    let help = "photons emitted per photon absorbed: 0.9 for most highlighters";
     let share = |value: Value| value.within(0.0..=1.0, "a quantum yield lies between 0 and 1", Some(help));
     let quantum_yield = fields.need("quantum_yield", share);
     Some(Fluorescence { absorption, emission, quantum_yield: quantum_yield? })

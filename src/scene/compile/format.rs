@@ -59,7 +59,7 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
 /// Reads the luminance of red, green and blue of 1, if the scene's light is absolute.
 fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
-    let help = "in cd/m2: 100 is about that of a screen's white";
+    let help = "in cd/m2: the white of a screen has about 100";
     let what = format!("a luminance of white is above 0 to {MOST_LUMINOUS:e}");
     let white =
         film.maybe("white_luminance", at(|value: Value| value.within(above_0_to(MOST_LUMINOUS), &what, Some(help))));

@@ -119,7 +119,7 @@ impl TextureOf<'_> {
                 self.file(image, ignores_alpha, not_srgb)
             }
         };
-        let turned = |file| format!("the EXIF orientation of {file} is ignored: save it upright if it lies askew");
+        let turned = |file| format!("the EXIF orientation of {file} is ignored: save it upright if it looks rotated");
         file.warnings.extend(whole.is_turned.then(|| turned(self.path.display())));
         Ok(file)
     }

@@ -59,7 +59,7 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
             "sun" => sun_light(context, place),
             _ => {
                 let help = "environment = { radiance = .., transform = [..] }".into();
-                entry.stray("transform", "`transform` stands inside `environment`, beside `radiance`", help);
+                entry.stray("transform", "`transform` goes inside `environment`, beside `radiance`", help);
                 if std::mem::replace(has_environment, true) {
                     return place.refuse("a scene has at most one environment");
                 }
@@ -176,7 +176,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
             (Some(toward), None) => toward.it,
             (None, Some(Spanned { place, it: target })) => match (target - position).try_normalize() {
                 Some(toward) => toward,
-                None => return place.advise("the spot looks at the very point where it stands", "name another point"),
+                None => return place.advise("the spot looks at its own position", "name another point"),
             },
             (None, None) if light.has_unknown() => return None,
             (None, None) => {
@@ -234,7 +234,7 @@ fn sky_polarization(value: Value) -> Option<SkyPolarization> {
     Fields::read(value, |sky| {
         let sun = sky.need("sun", direction);
         let degree = sky.need("degree", |value| {
-            let help = "what is polarized of a clear sky's light a quarter turn from the sun: 0.7 to 0.8";
+            let help = "a clear sky is polarized by 0.7 to 0.8 at 90 degrees from the sun";
             value.within(0.0..=1.0, "a degree of polarization lies between 0 and 1", Some(help))
         });
         Some(SkyPolarization { sun: sun?.normalize(), degree: degree? })

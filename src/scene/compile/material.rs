@@ -95,7 +95,7 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
     let (phase, path) = (fields.get("retardance"), fields.get("retardation_nm"));
     match (phase, path) {
         (Some(phase), None) => {
-            let help = "in degrees: 90 of a quarter-wave plate, 180 of a half-wave plate";
+            let help = "in degrees: 90 for a quarter-wave plate, 180 for a half-wave plate";
             let what = "a retardance lies between -360 and 360 degrees";
             let degrees = phase.within(-360.0..=360.0, what, Some(help))?;
             small_retardance(degrees).into_iter().for_each(|warning| context.warn_at(phase, warning));
@@ -103,7 +103,7 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
         }
         (None, Some(path)) => {
             let what = format!("a retardation lies between -{MOST_AHEAD_NM} and {MOST_AHEAD_NM} nm");
-            let help = "in nm: 137.5 of a quarter-wave plate at 550 nm";
+            let help = "in nm: 137.5 for a quarter-wave plate at 550 nm";
             let nm = path.within(-MOST_AHEAD_NM..=MOST_AHEAD_NM, &what, Some(help))?;
             if nm != 0.0 && nm.abs() < LEAST_AHEAD_NM {
                 let in_nm = nm * 1e9;

@@ -151,7 +151,7 @@ impl Inline<'_> {
         let mut right = true;
         for (number, face) in faces.it.iter().enumerate() {
             if let Some(corner) = face.iter().position(|&corner| corner as usize >= count) {
-                let message = format!("there is no point {}: the {count} points count from 0", face[corner]);
+                let message = format!("there is no point {}: the {count} points are numbered from 0", face[corner]);
                 right = false;
                 if faces.place.rows().is_some() {
                     faces.place.refuse::<()>(format!("row {number}: {message}"));

@@ -60,7 +60,7 @@ fn no_number(line: usize, cell: &str, first: bool) -> TableFault {
     let decimal = cell.split_once(',').is_some_and(|(whole, rest)| format!("{whole}.{rest}").parse::<f64>().is_ok());
     let help = match decimal {
         true => Some("a decimal point is written `.`"),
-        false if first => Some("one line of titles may come first; a line that begins with # is passed over"),
+        false if first => Some("one header line may come first; lines that begin with # are ignored"),
         false => None,
     };
     TableFault { message, help: help.map(str::to_owned), is_column: false }

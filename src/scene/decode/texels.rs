@@ -69,7 +69,7 @@ pub(in crate::scene) enum Unreadable {
     Exr(#[from] ::exr::error::Error),
     #[error("Abbe does not know its compression")]
     Compression,
-    #[error("it is a deep image, which has many values to a pixel")]
+    #[error("it is a deep image, which has many values per pixel")]
     Deep,
     /// There are no red, green and blue, only these channels.
     #[error("it has the channels {0}")]

@@ -118,7 +118,7 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
             }
             _ if text == "inf" && key == "focus_distance" => Some("write it without quotes: inf".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
-                Some("a number stands alone, without quotes and unit".into())
+                Some("a number is written without quotes and unit".into())
             }
             _ if key == "blackbody" => Some(format!("write {{ illuminant = {written} }} for a light by name")),
             _ => None,
