@@ -1,16 +1,17 @@
-"""Checks that EXR files keep every rule of the files Abbe writes; says OK or FAIL and names each violation.
+"""Checks that EXR files obey every rule of the files that Abbe writes; prints OK or FAIL and each violation.
 
     python tools/check_exr.py FILE...           # exit code 1 if any file breaks a rule
 
-Scan lines: R G B A Z, alone or with layers, in one part or with each layer in a part of its own. Only colors are under a
-compression that loses. Numbers are finite, and 32-bit floats unless the file says that colors have 16 bits. Lights and kinds of light add up to the
-image, mattes to its coverage. A stated color space, the camera, and the provenance under render/.
+Images have scan lines and the channels R G B A Z, alone or with layers, in one part or with each layer in a part of its
+own. A lossy compression is used for colors only. Numbers are finite, and 32-bit floats unless the file says that colors
+have 16 bits. Lights and kinds of light add up to the image, mattes to its coverage. The header states a color space,
+the camera, and the provenance under render/.
 
-A spectral image holds R G B and one channel for each band of wavelengths, or four with Stokes vectors (Fichet, Pacanowski & Wilkie 2021, "An OpenEXR
-Layout for Spectral Images", JCGT 10(3)).
+A spectral image holds R G B and one channel for each band of wavelengths, or four with Stokes vectors (Fichet,
+Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral Images", JCGT 10(3)).
 
-Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026); mattes:
-Cryptomatte specification 1.2.0.
+Attribute meanings: OpenEXR, "Standard Attributes"; color: ASWF Color Interop Forum, recommendations 03 and 04 (2026);
+mattes: Cryptomatte specification 1.2.0.
 """
 
 import argparse
@@ -50,7 +51,7 @@ LOSSY = {
     OpenEXR.DWAB_COMPRESSION: "dwab",
 }
 
-# The channels of each layer; those of the image itself have no layer.
+# The channels of each layer; the image itself is the layer with an empty name.
 LAYERS = {
     r"": "RGBAZ",
     r"emission|background|direct|indirect|caustics|dispersed|shadow": "RGB",
@@ -65,20 +66,20 @@ LAYERS = {
 }
 # A Stokes component of a band of wavelengths: its center in nm, with a decimal comma.
 BAND = r"S([0-3])\.([0-9]+),([0-9]{6})nm"
-# What a compression that loses may change: light to look at. A is rounded, or kept.
+# Channels that a lossy compression may change: light meant for viewing. A is rounded, or kept exactly.
 LIGHT = r"([RGBA]|(emission|background|direct|indirect|caustics|dispersed|shadow|light_\w+|[a-z]+_(in)?direct)\.[RGB])"
-# Colors of the file's space, in parts of their own: no shares, squares or differences.
+# Colors in the file's color space, where they have parts of their own: no shares, squares or differences.
 COLOR = r"(emission|background|direct|indirect|caustics|dispersed|albedo|half_[ab]|denoised|light_\w+|[a-z]+_(in)?direct)\.[RGB]"
-# Numbers that 16 bits would spoil: depth, places, statistics and the numbers of mattes.
+# Channels that 16 bits would spoil: depth, positions, statistics and the numbers of mattes.
 ALWAYS_32_BITS = r"Z|P\..*|UV\..*|variance\..*|samples\..*|residual\..*|S[123]\..*|polarization\..*|Crypto.*"
-# Attributes in which the parts of a file agree.
+# Attributes that are the same in all parts of a file.
 SHARED = ("type", "compression", "lineOrder", "dataWindow", "displayWindow", "pixelAspectRatio")
 SHARED += ("screenWindowCenter", "screenWindowWidth")
 MATTE_LAYERS = ("00", "01", "02")
 STOKES = ("S0", "S1", "S2", "S3")
 LOBES = ("diffuse", "glossy", "specular", "transmission")
 
-# What each provenance attribute must look like; a seed is text because an EXR integer has 32 bits only.
+# The form of each provenance attribute. A seed is text because an EXR integer has only 32 bits.
 PROVENANCE = {
     "render/version": r"\S.*",
     "render/sceneHash": r"[0-9a-f]{64}",
@@ -92,53 +93,55 @@ PROVENANCE = {
 }
 
 
-# What a stamp says: when the image was made, in UTC, how long that took, and on how many threads.
+# The attributes of a stamp: when the image was made, in UTC, how long that took, and on how many threads.
 STAMP = ("capDate", "utcOffset", "render/renderTime", "render/threads")
 STAMPED = r"[0-9]{4}:(0[1-9]|1[0-2]):(0[1-9]|[12][0-9]|3[01]) ([01][0-9]|2[0-3]):[0-5][0-9]:[0-5][0-9]"
 
 
 class File(NamedTuple):
-    """What a file holds: the header of its first part, all channels by name, and header and channels of each part."""
+    """The contents of a file: header of its first part, all channels by name, header and channels of each part."""
 
     header: dict
     channels: dict
     parts: list
 
     def layers(self):
-        """The names of its layers, in the order of their channels."""
+        """Returns the names of its layers, in the order of their channels."""
         return list(dict.fromkeys(name.rpartition(".")[0] for name in self.channels))
 
     def layer(self, layer):
-        """The channels of a layer as one array of float64, channel by channel; None unless it has all of them."""
+        """Returns the channels of a layer as one float64 array, channels first; None unless the file has them all."""
         names = [f"{layer}.{channel}" for channel in known_channels(layer)]
         if names and all(name in self.channels for name in names):
             return np.array([self.channels[name] for name in names], np.float64)
         return None
 
     def bands(self, component=0):
-        """The channels of a Stokes component of a spectral image by the centers of their bands in nm, ascending."""
+        """Returns the channels of a Stokes component by the centers of their bands in nm, ascending."""
         found = {name: re.fullmatch(BAND, name) for name in self.channels}
         own = {name: match for name, match in found.items() if match and int(match[1]) == component}
         return dict(sorted((float(f"{match[2]}.{match[3]}"), name) for name, match in own.items()))
 
 
 def read(path):
-    """A file with all of its pixels; RuntimeError if it is damaged or cut off."""
+    """Reads a file with all of its pixels; raises RuntimeError if it is damaged or cut off."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         if not file.parts:
             raise RuntimeError("the pixels are damaged or cut off")
-        # What is not copied goes with the file.
+        # Pixels that are not copied are freed when the file is closed.
         parts = [(dict(part.header), {name: each.pixels.copy() for name, each in part.channels.items()}) for part in file.parts]
         return File(parts[0][0], {name: pixels for _, channels in parts for name, pixels in channels.items()}, parts)
 
 
 def known_channels(layer):
-    """The channels of a layer that Abbe writes; none of any other."""
+    """Returns the channels of a layer that Abbe writes; an empty sequence for any other layer."""
     return next((channels for form, channels in LAYERS.items() if re.fullmatch(form, layer)), "")
 
 
 def layout(file):
-    """Scan lines, lossless, top to bottom; the display window at the origin. Crops are smaller, overscan is larger."""
+    """Checks for scan lines from top to bottom, a known compression, and a display window at the origin.
+
+    The data window may be smaller, as in crops, or larger, as with overscan, except in an environment map."""
     header = file.header
     if header.get("type", OpenEXR.scanlineimage) != OpenEXR.scanlineimage:
         yield f"type is {header['type']}, not a scanline image"
@@ -156,7 +159,7 @@ def layout(file):
 
 
 def parts(file):
-    """Of several parts, the first is the image and says all of it; each other one is the layer of its name, or depth."""
+    """Checks files of several parts: the first is the image and has all metadata; the others are layers, or depth."""
     if len(file.parts) == 1:
         return
     if file.header.get("name") != "image":
@@ -187,7 +190,7 @@ def parts(file):
 
 
 def losses(file):
-    """A compression that loses changes colors alone; DWA makes 16 bits of them, and packs a depth without loss."""
+    """Checks that a lossy compression changes only colors. DWA stores them in 16 bits, and packs depth without loss."""
     for header, channels in file.parts:
         name = LOSSY.get(header["compression"])
         for channel, pixels in channels.items() if name else ():
@@ -198,14 +201,16 @@ def losses(file):
 
 
 def unit(file, name):
-    """How far apart numbers of a channel are, as a part of them: PXR24 leaves 15 bits of a mantissa of 23."""
+    """Returns the relative spacing of a channel's numbers. PXR24 keeps 15 bits of a mantissa of 23."""
     packed = next(header["compression"] for header, channels in file.parts if name in channels)
     exact = float(np.finfo(file.channels[name].dtype).eps)
     return max(exact, 2.0**-15) if packed == OpenEXR.PXR24_COMPRESSION else exact
 
 
 def names(file):
-    """Names that every reader keeps: Nuke drops other characters, old readers cut at 31 bytes. Layers are whole."""
+    """Checks that all readers keep the names: Nuke drops other characters, old readers cut at 31 bytes.
+
+    Also checks that layers are complete, and that no channel is subsampled or marked as perceptually linear."""
     for name in file.channels:
         if not re.fullmatch(r"[\x21-\x7e]{1,31}", name):
             yield f"channel {name!r}: not 1 to 31 printable ASCII characters"
@@ -229,7 +234,7 @@ def names(file):
 
 
 def types(file):
-    """32-bit floats; 16 bits for colors, coverage and normals of a file that counts what did not fit into them."""
+    """Checks for 32-bit floats; 16 bits for colors, coverage and normals of files that count clamped values."""
     half = "render/clamped" in file.header
     for name, pixels in file.channels.items():
         bits = 16 if half and not re.fullmatch(ALWAYS_32_BITS, name) else 32
@@ -241,12 +246,14 @@ def types(file):
 
 
 def subtracts(file):
-    """Whether the filter is negative in places: coverage is then filtered as light is, and what is met is told of the rest."""
+    """Whether the filter has negative values.
+
+    Coverage is then filtered as light is, so the layers of surfaces need not be empty where it is 0."""
     return str(file.header.get("render/filter", "")).startswith("mitchell")
 
 
 def values(file):
-    """Finite numbers; coverage in 0..1; a positive depth, the miss depth where nothing is covered."""
+    """Checks for finite numbers, coverage in 0..1, and positive depth: the miss depth where nothing is covered."""
     for name, pixels in file.channels.items():
         if wrong := np.count_nonzero(~np.isfinite(pixels.astype(np.float64))):
             yield f"channel {name!r}: {wrong} values not finite"
@@ -260,7 +267,7 @@ def values(file):
 
 
 def surfaces(file):
-    """What is known of first surfaces: shares of light, means of unit normals; nothing where there is no surface."""
+    """Checks the layers of first surfaces: albedo in 0..1, normals no longer than 1, 0 where there is no surface."""
     albedo = file.layer("albedo")
     if albedo is not None and not ((albedo >= 0) & (albedo <= 1)).all():
         yield f"layer 'albedo': from {albedo.min()} to {albedo.max()}, not within 0..1"
@@ -268,7 +275,7 @@ def surfaces(file):
         normal = file.layer(layer)
         if normal is not None:
             length = np.sqrt((normal**2).sum(axis=0)).max()
-            # What mirrors and glass leave of a sample is a product of 32-bit shares.
+            # The weight of a sample behind mirrors and glass is a product of 32-bit shares.
             if length > 1 + np.finfo(file.channels[f"{layer}.X"].dtype).eps + 32 * np.finfo(np.float32).eps:
                 yield f"layer {layer!r}: a length of {length}, more than 1"
     alpha = file.channels.get("A")
@@ -281,9 +288,10 @@ def surfaces(file):
 
 
 def statistics(file):
-    """Variance is not negative; as many samples as were asked for, but for those that were not finite.
+    """Checks that variance is not negative, and that the numbers of samples are those asked for.
 
-    Adaptive sampling takes half, twice or four times as many of a pixel.
+    Adaptive sampling takes half, twice or four times as many samples of a pixel. Samples that were not finite are
+    missing.
     """
     variance, samples = file.layer("variance"), file.layer("samples")
     if variance is not None and not (variance >= 0).all():
@@ -304,18 +312,18 @@ def statistics(file):
 
 
 def luminance(file, channels):
-    """Y of three channels in the color space of the file, if it is known."""
+    """Returns Y of three channels in the color space of the file; None if that is not known."""
     primaries = CHROMATICITIES.get(file.header.get("colorInteropID"))
     if primaries is None or any(channel not in file.channels for channel in channels):
         return None
     xyz = np.array([(x / y, 1, (1 - x - y) / y) if y else (1, 0, 0) if x else (0, 0, 1) for x, y in np.reshape(primaries, (4, 2))])
-    # Red, green and blue of 1 are white.
+    # Red, green and blue of 1 make white.
     weights = np.linalg.solve(xyz[:3].T, xyz[3]) * xyz[:3, 1]
     return np.tensordot(weights, np.array([file.channels[channel] for channel in channels], np.float64), 1)
 
 
 def stokes(file):
-    """No light is polarized by more than all of it; degrees and angles are those of the Stokes vectors beside them."""
+    """Checks that the polarized part is at most all light, and that degrees and angles match the Stokes vectors."""
     degrees = file.layer("polarization")
     if degrees is not None:
         degree, linear, angle = degrees
@@ -328,12 +336,12 @@ def stokes(file):
         return
     s1, s2, s3 = others
     linear, whole = np.hypot(s1, s2), np.sqrt(s1**2 + s2**2 + s3**2)
-    # Lanes are interpolated, and may make a little more of a part of the light than of all of it.
+    # Lanes are interpolated, which may make the polarized part a little larger than the whole.
     if wrong := np.count_nonzero(whole > 1.01 * s0 + 1e-6 * np.abs(s0).max()):
         yield f"layers S1, S2 and S3: more than the image in {wrong} pixels"
     if degrees is None or file.channels["R"].dtype != np.float32:
         return
-    # What 32 bits of each channel leave of a sum in which they cancel.
+    # The rounding of 32-bit channels in a sum in which they may cancel.
     size = np.abs([file.channels[channel] for channel in "RGB"]).sum(axis=0)
     rounding = 32 * unit(file, "R") * size
     turned = np.deg2rad(2 * degrees[2])
@@ -344,14 +352,14 @@ def stokes(file):
 
 
 def sums(file):
-    """Kinds of light, lights, and the halves of the samples make the image, as exactly as its numbers are stored."""
+    """Checks that kinds of light, lights, and halves of the samples add up to the image within rounding."""
     lights = [layer for layer in file.layers() if layer.startswith("light_")]
     lobes = [f"{lobe}_{kind}" for lobe in LOBES for kind in ("direct", "indirect")]
     wholes = [(("emission", "background", "direct", "indirect"), 1), (("emission", "background", *lobes), 1), (lights, 1)]
     if file.header["compression"] in (OpenEXR.DWAA_COMPRESSION, OpenEXR.DWAB_COMPRESSION):
-        return  # colors are what looks alike
+        return  # DWA keeps only the look of colors
     samples = file.header.get("render/samples")
-    # Halves of an odd number of samples, or of fewer than were taken, are not of equal weight.
+    # Halves of an odd number of samples, or with samples missing, have unequal weights.
     if type(samples) is int and samples % 2 == 0 and file.header.get("render/nonFinite") == 0:
         wholes.append((("half_a", "half_b"), 0.5))
     image = [file.channels.get(name) for name in "RGB"]
@@ -361,7 +369,7 @@ def sums(file):
             continue
         kind = np.finfo(image[0].dtype)
         numbers = np.array([*(share * term for term in terms), -np.array(image, np.float64)])
-        # Each number is off by half a unit in its last place; what did not fit says nothing.
+        # Each number is off by up to half a unit in its last place. Values that did not fit into its type are skipped.
         rounding = unit(file, "R") * np.abs(numbers).sum(axis=0) + len(numbers) * float(kind.smallest_subnormal)
         fits = (np.abs([*terms, numbers[-1]]) < float(kind.max)).all(axis=0)
         off = np.where(fits, np.abs(numbers.sum(axis=0)) - rounding, 0)
@@ -369,12 +377,12 @@ def sums(file):
             yield f"{' + '.join(layers)}: not {'R, G, B' if share == 1 else 'twice R, G, B'} in {wrong} values, by {off.max():g}"
 
 
-# What a spectral image says of itself; readers of the layout warn of any other unit than this one.
+# The attributes of a spectral image. Readers of the layout warn about any unit other than this one.
 SPECTRAL = {"spectralLayoutVersion": "1.0", "emissiveUnits": "W.m^-2.sr^-1", "render/spectralUnits": "W.m^-2.sr^-1.nm^-1"}
 
 
 def spectrum(file):
-    """Bands side by side, alone with R, G and B; attributes that say so, and only there."""
+    """Checks that bands are evenly spaced, beside R, G and B alone, with attributes that no other file has."""
     attributes = (*SPECTRAL, "render/spectralStep", "polarisationHandedness")
     bands, said = np.array(list(file.bands())), {name: file.header.get(name) for name in attributes}
     if not len(bands):
@@ -402,7 +410,7 @@ def spectrum(file):
 
 
 def murmur3(data):
-    """MurmurHash3_x86_32 of bytes, of seed 0."""
+    """Returns MurmurHash3_x86_32 of bytes, with seed 0."""
     mask = 0xFFFFFFFF
 
     def turned(number, bits):
@@ -421,18 +429,18 @@ def murmur3(data):
 
 
 def matte_number(name):
-    """The number of a name in a matte: its hash, with an exponent of a finite float that is not 0."""
+    """Returns the number of a name in a matte: its hash, with the exponent of a finite float that is not 0."""
     number = murmur3(name.encode())
     return number ^ 1 << 23 if number >> 23 & 0xFF in (0, 0xFF) else number
 
 
 def matte_key(name):
-    """What stands for a matte in the names of its attributes."""
+    """Returns the key that stands for a matte in the names of its attributes."""
     return f"{murmur3(name.encode()):08x}"[:7]
 
 
 def matte(file, name):
-    """The numbers of a matte, as integers, and their coverage, rank by rank; None unless all layers are there in 32 bits."""
+    """Returns a matte's numbers, as integers, and coverage, rank by rank; None without all layers in 32 bits."""
     channels = [file.channels.get(f"{name}{layer}.{channel}") for layer in MATTE_LAYERS for channel in "rgba"]
     if any(each is None or each.dtype != np.float32 for each in channels):
         return None
@@ -440,7 +448,7 @@ def matte(file, name):
 
 
 def mattes(file):
-    """The attributes of each matte, and its numbers: of its manifest, the most covered first, together what the image covers."""
+    """Checks the attributes of each matte and its numbers: all in its manifest, ranked by coverage, adding up to A."""
     found = dict.fromkeys(layer[:-2] for layer in file.layers() if re.fullmatch(r"Crypto[A-Za-z]+[0-9]{2}", layer))
     keys = {match[1] for attribute in file.header if (match := re.match(r"cryptomatte/([^/]*)/", attribute))}
     for key in sorted(keys - {matte_key(name) for name in found}):
@@ -467,7 +475,7 @@ def mattes(file):
 
 
 def coverage(file, numbers, shares, manifest):
-    """The ranks of a matte."""
+    """Checks the ranks of a matte."""
     if unknown := set(np.unique(numbers).tolist()) - {0, *manifest.values()}:
         yield f"{len(unknown)} numbers are not in its manifest, such as {min(unknown):08x}"
     if ((numbers == 0) != (shares == 0)).any():
@@ -485,7 +493,7 @@ def coverage(file, numbers, shares, manifest):
     alpha = file.channels.get("A")
     if alpha is None or subtracts(file):
         return
-    # Where the last rank is taken there may be more objects than ranks; shadows cover a plate, and are no objects.
+    # If the last rank is used there may be more objects than ranks. Shadows cover a plate, but are not objects.
     shadow = [file.channels.get(f"shadow.{channel}") for channel in "RGB"]
     clear = np.zeros_like(whole, bool) if any(part is None for part in shadow) else (np.stack(shadow) == 0).all(axis=0)
     off = np.where((shares[-1] == 0) & clear, np.abs(whole - alpha), whole - alpha).max()
@@ -494,7 +502,7 @@ def coverage(file, numbers, shares, manifest):
 
 
 def color(file):
-    """A color space by name, and, in a single part, by its chromaticities for readers that know no names."""
+    """Checks for a color space by name, and in single parts its chromaticities, for readers that know no names."""
     space, stored = file.header.get("colorInteropID"), file.header.get("chromaticities")
     if space not in CHROMATICITIES:
         yield f"colorInteropID is {space!r}, not one of {', '.join(CHROMATICITIES)}"
@@ -512,7 +520,7 @@ def color(file):
 
 
 def optics(file):
-    """Sensor, focal lengths and f-number agree with the screen window and with each other."""
+    """Checks that sensor, focal lengths and f-number agree with the screen window and with each other."""
     header, near = file.header, 4 * np.finfo(np.float32).eps
     for name in ("near", "focus", "aperture", "pinholeFocalLength", "effectiveFocalLength"):
         if not header.get(name, 1) > 0:
@@ -536,7 +544,7 @@ def optics(file):
 
 
 def camera(file):
-    """worldToCamera acts on row vectors, from a right-handed world to a left-handed camera that looks along +z."""
+    """Checks that worldToCamera takes row vectors from a right-handed world to a left-handed camera along +z."""
     header = file.header
     if not header.get("screenWindowWidth", 0) > 0:
         yield "screenWindowWidth is not positive"
@@ -565,7 +573,7 @@ def camera(file):
 
 
 def projection(header, world_to_camera, center):
-    """worldToNDC puts points where worldToCamera and the screen window do, and farther ones at a larger z."""
+    """Checks that worldToNDC agrees with worldToCamera and the screen window, and gives farther points a larger z."""
     kind, stored = header.get("render/projection"), header.get("worldToNDC")
     if kind == "equirectangular":
         if stored is not None:
@@ -578,7 +586,7 @@ def projection(header, world_to_camera, center):
         return
     columns, rows = np.asarray(header["displayWindow"][1], np.float64) + 1
     size = header["screenWindowWidth"] * np.array([1, rows / columns])
-    # Points at two depths, as seen on the screen from the top left to the bottom right, and where they are in the world.
+    # Points at two depths, on the screen from the top left to the bottom right, and their positions in the world.
     ndc = np.array([(0, 0), (1, 0), (0.25, 0.75), (0.5, 0.5), (1, 1)] * 2, np.float64)
     depth = np.repeat([1.0, 3.0], 5)[:, None] * max(1, np.abs(world_to_camera[3]).max())
     across = (center + (ndc - 0.5) * (1, -1) * size) * (depth if kind == "perspective" else 1)
@@ -586,7 +594,7 @@ def projection(header, world_to_camera, center):
     world = seen @ np.linalg.inv(world_to_camera)
     stored = np.asarray(stored, np.float64)
     clip, eps = world @ stored, np.finfo(np.float32).eps
-    # What the rounding of each of 16 numbers does to a point, in units of the image.
+    # The effect of rounding each of the 16 numbers on a point, in units of the image.
     from_camera = np.abs(world) @ np.abs(world_to_camera)[:, :3] * eps
     off_axis = from_camera[:, :2] + np.abs(across) / depth * from_camera[:, 2:]
     to_screen = off_axis / (depth if kind == "perspective" else 1) / size + eps * (1 + np.abs(center) / size)
@@ -604,7 +612,7 @@ def projection(header, world_to_camera, center):
 
 
 def provenance(file):
-    """Where the image comes from, and no clock: two runs of one scene are the same to the byte, unless a stamp is asked for."""
+    """Checks the provenance: two runs of a scene give the same bytes, so it has no time unless a stamp is asked for."""
     for name, form in PROVENANCE.items():
         value = file.header.get(name)
         if value is None:
@@ -629,12 +637,12 @@ RULES_OF_PIXELS = (values, surfaces, statistics, sums, stokes, mattes)
 
 
 def violations(path):
-    """Every broken rule of the file, in words."""
+    """Returns every broken rule of the file, in words."""
     try:
         file = read(path)
     except RuntimeError as error:
         return [f"unreadable: {error}"]
-    # Pixels of several sizes, or that are no floats, break a rule of those above and cannot be compared.
+    # Pixels of several sizes, or that are not floats, break one of `RULES` and cannot be compared.
     sizes, kinds = ({getattr(pixels, what) for pixels in file.channels.values()} for what in ("shape", "dtype"))
     comparable = len(sizes) == 1 and all(kind.kind == "f" for kind in kinds)
     rules = (*RULES, *RULES_OF_PIXELS) if comparable else RULES

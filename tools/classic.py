@@ -1,4 +1,4 @@
-"""Traces a scene by an independent program, and compares: tools/classic/command.py."""
+"""Renders a scene with an independent program, and compares: tools/classic/command.py."""
 
 import sys
 

@@ -1,12 +1,12 @@
-"""Renders color charts under the lights of the catalog and judges their colors against colour-science, nm by nm.
+"""Renders color charts under the lights of the catalog and compares them with colour-science, nm by nm.
 
     python tools/colors.py          # the chart under every illuminant, then patches seen in colored mirrors
 
 The reference is the sum over 360, 361, ... 830 nm of light x reflectance x CIE 1931 2 degree observer (CIE 15:2018,
-equation 7.1). Illuminants and reflectances are read from colour-science's own tables, linearly between their samples:
-that is how the renderer reads every table, and how CIE 15:2018, 4.1.2 defines the D illuminants between their samples;
-Sprague's interpolation, which colour-science would choose, overshoots beside the spikes of a lamp. Beyond the ends of
-its table an illuminant is 0 and a reflectance is flat.
+equation 7.1). Illuminants and reflectances come from colour-science's own tables, with linear interpolation. The
+renderer reads every table in this way, and CIE 15:2018, 4.1.2 defines the D illuminants between their samples by it.
+Sprague's interpolation, the default of colour-science, overshoots beside the spikes of a lamp. Beyond the ends of its
+table an illuminant is 0 and a reflectance is constant.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import numpy as np
 import render
 from validation.scenes import diffuse, quad, toml_file
 
-with warnings.catch_warnings(action="ignore"):  # that SciPy is not there: nothing here needs it
+with warnings.catch_warnings(action="ignore"):  # missing SciPy, which nothing here needs
     import colour
 
 OBSERVER = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
@@ -27,15 +27,15 @@ WAVELENGTHS = np.arange(360.0, 831.0)
 CHART = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]
 PATCHES = tuple(CHART)
 FAR = 1e4
-# Light straight from the lights, without the paths that might find it as well: those of dark surfaces end at random.
+# Light sampling alone. Paths could find the same light, but those from dark surfaces end at random.
 STRAIGHT = {"diffuse_bounces": 0}
 
-# What 95 % of all patches under all illuminants may miss, in dE2000, whatever the number of bands: rounding.
+# The bar for 95 % of all patches under all illuminants, in dE2000: rounding, for any number of bands.
 CHART_BANDS, CHART_BAR = (8, 12, 16, 32), 1e-4
 
 
 class Light(NamedTuple):
-    """What shines, as a scene writes it and as numbers."""
+    """A light, both as a scene writes it and as numbers."""
 
     name: str
     curve: dict
@@ -43,7 +43,7 @@ class Light(NamedTuple):
     power: np.ndarray  # per nm, or of each ideal line
 
     def xyz(self, *patches):
-        """What reflects this light one after the other; without any, the light itself."""
+        """Returns XYZ of this light after reflection by each of `patches` in turn; without any, of the light itself."""
         reflectance = np.prod([reflectances(patch, self.nm) for patch in patches], axis=0)
         sensitivity = np.stack([np.interp(self.nm, WAVELENGTHS, axis) for axis in OBSERVER.values.T])
         return sensitivity @ (self.power * reflectance)
@@ -54,32 +54,32 @@ def reflectances(patch, nm):
 
 
 def illuminant(name):
-    """A light of the catalog, Y = 1."""
+    """Returns a light of the catalog, scaled to Y = 1."""
     table = colour.SDS_ILLUMINANTS[name]
     power = np.interp(WAVELENGTHS, table.wavelengths, table.values, left=0, right=0)
     return Light(name, {"illuminant": name}, WAVELENGTHS, power / (OBSERVER.values[:, 1] @ power))
 
 
 def lines(name, *pairs):
-    """Ideal lines (nm, power), in the unit in which a spectrum of 1 everywhere has Y = 1."""
+    """Returns ideal lines (nm, power), in the unit in which a spectrum of 1 everywhere has Y = 1."""
     nm, power = np.transpose(pairs).astype(float)
     return Light(name, {"lines": [list(pair) for pair in pairs]}, nm, power / OBSERVER.values[:, 1].sum())
 
 
 def catalog():
-    """The names of all illuminants, as the renderer lists them."""
+    """Returns the names of all illuminants, as the renderer lists them."""
     return [line.split()[0] for line in render.said("catalog", "illuminant").splitlines()]
 
 
 def rec709():
-    """XYZ to linear Rec.709."""
+    """Returns the matrix from XYZ to linear Rec.709."""
     space = colour.RGB_COLOURSPACES["ITU-R BT.709"].copy()
     space.use_derived_transformation_matrices(True)
     return space.matrix_XYZ_to_RGB
 
 
 def lab(xyz, white):
-    """L*a*b* relative to a white (CIE 15:2018, equations 8.3 to 8.9)."""
+    """Returns L*a*b* relative to a white (CIE 15:2018, equations 8.3 to 8.9)."""
     t = xyz / white
     f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
     x, y, z = np.moveaxis(f, -1, 0)
@@ -87,8 +87,9 @@ def lab(xyz, white):
 
 
 def row_of(count, distance=FAR):
-    """A camera that sees `count` places a unit apart along x, each in one pixel, from so far that all rays are nearly
-    parallel, and the film under it."""
+    """Returns a camera that sees `count` places a unit apart along x, each in one pixel, their x, and the film.
+
+    The camera is so far away that all rays are nearly parallel."""
     camera = {
         "position": [0, 0, distance],
         "look_at": [0, 0, 0],
@@ -98,9 +99,10 @@ def row_of(count, distance=FAR):
 
 
 def patches_scene(reflectances, radiance, model, color_space, sky=0):
-    """Diffuse patches side by side, then as many pixels of the sky itself, under an even sky.
+    """Returns a scene of diffuse patches side by side under a uniform sky, followed by `sky` pixels of the sky itself.
 
-    A lone flat patch sees nothing but sky, which is aimed at by the cosine: each sample is exactly reflectance x sky."""
+    A lone flat patch sees only the sky, and directions are sampled by the cosine: each sample is exactly reflectance x
+    sky."""
     camera, places, film = row_of(len(reflectances) + sky)
     names = [f"m{i}" for i in range(len(reflectances))]
     material = {name: diffuse(what) for name, what in zip(names, reflectances, strict=True)}
@@ -116,12 +118,12 @@ def patches_scene(reflectances, radiance, model, color_space, sky=0):
 
 
 def chart_scene(radiance, model, color_space="lin_ciexyzd65_scene"):
-    """The patches side by side, then white, then the sky itself."""
+    """Returns a scene of the patches side by side, then white, then the sky itself."""
     return patches_scene([*PATCHES, 1], radiance, model, color_space, sky=1)
 
 
 class Chart(NamedTuple):
-    """The chart under one light."""
+    """The result for the chart under one light."""
 
     delta_e: np.ndarray  # dE2000 of each patch
     white: float  # largest relative error of a channel of white, and of the sky
@@ -138,17 +140,17 @@ def chart(light, bands):
 
 
 def mirror_scene(irradiance, pairs, model):
-    """Diffuse patches, each seen in a small colored mirror, far away: (patch, mirror) for each pixel.
+    """Returns a scene of diffuse patches, each seen in a small colored mirror far away: (patch, mirror) for each pixel.
 
-    The mirrors stand in a row and send the camera's rays up to the patches, which face down. A sun of parallel light
-    shines on them from below and before, beside the mirrors: nothing is left to chance."""
+    The mirrors stand in a row and reflect the camera's rays up to the patches, which face down. A sun of parallel light
+    shines on the patches from below and in front, past the mirrors. Nothing is random."""
     camera, places, film = row_of(len(pairs))
     used = sorted({name for pair in pairs for name in pair}, key=PATCHES.index)
     material = {f"d{PATCHES.index(name)}": diffuse(name) for name in used}
     material |= {f"m{PATCHES.index(name)}": {"mirror": {"reflectance": name}} for name in used}
     objects = []
     for x, (patch, mirror) in zip(places, pairs, strict=True):
-        # The rays have diverged to twice the width when they meet the patches.
+        # The rays have spread to twice the width when they hit the patches.
         patch_shape = quad([2 * x, FAR, 0], [0.9, 0, 0], [0, 0, 9])
         objects.append({"material": f"m{PATCHES.index(mirror)}", "shape": quad([x, 0, 0], [0.4, 0, 0], [0, -0.3, 0.3])})
         objects.append({"material": f"d{PATCHES.index(patch)}", "shape": patch_shape})
@@ -165,7 +167,7 @@ def mirror_scene(irradiance, pairs, model):
 
 
 def interreflection(light, pairs, bands):
-    """Renders pairs and returns the relative error of each: the worst channel of linear Rec.709 by the brightest."""
+    """Renders pairs and returns the relative error of each: the worst channel of linear Rec.709 over the brightest."""
     found = render.render(mirror_scene(light.curve, pairs, {"bands": bands})).rgb[0]
     lambert = math.cos(math.radians(45)) / math.pi
     expected = lambert * np.array([rec709() @ light.xyz(*pair) for pair in pairs])
@@ -178,12 +180,12 @@ def all_pairs():
 
 LASERS = lines("RGB lasers", (445, 1), (532, 1), (638, 1))
 SODIUM = lines("sodium", (589.0, 2), (589.6, 1))
-# What may be missed by 95 % of all pairs at 12 bands.
+# The bars for 95 % of all pairs at 12 bands.
 MIRROR_BARS = {"FL11": 0.01, LASERS.name: 0.002, SODIUM.name: 0.002}
 
 
 def verdict(name, errors, bar):
-    """Prints one line and answers whether 95 % of the errors stay below the bar."""
+    """Prints one line and returns whether 95 % of the errors stay below the bar."""
     middle, high, worst = np.percentile(errors, [50, 95, 100])
     passes = bar is None or high <= bar
     limit = "" if bar is None else f" (bar {bar:7.4f})  {'ok' if passes else 'FAIL'}"
@@ -192,7 +194,7 @@ def verdict(name, errors, bar):
 
 
 def judge_charts():
-    """The whole chart under every illuminant; prints a line for each, and answers with the names of what fails."""
+    """Judges the whole chart under every illuminant. Prints a line for each, and returns the names of failures."""
     failed = []
     for bands in CHART_BANDS:
         charts = {name: chart(illuminant(name), bands) for name in catalog()}
@@ -207,7 +209,7 @@ def judge_charts():
 
 
 def judge_mirrors():
-    """Every patch in a mirror of every patch; prints a line for each light, and answers with the names of what fails."""
+    """Judges every patch in a mirror of every patch. Prints a line for each light, and returns names of failures."""
     failed = []
     for light in (illuminant("FL11"), LASERS, SODIUM):
         name = f"bands 12, patches in mirrors, {light.name}"

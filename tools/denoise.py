@@ -5,9 +5,10 @@
     python tools/denoise.py image.exr                   # into the same file
     python tools/denoise.py image.exr out.exr           # into another one
 
-The layers `albedo` and `N` tell the denoiser where surfaces end and textures change; with film.first = "visible" in the
-scene they also tell what is seen in mirrors and through smooth glass. All other channels and all attributes stay as they
-are, to the bit: so a file whose compression loses is refused. A file of several parts gets one more, and a layer `denoised` that is already there is replaced.
+The layers `albedo` and `N` tell the denoiser where surfaces end and textures change. With film.first = "visible" in the
+scene they also do so in mirrors and through smooth glass. All other channels and all attributes are kept to the bit,
+so a file with a lossy compression is refused. A file of several parts gets one more. A layer `denoised` that is already
+there is replaced.
 
 A denoised image looks clean but is biased: measure and compare the noisy one, which stays in the file.
 """
@@ -27,7 +28,7 @@ NEEDED = {"image": "RGB", "albedo": ("albedo.R", "albedo.G", "albedo.B"), "N": (
 
 
 def opened(path):
-    """An EXR file with its pixels."""
+    """Opens an EXR file with its pixels."""
     if not path.is_file():
         sys.exit(f"{path}: no such file")
     with path.open("rb") as file:
@@ -41,7 +42,7 @@ def opened(path):
 
 
 def inputs(path, file):
-    """The image, its albedo and its normals, height x width x 3 of 32-bit floats."""
+    """Returns the image, its albedo and its normals, height x width x 3 of 32-bit floats."""
     channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
     missing = [layer for layer, names in NEEDED.items() if not all(name in channels for name in names)]
     if "image" in missing:
@@ -56,17 +57,17 @@ def inputs(path, file):
 
 
 def denoised(denoise, color, albedo, normal):
-    """The image without its noise, by the function of pyoidn.
+    """Returns the denoised image; `denoise` is the function of pyoidn.
 
-    Colors outside the color space have numbers below 0. The denoiser would take them for 0, and make light of noise around
-    0: they are denoised apart, as light of their own."""
+    Colors outside the color space have negative components. The denoiser would take these for 0, and turn noise around
+    0 into light. So the negative part is denoised separately, as a color of its own."""
     above, below = np.maximum(color, 0), np.maximum(-color, 0)
     result = denoise(above, albedo, normal, hdr=True)
     return result - denoise(below, albedo, normal, hdr=True) if below.any() else result
 
 
 def parts_with(file, result):
-    """The parts of a file, and the result in as many bits as the image has: in the only part, or in one of its own."""
+    """Returns the parts of a file with the result in as many bits as the image: in the only part, or in its own."""
     first = file.parts[0]
     kind = next(part.channels["R"].pixels.dtype for part in file.parts if "R" in part.channels)
     fitting = result.clip(-np.finfo(kind).max, np.finfo(kind).max).astype(kind)
@@ -75,7 +76,7 @@ def parts_with(file, result):
         for name, plane in planes.items():
             first.channels[name] = OpenEXR.Channel(name, plane)
         return file.parts
-    # All colors of a file are of one space.
+    # All colors of a file share one color space.
     header = {name: first.header[name] for name in check_exr.SHARED if name in first.header}
     header |= {"name": LAYER, "colorInteropID": first.header["colorInteropID"]}
     own = OpenEXR.Part(header, planes, LAYER)
@@ -83,7 +84,7 @@ def parts_with(file, result):
 
 
 def changed(before, after):
-    """What of the parts of one file is not the same in another, apart from the layer of the result."""
+    """Yields what differs between the parts of two files, apart from the layer of the result."""
     before = [part for part in before if part.header.get("name") != LAYER]
     for old, new in zip(before, after, strict=False):
         for name in (old.header.keys() | new.header.keys()) - {"channels", "chunkCount"}:
@@ -96,8 +97,8 @@ def changed(before, after):
 
 
 def write(parts, before, out):
-    """Under another name at first, so that there is never half a file."""
-    # A link stays one.
+    """Writes to a temporary name first, so that there is never half a file."""
+    # A symbolic link stays a link.
     out = out.resolve()
     partial = out.with_name(f"{out.name}.partial")
     try:

@@ -1,4 +1,4 @@
-"""Says how many parts of an image make sense: tools/farm/command.py."""
+"""Forecasts how many parts of an image make sense on a farm: tools/farm/command.py."""
 
 import sys
 

@@ -1,10 +1,11 @@
-"""What merging the parts of an image takes: memory and time, beside the size of a part and of the image.
+"""What merging the parts of an image costs: memory and time, beside the size of a part and of the image.
 
     python tools/merging.py                   # 256 parts of 1920 x 1080 pixels with all layers, some 3 minutes
     python tools/merging.py --parts 2000      # more parts than a process may have files open
 
-The image is what its channels take in memory, each number as wide as in the file. The merged file is held against that of
-one render, byte by byte. The system counts the memory of this script as the least of its children's, some 30 MB.
+The size of the image is that of its channels in memory, each number as wide as in the file. The merged file is compared
+with that of one render, byte by byte. The system counts the memory of this script as the minimum of its children's,
+some 30 MB.
 """
 
 import argparse
@@ -36,12 +37,12 @@ light = [
 """
 
 
-# Times the memory of 64 rows and two parts that a merge may take: 64 rows are there as numbers and as they are packed.
+# The memory that a merge may take, in units of 64 rows and two parts: 64 rows are held both as numbers and packed.
 MOST = 2
 
 
 def image_bytes(path):
-    """What the numbers of a file take in memory."""
+    """Returns the size of a file's numbers in memory."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return sum(channel.pixels.nbytes for part in file.parts for channel in part.channels.values())
 

@@ -1,4 +1,4 @@
-"""Plants bugs and shows that each is found: tools/planted/command.py."""
+"""Plants bugs and shows that each is detected: tools/planted/command.py."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Finds the renderer, renders a scene and reads its EXR: what the checkers share.
+"""Finds the renderer, renders a scene and reads its EXR: code that the other tools share.
 
     from render import read, render
     image = render(scene_text, samples=16, seed=3)
@@ -30,7 +30,7 @@ class Image(NamedTuple):
 
 
 def binary():
-    """$RENDER if it is set, else the release build."""
+    """Returns the path of the renderer: $RENDER if it is set, else the release build."""
     path = Path(os.environ.get("RENDER") or ROOT / "target/release/render").resolve()
     if not path.is_file():
         raise SystemExit(f"{path} does not exist: run `cargo build --release`, or set RENDER to a built binary")
@@ -38,20 +38,20 @@ def binary():
 
 
 def said(*words):
-    """What a command of the renderer prints."""
+    """Returns what a command of the renderer prints."""
     return subprocess.run([binary(), *map(str, words)], capture_output=True, text=True, check=True).stdout
 
 
 class Spent(NamedTuple):
-    """What a process took."""
+    """Time and memory that a process took."""
 
-    processor: float  # seconds, of all threads
+    processor: float  # seconds, summed over all threads
     wall: float  # seconds
     peak: int  # bytes of memory
 
 
 def measured(command):
-    """What any command takes, its exit code, and what it says of errors."""
+    """Runs any command, and returns what it took, its exit code, and its standard error."""
     start = time.monotonic()
     with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
         complaint = process.stderr.read().decode()
@@ -63,7 +63,7 @@ def measured(command):
 
 
 def spent(*words):
-    """What a command of the renderer takes; one that fails ends this script with its words."""
+    """Runs a command of the renderer and returns what it took. If it fails, ends this script with its error."""
     command = [binary(), *words]
     took, code, complaint = measured(command)
     if code:
@@ -72,17 +72,17 @@ def spent(*words):
 
 
 def read(path):
-    """The only part of an EXR file, every channel by its name."""
+    """Reads an EXR file of one part, with every channel by its name."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         (part,) = file.parts
         return Image(dict(part.header), {name: channel.pixels.copy() for name, channel in part.channels.items()})
 
 
 def write(scene, exr, timeout=3600, **flags):
-    """Renders `scene` (a path, or a scene's text) into the file `exr`; flags as on the command line: samples=16; those
-    that are given several times: set=["film.width=64", "film.height=48"].
+    """Renders `scene` (a path, or a scene's text) into the file `exr`.
 
-    A render that takes longer than `timeout` seconds is an error."""
+    Flags are those of the command line: samples=16. A list gives a flag several times: set=["film.width=64",
+    "film.height=48"]. A render that takes longer than `timeout` seconds is an error."""
     if isinstance(scene, str):
         text, scene = scene, Path(exr).with_suffix(".toml")
         scene.write_text(text, "utf-8")
@@ -95,7 +95,7 @@ def write(scene, exr, timeout=3600, **flags):
 
 
 def render(scene, **flags):
-    """The image of `scene`, by way of a temporary file."""
+    """Renders `scene` and returns its image, through a temporary file."""
     with tempfile.TemporaryDirectory() as folder:
         exr = Path(folder) / "scene.exr"
         write(scene, exr, **flags)

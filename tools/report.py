@@ -1,4 +1,4 @@
-"""Puts what the tools found into one page: tools/report/command.py."""
+"""Puts the results of the tools into one page: tools/report/command.py."""
 
 import sys
 

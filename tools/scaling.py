@@ -4,9 +4,9 @@
     python tools/scaling.py --quick               # about a minute: smaller scenes, one repeat
     python tools/scaling.py --only triangles
 
-Each row renders one generated scene and prints the median CPU time, the wall time, the peak of memory, and by which power
-of the quantity the CPU time grew since the row above. Nothing should grow faster than n log n, a power a little above 1.
-The system counts the memory of this script as the least of its children's, some 40 MB.
+Each row renders one generated scene and prints the median CPU time, the wall time, the peak of memory, and the power of
+the quantity by which the CPU time grew since the row above. Nothing should grow faster than n log n, which is a power
+slightly above 1. The system counts the memory of this script as the minimum of its children's, some 40 MB.
 """
 
 import argparse
@@ -33,7 +33,7 @@ FLOOR = "[[object]]\nshape.plane = { point = [0, -1, 0], normal = [0, 1, 0] }\nm
 
 
 def hills(path: Path, triangles: int):
-    """A binary PLY of rolling hills, 8 units on a side, of about so many triangles."""
+    """Writes a binary PLY of rolling hills, 8 units on a side, of about `triangles`, and returns the exact number."""
     n = max(2, round(math.sqrt(triangles / 2)) + 1)
     x, z = np.meshgrid(np.linspace(-4, 4, n), np.linspace(-4, 4, n))
     y = 0.3 * np.sin(3 * x) * np.cos(2 * z) + 0.05 * np.sin(17 * x + 3 * z) + 0.02 * np.sin(41 * z - 5 * x)
@@ -51,7 +51,7 @@ def of_triangles(folder: Path, count: int):
 
 
 def of_lights(_, count: int):
-    """A hall with one small lamp on each square of a grid: it grows with their number, so each point sees as many."""
+    """Returns a hall with a small lamp above each square of a grid. It grows with their number at equal density."""
     side = math.ceil(math.sqrt(count))
     lamps = []
     for number in range(count):
@@ -90,7 +90,7 @@ AXES = {
 
 
 def measure(folder: Path, text: str, flags: dict):
-    """CPU seconds, wall seconds and peak memory in MB of one render."""
+    """Returns CPU seconds, wall seconds and peak memory in MB of one render."""
     scene = folder / "scene.toml"
     scene.write_text(text, "utf-8")
     words = [word for name, value in ({"threads": 1} | flags).items() for word in (f"--{name}", str(value))]

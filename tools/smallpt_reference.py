@@ -1,4 +1,4 @@
-"""Compares with the 99-line program: tools/smallpt/reference.py."""
+"""Compares Abbe with the 99-line program: tools/smallpt/reference.py."""
 
 import sys
 

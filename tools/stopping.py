@@ -1,4 +1,4 @@
-"""How often `--error` keeps its word: many small renders, each held against a long one that finds its light another way.
+"""How often `--error` keeps its promise: many small renders, each compared with a long one by another method.
 
     python tools/stopping.py                            five scenes, 40 renders each
     python tools/stopping.py --renders 8 smooth lamp    fewer, of some
@@ -6,16 +6,17 @@
 
 An error is the root of the mean square over all pixels and channels, relative to that of the image. A scene's column
 "kept" is the share of its renders whose true error is at most the error that was asked for; "bound" is the share whose
-true error is at most the bound that stopped the render. That is smaller than what was asked for, and by chance as well, so no
-render claims it. True errors are those beside a long reference: of caustics without
-photons, of a room without light vertices, of all scenes with other seeds and one sequence for all samples of a pixel.
-What the reference itself is off by is told by the spread of its parts, and its square is subtracted.
+true error is at most the bound that stopped the render. The bound is smaller than the error asked for, partly by
+chance, so no render promises it. True errors are differences from a long reference: caustics without photons, the room
+without light vertices, and all scenes with other seeds and one sequence for all samples of a pixel. The error of the
+reference itself is estimated by the spread of its parts, and its square is subtracted.
 
-"cost" is the number of samples by that of the rule that most renderers have: look after every 16 samples, and stop as
-soon as the variance of the samples says that the error is small enough.
+"cost" is the number of samples relative to that of the rule that most renderers use: look after every 16 samples, and
+stop as soon as the variance of the samples says that the error is small enough.
 
-The command fails where fewer than 91.9 % of a scene's renders keep their word (95 % less two standard errors of 200
-renders), fewer than 95 % of all, or the median of true by asked error is less than 0.4.
+The command fails if fewer than 91.9 % of a scene's renders keep the promise (95 % less two standard errors of 200
+renders), or fewer than 95 % of all, if the median ratio of true to asked error is less than 0.4, or if a render does
+not reach its error.
 """
 
 import argparse
@@ -50,7 +51,7 @@ material = "clay"
 [[light]]
 environment.radiance = 1
 """ + FLOOR
-# A lamp that lights little: most of its light comes through a slit.
+# A small lamp that lights little of the scene: most of its light comes through a slit.
 LAMP = HEAD + """
 [material]
 floor.diffuse.reflectance = 0.5
@@ -78,7 +79,7 @@ material = "glass"
 shape.sphere = { center = [1.5, 3.2, 0.5], radius = 0.35 }
 material = "lamp"
 """ + FLOOR
-# A room that a lamp behind a screen lights by way of the ceiling.
+# A room lit by a lamp behind a screen, through reflection by the ceiling.
 INTERIOR = """
 camera = { position = [0, 1.5, 1.9], look_at = [0, 1.2, 0], vertical_fov = 60 }
 film = { width = 32, height = 32 }
@@ -102,7 +103,7 @@ material = "red"
 class Scene(NamedTuple):
     text: str
     error: float
-    # Samples of each part of the reference, and what makes it find its light another way.
+    # Samples of each part of the reference, the number of parts, and flags that make it find its light in another way.
     samples: int
     parts: int
     other: dict
@@ -120,7 +121,7 @@ SCENES = {
 
 
 def rendered(text, seed, **flags):
-    """The image, and what the render says of itself."""
+    """Returns the image, and the report of the render."""
     with tempfile.TemporaryDirectory() as folder:
         exr, report = Path(folder, "image.exr"), Path(folder, "report.json")
         render.write(text, exr, seed=seed, threads=1, report=report, **flags)
@@ -128,7 +129,7 @@ def rendered(text, seed, **flags):
 
 
 def reference(scene, pool):
-    """The mean of some long renders, and the square of its error."""
+    """Returns the mean of several long renders, and the square of its error."""
     parts = pool.map(lambda seed: rendered(scene.text, 1000 + seed, samples=scene.samples, **scene.other)[0], range(scene.parts))
     parts = np.stack(list(parts))
     mean = parts.mean(axis=0)
@@ -136,7 +137,7 @@ def reference(scene, pool):
 
 
 def naive(scene, seed):
-    """Samples after which the rule that most renderers have would stop."""
+    """Returns the number of samples after which the rule of most renderers would stop."""
     error = scene.error * (8 / 9) ** 0.5
     count = 64
     while True:
@@ -148,12 +149,12 @@ def naive(scene, seed):
         ratio = variance / (image.rgb**2).mean() / error**2
         if ratio <= 1:
             return count
-        # It looks after every 16 samples; looks long before there are enough are left out here.
+        # The rule looks after every 16 samples. Looks long before the end are skipped here.
         count = max(count + 16, int(count * min(ratio, 4)) // 16 * 16)
 
 
 def judged(name, renders, pool):
-    """The figures of a scene."""
+    """Returns the figures of a scene."""
     scene = SCENES[name]
     truth, of_truth = reference(scene, pool)
     power = (truth**2).mean()
@@ -181,7 +182,7 @@ def judged(name, renders, pool):
 
 
 def faults(found, renders):
-    """What the figures miss."""
+    """Returns what is wrong with the figures."""
     said = [f"{name}: kept in {row['kept']:.1%} of the renders" for name, row in found.items() if row["kept"] < 0.919]
     said += [f"{name}: median {row['median']:.2f} of what is asked for" for name, row in found.items() if row["median"] < 0.4]
     said += [f"{name}: not reached in all renders" for name, row in found.items() if row["reached"] < 1]

@@ -1,10 +1,10 @@
-"""The test command: installs what the tests need and runs all of them, Rust and Python, until the first that fails.
+"""The test command: installs what the tests need and runs all of them, Rust and Python, until the first failure.
 
     python3 tools/test.py                # everything
     python3 tools/test.py --only pytest  # one step
 
-Needs cargo and Python 3.11 or newer; the Python packages go into .venv, by the hashes of tools/requirements.txt, and so does
-the Chromium that opens the report.
+Needs cargo and Python 3.11 or newer. The Python packages are installed into .venv, by the hashes of
+tools/requirements.txt, and so is the Chromium that opens the report.
 """
 
 import argparse
@@ -21,13 +21,13 @@ ROOT = Path(__file__).resolve().parent.parent
 REQUIREMENTS = ROOT / "tools/requirements.txt"
 ENVIRONMENT = ROOT / ".venv"
 PYTHON = ENVIRONMENT / "bin/python"
-# Everything is tested in the profile that keeps overflow and debug checks; its pictures have the bits of a release.
+# Everything is tested in a profile with overflow and debug checks; its pictures are identical to those of a release.
 RENDER = ROOT / "target/debug/render"
 WHEELS = ROOT / "target/wheels"
 
 
 class Failure(Exception):
-    """What went wrong, in words for the person at the terminal."""
+    """Says what went wrong, in words for the person at the terminal."""
 
 
 def run(*command, **environment):
@@ -49,7 +49,7 @@ def create_environment():
 
 
 def packages():
-    """Installs the locked packages, unless the environment's stamp says that it holds exactly these."""
+    """Installs the locked packages, unless the environment's stamp shows that it already has them."""
     stamp = ENVIRONMENT / "requirements.sha256"
     wanted = hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()
     if stamp.is_file() and stamp.read_text() == wanted and PYTHON.exists():
@@ -61,19 +61,19 @@ def packages():
 
 
 def packages_and_browser():
-    """On a machine where no browser can be installed, the tests that need it are skipped and say why."""
+    """Installs packages and browser. If no browser can be installed, the tests that need it are skipped and say why."""
     packages()
     run(PYTHON, "tools/browser.py")
 
 
 def wheel():
-    """Builds the package for Python, in the profile in which everything is tested, and puts it into the environment."""
+    """Builds the package for Python, in the profile of the tests, and installs it into the environment."""
     shutil.rmtree(WHEELS, ignore_errors=True)
     run(PYTHON, "-m", "maturin", "build", "--profile", "dev", "--out", WHEELS)
     run(PYTHON, "-m", "pip", "install", "--quiet", "--no-index", "--no-deps", "--force-reinstall", *WHEELS.glob("*.whl"))
 
 
-# All in the workspace, so that the wheel takes the library that the tests have built.
+# All commands use the whole workspace, so that the wheel reuses the library that the tests have built.
 STEPS = {
     "format": lambda: run("cargo", "fmt", "--all", "--check"),
     "clippy": lambda: run("cargo", "clippy", "--workspace", "--all-targets", "--", "-D", "warnings"),
@@ -82,7 +82,7 @@ STEPS = {
     "test": lambda: run("cargo", "test", "--workspace"),
     "packages": packages_and_browser,
     "wheel": wheel,
-    # Two files at a time: half of them keep one processor busy.
+    # Two files at a time, because half of them keep only one processor busy.
     "pytest": lambda: run(
         PYTHON, "-m", "pytest", "tools/tests", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder",
         RENDER=str(RENDER),
@@ -97,7 +97,7 @@ def main():
     if only:
         run_steps({only: STEPS[only]})
         return
-    # Packages come from the network, while cargo keeps the processors busy.
+    # The packages are downloaded while cargo keeps the processors busy.
     with subprocess.Popen(
         [sys.executable, __file__, "--only", "packages"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as installing:
@@ -109,7 +109,7 @@ def main():
 
 
 def finish(installing):
-    """Waits for what was begun before the other steps, and prints what it said."""
+    """Waits for the installation that began before the other steps, and prints its output."""
     print(installing.communicate()[0], flush=True)
     if installing.returncode:
         raise Failure("the Python packages could not be installed")

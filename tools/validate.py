@@ -1,4 +1,4 @@
-"""Holds the renderer against closed forms: tools/validation/command.py."""
+"""Compares the renderer with closed forms: tools/validation/command.py."""
 
 import sys
 

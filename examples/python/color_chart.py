@@ -1,4 +1,4 @@
-"""A color chart under three lamps: how far each patch is from its computed color, by colour-science.
+"""A color chart under three lamps: compares each rendered patch with its color as computed by colour-science.
 
 pip install colour-science
 python examples/python/color_chart.py [chart.png]
@@ -13,14 +13,14 @@ import numpy as np
 LAMPS = ("D65", "A", "FL11")
 PATCHES = [name for name in abbe.catalog.reflectances() if name.startswith("colorchecker/")]
 COLUMNS, ROWS = 6, 4
-# Pixels along a patch, of which the outer ones see its edge.
+# Pixels along each side of a patch. The outermost ones straddle the patch's edge.
 SIDE = 8
 NM = colour.SpectralShape(360, 830, 1)
 OBSERVER = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(NM).values
 
 
 def chart(lamp):
-    """The patches side by side, under a sky of a lamp's light: each sends back its reflectance of that."""
+    """Returns a scene of all patches side by side, which reflect a uniform sky with the lamp's spectrum."""
     squares = [
         {"shape": {"quad": {"center": [x, -y, 0], "u": [0.45, 0, 0], "v": [0, 0.45, 0]}}, "material": patch}
         for (y, x), patch in zip(np.ndindex(ROWS, COLUMNS), PATCHES, strict=True)
@@ -41,7 +41,7 @@ def chart(lamp):
 
 
 def exact(lamp):
-    """XYZ of each patch and of the lamp itself, whose luminance is 1: integrals over the tables of the catalog."""
+    """Returns XYZ of each patch and of the lamp, whose luminance is 1, by integrals over the tables of the catalog."""
     light = abbe.catalog.illuminant(lamp).power(NM.wavelengths)
     reflectances = [abbe.catalog.reflectance(patch).reflectance(NM.wavelengths) for patch in PATCHES]
     xyz = np.array([*reflectances, np.ones_like(light)]) * light @ OBSERVER
@@ -49,13 +49,13 @@ def exact(lamp):
 
 
 def rendered(image):
-    """XYZ of each patch: the mean of its pixels, without those at its edge."""
+    """Returns XYZ of each patch: the mean of its pixels, without the outermost ones."""
     patches = image.rgb.reshape(ROWS, SIDE, COLUMNS, SIDE, 3)[:, 1:-1, :, 1:-1]
     return patches.mean(axis=(1, 3)).reshape(-1, 3) @ colour.RGB_COLOURSPACES["ITU-R BT.709"].matrix_RGB_to_XYZ.T
 
 
 def differences(lamp, image):
-    """CIEDE2000 of each patch, to eyes that take the lamp for white."""
+    """Returns CIEDE2000 of each patch, for an observer adapted to the lamp as white."""
     expected, white = exact(lamp)
     lab = [colour.XYZ_to_Lab(xyz, colour.XYZ_to_xy(white)) for xyz in (expected, rendered(image))]
     return colour.delta_E(*lab, method="CIE 2000")

@@ -1,4 +1,4 @@
-"""A furnace test: in even light a surface that reflects it all cannot be told from the sky. Run it with pytest.
+"""A furnace test: under uniform light, a perfectly reflecting surface looks the same as the sky. Run it with pytest.
 
 pytest examples/python/furnace.py
 """
@@ -30,5 +30,5 @@ def scene(material):
 )
 def test_nothing_is_lost_and_nothing_won(material):
     image = abbe.render(scene(material), samples=256)
-    # Rough glass keeps its energy to 0.1 % beside its noise; the others keep it but for rounding.
+    # Rough glass conserves energy to 0.1 %, besides its noise; the others conserve it except for rounding.
     assert np.mean(image.rgb) == pytest.approx(1, abs=2e-3)

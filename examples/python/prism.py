@@ -1,10 +1,11 @@
-"""Dispersion of a prism against Snell's law: where an edge appears through a prism, for each wavelength.
+"""Dispersion by a prism, compared with Snell's law: where an edge appears through the prism at each wavelength.
 
     pip install matplotlib
     python examples/python/prism.py prism.png
 
-The edge of a lamp, very far away, is seen through a prism by a row of pixels. Each wavelength is turned by another
-angle, and so sees the edge in another pixel. The plot has the angles of these pixels, and the curve of Snell's law.
+A row of pixels looks through a prism at the edge of a lamp that is very far away. The prism deviates each wavelength by
+a different angle, so each sees the edge in another pixel. The plot shows the angles of these pixels, and the curve of
+Snell's law.
 """
 
 import sys
@@ -14,16 +15,16 @@ import numpy as np
 
 GLASS = "N-SF11"
 APEX = np.radians(30)
-# Where the row of pixels looks, from the axis of the prism, and how far it sees to both sides.
+# The middle of the row's field of view, as an angle from the axis of the prism, and half its width.
 MIDDLE, HALF = np.radians(12.5), np.radians(3)
 PIXELS = 100
-# The edge of the lamp in the far distance.
+# The direction and the distance of the lamp's edge.
 EDGE, FAR = np.radians(-13), 1e6
 BANDS = {"from": 460, "to": 640, "step": 20}
 
 
 def exact(nm):
-    """The angle at which each wavelength sees the edge: Snell's law at both faces, solved by halving."""
+    """Returns the angle at which each wavelength sees the edge: Snell's law at both faces, solved by bisection."""
     n = abbe.catalog.glass(GLASS).index(nm)
 
     def after(angle):
@@ -46,7 +47,7 @@ def scene():
         "points": np.array([[x, y, z] for y in (-1, 1) for x, z in corners]),
         "faces": np.array([[0, 1, 2], [3, 5, 4], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]]),
     }
-    # From the edge on a lamp a tenth of the distance wide.
+    # The lamp begins at the edge and is a tenth of its distance wide.
     across = direction(EDGE + np.pi / 2) * FAR / 20
     eye = -3 * direction(MIDDLE)
     lamp = {"center": eye + FAR * direction(EDGE) + across, "u": across, "v": [0, FAR / 20, 0]}
@@ -64,7 +65,7 @@ def scene():
 
 
 def rendered(image):
-    """The angle at which each band sees the edge: where its light would begin if it began at once."""
+    """Returns wavelengths, and the angles at which they see the edge: where a sharp edge would be."""
     nm, radiance = image.spectra
     (row,) = radiance
     lit = row[-PIXELS // 4 :].mean(axis=0)

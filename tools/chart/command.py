@@ -1,18 +1,18 @@
-"""Charts speed against accuracy: Abbe's models and methods, and the renderers that anyone can install beside it.
+"""Charts speed against accuracy: Abbe's models and methods, and other renderers that anyone can install.
 
-    python tools/chart.py --list                 # which renderers are there, and how to install the others
+    python tools/chart.py --list                 # which renderers are installed, and how to install the others
     python tools/chart.py --quick                # every chart, small: under 10 minutes on two cores
     python tools/chart.py                        # eight times the side, without the longest runs: two hours
     python tools/chart.py --scene cornell --side 512
     python tools/chart.py --only abbe --quick    # Abbe's own series alone
     python tools/chart.py --redraw               # pictures and words of what was measured last
 
-Writes into target/chart a PNG and an SVG for each chart, overview.png of the field, chart.csv, chart.json and table.md,
-the table of benches/README.md, and prints what the charts say in words. Charts that chart.json already holds stay,
-unless they are measured again: so a quiet hour can go to one of them. A renderer that fails is told in a line and left
-out. tools/chart/scenes.py says what is charted, tools/chart/measure.py what the error is and what counts as time,
-tools/chart/findings.py what the words mean. Every renderer runs on one thread and reads the same scene file, the others
-by way of tools/peers.
+Writes into target/chart a PNG and an SVG for each chart, overview.png with the main charts, chart.csv, chart.json and
+table.md, the table of benches/README.md, and prints the findings in words. Charts that chart.json already holds are
+kept unless they are measured again, so a quiet hour can be spent on a single chart. A renderer that fails is reported
+in one line and left out. tools/chart/scenes.py defines the charts, tools/chart/measure.py what the error is and what
+counts as time, tools/chart/findings.py what the words mean. Every renderer runs on one thread and renders the same
+scene file; tools/peers translates it for the others.
 """
 
 import argparse
@@ -34,12 +34,12 @@ from .findings import curve, floor, short, table_rows, takes_no_seed, wavers, wo
 from .measure import Measured, Point, measure
 from .scenes import Chart, Profile
 
-CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps of a converged picture
+CONVERGED = ("difference", "unseen", "brightness")  # what chart.json keeps about a converged picture
 OVERVIEW = ("cornell", "ajar", "smallpt", "caustic", "window", "mesh")
 
 
 def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]:
-    """Versions of what is there, and lines on what is not, by renderer and variant."""
+    """Returns the versions of installed renderers, and messages on missing ones, by renderer and variant."""
     versions, missing = {}, {}
     for renderer, variant in dict.fromkeys((one.renderer, one.variant) for chart in charts for one in chart.series):
         key = f"{renderers.NAMES[renderer]} {variant}".strip()
@@ -51,7 +51,7 @@ def found_versions(charts: list[Chart]) -> tuple[dict[str, str], dict[str, str]]
 
 
 def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[str, Measured]:
-    """Every series that can be had; one that cannot be opened is told and left out."""
+    """Measures every series whose renderer is installed. One that cannot be opened is reported and left out."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         opened = {}
@@ -75,7 +75,7 @@ def run(chart: Chart, profile: Profile, only: list[str] | None = None) -> dict[s
 
 
 def recorded(series: dict) -> Measured:
-    """A series as `record` wrote it."""
+    """Restores a series from the form in which `record` wrote it."""
     points = [Point(**point) for point in series["points"]]
     return Measured(points, series["start_seconds"], None, *(series.get(name, math.nan) for name in CONVERGED))
 
@@ -98,7 +98,7 @@ def panel_for(chart: Chart, found: dict[str, Measured]) -> draw.Panel:
 
 
 def record(chart: Chart, found: dict[str, Measured], made_by: str) -> dict:
-    """The chart as it stands in chart.json."""
+    """Returns the chart in the form that chart.json stores."""
     kinds = {one.label: "abbe" if one.renderer == "abbe" else "other" for one in chart.series}
     series = []
     for label, measured in found.items():
@@ -123,13 +123,13 @@ def table(found: dict[str, Measured]) -> str:
 
 
 def read_data(out: Path) -> dict:
-    """What chart.json holds: `versions`, `made_by` of what was measured last, and `scenes`."""
+    """Returns the contents of chart.json: `versions`, `made_by` of the latest measurement, and `scenes`."""
     path = out / "chart.json"
     return json.loads(path.read_text("utf-8")) if path.exists() else {"versions": {}, "made_by": "", "scenes": []}
 
 
 def with_record(data: dict, versions: dict, entry: dict) -> dict:
-    """The data with a chart that was measured, in place of an older one of its name and in the order of the charts."""
+    """Returns the data with a newly measured chart. It replaces an older one of its name; charts keep their order."""
     every = {one["name"]: one for one in [*data["scenes"], entry]}
     kept = [every[chart.name] for chart in scenes.CHARTS if chart.name in every]
     return {"versions": data["versions"] | versions, "made_by": entry["made_by"], "scenes": kept}
@@ -167,7 +167,7 @@ def overview(out: Path, panels: dict[str, draw.Panel], note: str) -> None:
 
 
 def draw_all(out: Path) -> list[dict]:
-    """Pictures, words and table.md of what chart.json holds."""
+    """Draws pictures and writes words and table.md from what chart.json holds."""
     data = read_data(out)
     charts = {chart.name: chart for chart in scenes.CHARTS}
     records, panels = [], {}
@@ -188,7 +188,7 @@ def draw_all(out: Path) -> list[dict]:
 
 
 def vectors() -> str:
-    """The widest vectors of the processor, which renderers compiled where they run may use."""
+    """Returns the processor's architecture and its widest vectors, which natively compiled renderers may use."""
     try:
         said = Path("/proc/cpuinfo").read_text("utf-8")
     except OSError:
@@ -199,18 +199,18 @@ def vectors() -> str:
 
 
 def load() -> str:
-    """How busy the machine is before the chart adds its own work."""
+    """Returns the load of the machine before the chart adds its own work."""
     return f"load average {os.getloadavg()[0]:.1f} before"
 
 
 def processor_seconds() -> float:
-    """Of this process and of the renderers that have ended."""
+    """Returns the CPU time of this process and of its child processes that have ended."""
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
 
 def made_by(arguments: argparse.Namespace) -> str:
-    """The command that measures the same again."""
+    """Returns the command that repeats this measurement."""
     words = [f"--{key} {value}" for key in ("scene", "only") for value in getattr(arguments, key) or []]
     words += ["--quick"] if arguments.quick else []
     words += [f"--side {arguments.side}"] if arguments.side else []

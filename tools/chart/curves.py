@@ -1,10 +1,11 @@
-"""What a chart says, in words computed from its points: who takes how much of the other's time, and where they cross.
+"""Findings of a chart in words, computed from its points: the ratio of times to equal error, and where curves cross.
 
     seconds_to(0.02, curve)                     # (0.8, "measured")
     compare("Abbe", ours, "LuxCore", theirs)    # "To 5 % Abbe takes 0.52 x the CPU time of LuxCore (..): ahead."
 
-A curve is a list of (seconds, error), seconds ascending. Between the points it is a line in log-log. Beyond the ends an
-error falls as one over the root of the time, which is called extrapolated. Within a factor of 1.2 it is a tie.
+A curve is a list of (seconds, error), in ascending order of seconds. It is interpolated linearly in log-log. Beyond its
+ends the error is taken to fall as one over the square root of the time, which is called extrapolated. Times within a
+factor of 1.2 are a tie.
 """
 
 import math
@@ -17,7 +18,7 @@ Curve = list[tuple[float, float]]
 
 
 def falling(curve: Curve) -> Curve:
-    """The points that are better than all before them: what a series reaches within a time."""
+    """Returns the points with a smaller error than all before them: the best that a series reaches within a time."""
     best, kept = math.inf, []
     for seconds, error in curve:
         if 0 < error < best:
@@ -27,7 +28,7 @@ def falling(curve: Curve) -> Curve:
 
 
 def steady(curve: Curve) -> bool:
-    """Whether the error falls at least as the fourth root of the time; decided by rare paths it does not."""
+    """Whether the error falls at least as fast as time^(-1/4). An error dominated by rare paths does not."""
     if len(curve) < 2:
         return False
     (t0, e0), (t1, e1) = curve[0], curve[-1]
@@ -39,7 +40,7 @@ def unsteady_words(name: str) -> str:
 
 
 def seconds_to(error: float, curve: Curve) -> tuple[float, str]:
-    """Seconds to an error and whether that is measured or extrapolated."""
+    """Returns the seconds needed to reach an error, and whether that is measured or extrapolated."""
     curve = falling(curve)
     for (t0, e0), (t1, e1) in pairwise(curve):
         if e1 <= error <= e0:
@@ -52,9 +53,10 @@ def seconds_to(error: float, curve: Curve) -> tuple[float, str]:
 
 
 def crossings(first: Curve, second: Curve) -> list[tuple[float, float]]:
-    """Errors and seconds at which one overtakes the other, where both are measured; the largest error first.
+    """Returns errors and seconds at which one curve overtakes the other, where both are measured.
 
-    Lines that only touch do not count: on either side one must somewhere take longer by more than a tie."""
+    The largest error comes first. Curves that only touch do not cross: on either side of a crossing, one must somewhere
+    take longer by more than a tie."""
     first, second = falling(first), falling(second)
     if min(len(first), len(second)) < 2:
         return []
@@ -89,9 +91,11 @@ def rank(ratio: float) -> str:
 
 
 def levels_for(first: Curve, second: Curve) -> list[float]:
-    """The smallest and the largest round error that both reach as measured; without one, where they come closest.
+    """Returns the smallest and the largest round error that both curves reach as measured.
 
-    That is the better one's first point: from it backward nothing follows, as little work may cost the same start."""
+    Without one, returns where they come closest: if their errors do not overlap, that is the first point of the better
+    curve. Extrapolating it to larger errors would mean nothing, because even little work may take this long to start.
+    """
     ends = [falling(curve) for curve in (first, second)]
     low, high = max(curve[-1][1] for curve in ends), min(curve[0][1] for curve in ends)
     if both := [level for level in LEVELS if low <= level <= high]:
@@ -102,13 +106,13 @@ def levels_for(first: Curve, second: Curve) -> list[float]:
 
 
 def ratio_at(error: float, first: Curve, second: Curve) -> tuple[float, str]:
-    """How many times the second's seconds the first takes, and how sure that is."""
+    """Returns the ratio of the first curve's seconds to the second's, and whether it is measured or extrapolated."""
     (ours, sure), (theirs, also) = seconds_to(error, first), seconds_to(error, second)
     return ours / theirs, "extrapolated" if "extrapolated" in (sure, also) else "measured"
 
 
 def compare(name: str, ours: Curve, other: str, theirs: Curve) -> str:
-    """Times to an equal error, and where one overtakes the other."""
+    """Compares the times to an equal error in words, and says where the curves cross."""
     if not falling(ours) or not falling(theirs):
         return f"{name} and {other} cannot be compared: the error of one is below the noise of the reference."
     error, *coarser = levels_for(ours, theirs)
@@ -127,7 +131,7 @@ def compare(name: str, ours: Curve, other: str, theirs: Curve) -> str:
 
 
 def title_for(name: str, ours: Curve, others: dict[str, Curve]) -> str:
-    """One line: the most and the least of the time of the others that the first takes."""
+    """Returns one line with the least and the greatest ratio of our time to that of another."""
     ratios = {}
     for other, curve in others.items():
         if falling(ours) and falling(curve):

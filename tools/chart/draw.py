@@ -1,4 +1,4 @@
-"""Draws what tools/chart.py measured: error against processor time, one picture for a chart and one of several panels.
+"""Draws what tools/chart.py measured: error against processor time, one picture per chart and an overview of several.
 
     draw([panel], Path("cornell"))      # cornell.png and cornell.svg
 """
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from PIL import Image
 
-# Okabe and Ito 2008, whose colors color-blind eyes tell apart; Abbe's own series are blue.
+# The palette of Okabe and Ito 2008, which is safe for color-blind readers. Abbe's own series are blue.
 BLUES = ("#0072B2", "#56B4E9", "#004066")
 COLORS = {"mitsuba": ("#D55E00", "#E69F00", "#8c3d00"), "luxcore": ("#009E73", "#00553D", "#5BC4A3")}
 COLORS |= {"cycles": ("#CC79A7",), "smallpt": ("#000000",), "povray": ("#6b6b6b",)}
@@ -23,7 +23,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 
 
 class Line(NamedTuple):
-    """A series as it is drawn; `renderer` chooses the color."""
+    """A series to draw; `renderer` chooses the color."""
 
     label: str
     renderer: str
@@ -39,7 +39,7 @@ class Panel(NamedTuple):
 
 
 def styles(lines: list[Line]) -> list[dict]:
-    """Colors, markers and widths: the renderer first, shades of it for further series."""
+    """Returns color, marker and width of each line: one hue per renderer, and shades of it for further series."""
     ours = all(line.renderer == "abbe" for line in lines)
     seen: dict[str, int] = {}
     result = []
@@ -60,7 +60,7 @@ def styles(lines: list[Line]) -> list[dict]:
 
 
 def spread(places: list[float], gap: float, low: float, high: float) -> list[float]:
-    """Heights of labels near the wanted ones, at least `gap` apart and inside of the axes; keeps their order."""
+    """Returns heights of labels near the wanted ones, in the same order, at least `gap` apart and within the axes."""
     order = np.argsort(places)
     wanted = np.array(places, float)[order]
     gap = min(gap, (high - low) / max(len(places) - 1, 1))
@@ -84,7 +84,7 @@ def seconds(value: float, _=None) -> str:
 
 
 def paint(axes, panel: Panel, size: float) -> None:
-    """Lines, labels to the right of them, a grid, and dotted lines along which four times the time halves the error."""
+    """Draws lines and their labels, a grid, and dotted lines on which four times the time halves the error."""
     every = np.array([point for line in panel.lines for point in line.points if point[1] > 0])
     low, high = every.min(axis=0), every.max(axis=0)
     axes.set_xscale("log")
@@ -146,7 +146,7 @@ def draw(panels: list[Panel], out: Path, note: str) -> None:
 
 
 def draw_overview(panels: list[Panel], out: Path, note: str) -> None:
-    """Several panels in two columns as a PNG of few colors, below 150 kB."""
+    """Draws several panels in two columns and writes them as a PNG of few colors, below 150 kB."""
     rows = -(-len(panels) // 2)
     figure = Figure(figsize=(12.6, 4.5 * rows))
     figure.subplots_adjust(0.065, 0.055 + 0.05 / rows, 0.855, 1 - 0.17 / rows, wspace=0.56, hspace=0.45)

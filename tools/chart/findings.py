@@ -1,4 +1,4 @@
-"""What the measurements of a chart say in sentences: first the comparisons, then what judges them.
+"""The findings of a chart in sentences: first the comparisons, then how far the converged pictures agree.
 
     words_for(chart, {"Abbe": measured, "LuxCore": measured})
 """
@@ -9,8 +9,8 @@ from . import curves
 from .measure import Measured
 from .scenes import Chart
 
-SAME = 0.02  # converged pictures that differ by less show the same physics
-LOADS = ("abbe", "luxcore", "smallpt")  # renderers whose start is loading the scene and what they find ahead
+SAME = 0.02  # converged pictures that differ by less than this show the same physics
+LOADS = ("abbe", "luxcore", "smallpt")  # renderers whose start is loading the scene and preprocessing it
 
 
 def takes_no_seed(measured: Measured) -> bool:
@@ -22,12 +22,12 @@ def wavers(measured: Measured) -> bool:
 
 
 def curve(measured: Measured, key: str = "error") -> curves.Curve:
-    """The points of a series, without those that took no longer than the start: jitter, which no curve can tell of."""
+    """Returns the points of a series, without those that took no longer than the start: their time is only jitter."""
     return [(point.cpu_seconds, getattr(point, key)) for point in measured.points if point.cpu_seconds > 0]
 
 
 def floor(measured: Measured) -> str:
-    """What a converged picture differs by, or what it could differ by without our seeing it."""
+    """Says by how much a converged picture differs, or the smallest difference that could have been detected."""
     if measured.difference > measured.unseen:
         return curves.percent(measured.difference)
     if measured.difference > SAME:
@@ -36,7 +36,7 @@ def floor(measured: Measured) -> str:
 
 
 def physics_words(label: str, measured: Measured, against: str, ours: Measured, flat_lamp: bool) -> str:
-    """How a converged picture differs from the common one, and what the common one would say."""
+    """Says how far a converged picture is from the common one, and how the series does if judged by the common one."""
     if takes_no_seed(measured):
         best = curves.percent(min(point.common for point in measured.points))
         return f"{label} takes no seed and is judged by the picture of {against}; its best point is {best} off."
@@ -59,13 +59,13 @@ def model_words(label: str, measured: Measured, against: str) -> str:
 
 
 def out_of_reach(ours: Measured, theirs: Measured) -> float | None:
-    """Our largest error, where a biased series does not come to it: no time could be extrapolated."""
+    """Returns our largest error if a biased series never reaches it, so that no time can be extrapolated; else None."""
     largest = max(error for _, error in curve(ours))
     return largest if largest < min(error for _, error in curve(theirs)) else None
 
 
 def with_start(ours: Measured, theirs: Measured) -> tuple[float, float] | None:
-    """Seconds of both to an equal error with those before the first sample, where they change the ratio."""
+    """Returns seconds of both to an equal error including the start, if the start changes the ratio noticeably."""
     error = curves.levels_for(curve(ours), curve(theirs))[0]
     ratio = curves.ratio_at(error, curve(ours), curve(theirs))[0]
     mine, other = (curves.seconds_to(error, curve(one))[0] + one.start for one in (ours, theirs))
@@ -81,7 +81,7 @@ def start_words(name: str, ours: Measured, theirs: Measured) -> str:
 
 
 def unsteady_words(name: str, ours: Measured, other: str, theirs: Measured) -> str:
-    """Where rare paths decide an error only what was met is told: who is better in less time."""
+    """If rare paths dominate an error, says only what was observed: who has the smaller error in less time."""
     words = curves.unsteady_words(name if wavers(ours) else other)
     if not wavers(ours):
         seconds, best = min(curve(theirs), key=lambda point: point[1])
@@ -97,7 +97,7 @@ def short(label: str) -> str:
 
 
 def table_cell(ours: Measured, theirs: Measured) -> str:
-    """What of the other's time ours takes."""
+    """Says in a table cell what fraction of the other's time ours takes."""
     mine, other = curve(ours), curve(theirs)
     times = []
     for error in curves.levels_for(mine, other):
@@ -110,7 +110,7 @@ def table_cell(ours: Measured, theirs: Measured) -> str:
 
 
 def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
-    """The chart as rows of the table of benches/README.md: scene, beside whom, time that ours takes, pictures apart."""
+    """Returns rows for the table of benches/README.md: scene, the other series, time ours takes, pictures apart."""
     first, *others = found
     ours, rows = found[first], []
     renderers = {one.label: one.renderer for one in chart.series}
@@ -133,7 +133,7 @@ def table_rows(chart: Chart, found: dict[str, Measured]) -> list[str]:
 
 
 def words_for(chart: Chart, found: dict[str, Measured]) -> list[str]:
-    """The chart in sentences: first the comparisons, then what judges them."""
+    """Returns the findings of the chart in sentences: first the comparisons, then what judges them."""
     first, *others = found
     ours = found[first]
     flat = {one.label for one in chart.series if one.flat_lamp}

@@ -2,11 +2,12 @@
 
     measured = measure(renderers, chart, profile)       # label -> Measured
 
-The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped,
-box filter; RMS is that of x - r. r is a converged picture of two halves of other seeds; (x - r)^2 is the product of
-the distances from both, which their noise does not raise. Seconds are user and system time: of the whole process, or,
-where a renderer lives in a Python process, of rendering there; the least of
-the repeats. What is taken before the first sample is found from the shortest and the longest run and told apart.
+The error is the root of the mean of (x - r)^2 / (r^2 + 0.01) over pixels and channels of linear Rec.709, unclamped, box
+filter; RMS is the root mean square of x - r. r is a converged picture, rendered as two halves with different seeds.
+(x - r)^2 is computed as the product of the differences from both halves, so their noise does not raise it. Seconds are
+user and system time: of the whole process, or, if a renderer lives in a Python process, of rendering there. The
+smallest of the repeats counts. The time before the first sample is found from the shortest and the longest run, and
+reported separately.
 """
 
 import os
@@ -20,7 +21,7 @@ HALVES = (10_000, 20_000)
 
 
 class Point(NamedTuple):
-    """The least seconds of the repeats at a number of samples, and medians of their errors.
+    """The smallest time of the repeats at a number of samples, and the medians of their errors.
 
     `common` is the error against the common reference."""
 
@@ -32,7 +33,7 @@ class Point(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """A converged picture as its two halves of other seeds, each (height, width, 3)."""
+    """A converged picture as two halves with different seeds, each (height, width, 3)."""
 
     first: np.ndarray
     second: np.ndarray
@@ -43,13 +44,13 @@ class Reference(NamedTuple):
 
 
 class Measured(NamedTuple):
-    """A series: seconds are without `start`; how its converged picture differs from the common one."""
+    """The points of a series, in seconds without `start`, and how its converged picture differs from the common one."""
 
     points: list[Point]
     start: float
     reference: Reference | None
     difference: float
-    unseen: float  # a difference that noise could show where there is none
+    unseen: float  # the largest difference that noise alone could show
     brightness: float
 
 
@@ -62,22 +63,23 @@ def weight(reference: Reference) -> np.ndarray:
 
 
 def error(picture: np.ndarray, reference: Reference) -> tuple[float, float]:
-    """Relative and absolute RMS error, by the distances from both halves, whose noise has nothing in common."""
+    """Returns the relative and absolute RMS error, from the differences to both halves, whose noise is independent."""
     squared = (picture - reference.first) * (picture - reference.second)
     return root_mean(squared * weight(reference)), root_mean(squared)
 
 
 def difference(one: Reference, common: Reference) -> tuple[float, float]:
-    """How far two converged pictures are apart, relative RMS, and the most that noise alone could show of it.
+    """Returns the relative RMS difference of two converged pictures, and the largest that noise alone could show.
 
-    The noise of the halves cancels in the mean, also where both pictures share seeds; two standard errors are left."""
+    The noise of the halves cancels in the mean, even if both pictures share seeds. The second value is the root of two
+    standard errors of that mean."""
     squared = np.mean((one.first - common.first) * (one.second - common.second) * weight(common), axis=-1)
     pixels = squared[np.isfinite(squared)]
     return root_mean(pixels), float(np.sqrt(2 * pixels.std() / np.sqrt(pixels.size)))
 
 
 def start_of(samples: list[int], seconds: list[float]) -> float:
-    """Seconds of no samples, on the line through the shortest and the longest run."""
+    """Extrapolates the seconds for no samples, on the line through the shortest and the longest run."""
     rate = (seconds[-1] - seconds[0]) / (samples[-1] - samples[0]) if len(samples) > 1 else 0.0
     return float(np.clip(seconds[0] - rate * samples[0], 0.0, seconds[0] / 1.01)) if rate > 0 else 0.0
 
@@ -87,7 +89,7 @@ def converged(renderer, samples: int) -> Reference:
 
 
 def or_none(label: str, render, *arguments):
-    """What a renderer makes, or nothing, with one line of what it said, where it fails: the others go on."""
+    """Returns what a renderer makes. If it fails, prints the reason in a line and returns None; the others go on."""
     try:
         return render(*arguments)
     except (RuntimeError, OSError, ValueError) as words:
@@ -96,21 +98,22 @@ def or_none(label: str, render, *arguments):
 
 
 def reason(said: str) -> str:
-    """The line that says why: the last one that speaks of an error, unless a signal came after; else the last one."""
+    """Returns the line with the reason: the last about an error, unless a signal came last; else the last."""
     lines = [line.strip() for line in said.splitlines() if line.strip()] or ["it said nothing"]
     errors = [line for line in lines if "error" in line.lower()]
     return errors[-1] if errors and "signal" not in lines[-1] else lines[-1]
 
 
 def repeat(renderer, one: Series, seed: int) -> list[tuple[np.ndarray, float]]:
-    """A picture and its seconds for every number of samples."""
+    """Returns a picture and its seconds for each number of samples."""
     return [renderer.run(samples, seed) for samples in one.samples]
 
 
 def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measured]:
-    """Every series at every number of samples, in turn so that all meet the same machine; none of one that fails.
+    """Measures each series at each number of samples; a series that fails is left out.
 
-    The converged pictures, whose time does not count, are rendered side by side."""
+    The series take turns, so that all meet the same conditions of the machine. The converged pictures, whose time does
+    not count, are rendered in parallel."""
     series = {one.label: one for one in chart.series if one.label in renderers}
     seeded = [label for label, one in series.items() if one.renderer != "povray"]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -123,7 +126,7 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
     runs = {label: {n: [] for n in one.samples} for label, one in series.items()
             if label in references or label not in seeded}  # fmt: skip
     for label, one in series.items():
-        if one.renderer == "mitsuba" and label in runs:  # which compiles what it runs for each length
+        if one.renderer == "mitsuba" and label in runs:  # warm-up: it compiles for each length
             if or_none(label, repeat, renderers[label], one, 1000) is None:
                 del runs[label]
     for seed in range(1, profile.repeats + 1):
@@ -139,7 +142,7 @@ def measure(renderers: dict, chart: Chart, profile: Profile) -> dict[str, Measur
 
 
 def summary(runs: dict[int, list], reference: Reference | None, common: Reference, counts: bool) -> Measured:
-    """The points of a series; `counts`: its seconds grow with its samples, so that a start can be found."""
+    """Summarizes a series. `counts` says whether its seconds grow with its samples, so that the start can be found."""
     medians = {samples: np.median(results, axis=0).tolist() for samples, results in runs.items()}
     least = [min(seconds for seconds, *_ in results) for results in runs.values()]  # other programs only add to them
     start = start_of(list(runs), least) if counts else 0.0

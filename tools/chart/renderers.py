@@ -1,4 +1,4 @@
-"""The renderers that tools/chart.py compares: what is installed, and a picture and its processor seconds from any.
+"""The renderers that tools/chart.py compares: which are installed, and a picture and its processor seconds from each.
 
     renderer = open_renderer(series, Path("scene.toml"), folder)
     picture, seconds = renderer.run(samples=64, seed=1)
@@ -35,7 +35,7 @@ LLVM = (
 
 
 class Missing(Exception):
-    """A renderer that is not there, and how to install it, in one line."""
+    """Says in one line that a renderer is not installed, and how to install it."""
 
 
 def first_line(*command: str | Path) -> str:
@@ -44,7 +44,7 @@ def first_line(*command: str | Path) -> str:
 
 
 def llvm_library() -> str:
-    """The file that Mitsuba's llvm variants load: $DRJIT_LIBLLVM_PATH, or the newest that is found."""
+    """Returns the file that Mitsuba's llvm variants load: $DRJIT_LIBLLVM_PATH, or the newest one found."""
     if given := os.environ.get("DRJIT_LIBLLVM_PATH"):
         return given
     number = lambda path: [int(digits) for digits in re.findall(r"\d+", Path(path).name)]  # noqa: E731
@@ -55,7 +55,7 @@ def llvm_library() -> str:
 
 
 def version(renderer: str, variant: str = "") -> str:
-    """What stands in the chart's list of versions; raises Missing."""
+    """Returns a renderer's entry in the chart's list of versions; raises Missing."""
     if renderer == "abbe":
         return first_line(render.binary(), "--version")
     if renderer == "smallpt":
@@ -75,7 +75,7 @@ def version(renderer: str, variant: str = "") -> str:
 
 
 class Program:
-    """A renderer that is a process for each picture; user and system time of the whole process count."""
+    """A renderer that runs as one process per picture. User and system time of the whole process count."""
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:
         took, code, said = render.measured(self.command(samples, seed))
@@ -88,7 +88,7 @@ class Program:
 
 
 class Abbe(Program):
-    """Our renderer, on one thread."""
+    """Abbe, on one thread."""
 
     def __init__(self, label: str, scene: Path, folder: Path):
         self.label, self.scene, self.out = label, scene, folder / "abbe.exr"
@@ -101,7 +101,7 @@ class Abbe(Program):
 
 
 class Smallpt(Program):
-    """The 99-line program."""
+    """The 99-line program smallpt."""
 
     def __init__(self, label: str, scene: Path, folder: Path):
         self.label = label
@@ -117,7 +117,7 @@ class Smallpt(Program):
 
 
 class PovRay(Program):
-    """POV-Ray, whose `samples` are the quality that tools/peers/povray.py explains."""
+    """POV-Ray. Its `samples` are the quality that tools/peers/povray.py explains."""
 
     def __init__(self, label: str, scene: Path, folder: Path):
         self.label, self.scene, self.folder = label, scene, folder
@@ -130,7 +130,7 @@ class PovRay(Program):
 
 
 class Worker:
-    """A renderer of Python's, by way of tools/chart/worker.py."""
+    """A renderer that is a Python module, run in a process of its own by tools/chart/worker.py."""
 
     def __init__(self, series, scene: Path, folder: Path):
         self.label, self.out, self.log = series.label, folder / "picture.npy", folder / "log.txt"
@@ -154,14 +154,14 @@ class Worker:
         return line
 
     def run(self, samples: int, seed: int) -> tuple[np.ndarray, float]:
-        with contextlib.suppress(BrokenPipeError):  # one that has ended: its log says why
+        with contextlib.suppress(BrokenPipeError):  # it has ended, and its log says why
             self.process.stdin.write(f"{samples} {seed} {self.out}\n")
             self.process.stdin.flush()
         seconds = float(self.answer())
         return np.load(self.out), seconds
 
     def close(self) -> None:
-        """Ends the process; one that does not end by itself is ended after some seconds."""
+        """Ends the process, and kills it if it has not ended by itself after 5 seconds."""
         with contextlib.suppress(BrokenPipeError):
             self.process.stdin.close()
         try:
@@ -176,7 +176,7 @@ PROGRAMS = {"abbe": Abbe, "smallpt": Smallpt, "povray": PovRay}
 
 
 def open_renderer(series, scene: Path, folder: Path):
-    """The renderer of a series; `folder` is its own."""
+    """Opens the renderer of a series; `folder` is for its files alone."""
     folder.mkdir()
     if series.renderer in PROGRAMS:
         return PROGRAMS[series.renderer](series.label, scene, folder)

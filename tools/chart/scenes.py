@@ -1,9 +1,9 @@
-"""What tools/chart.py charts: each chart's scene, its series, and how many samples each takes.
+"""What tools/chart.py charts: each chart's scene, its series, and the numbers of samples of each.
 
-A series is a renderer with its settings. The first one of a chart is the one that others are held against. Where
-`common` names a series, its converged picture judges all of them, with the bias that they have beside it and what they
-do not find; else each is judged by its own. The lamp of the Cornell box is also shown as glass of index 1 that emits:
-never aimed at, met by chance.
+A series is a renderer with its settings. The first series of a chart is the one to which the others are compared. If
+`common` names a series, its converged picture is the reference for all of them, so their bias and the light that they
+miss count as error; otherwise each is judged by its own. The lamp of the Cornell box is also rendered as emissive glass
+of index 1, which is not sampled as a light and is only hit by chance.
 """
 
 from pathlib import Path
@@ -23,12 +23,12 @@ class Series(NamedTuple):
     samples: tuple[int, ...]
     variant: str = ""
     settings: dict[str, str] = {}  # keys of the table [render], for Abbe
-    edits: tuple[tuple[str, str], ...] = ()  # words of the scene file and what stands there instead, for Abbe
+    edits: tuple[tuple[str, str], ...] = ()  # text of the scene file and its replacement, for Abbe
     flat_lamp: bool = False
 
 
 class Chart(NamedTuple):
-    """One picture of error against processor time. `size` is that of --quick."""
+    """A chart of error against processor time. `size` is that of --quick."""
 
     name: str
     title: str
@@ -36,15 +36,15 @@ class Chart(NamedTuple):
     size: tuple[int, int]
     series: tuple[Series, ...]
     common: str | None = None
-    longer: int = 1  # times as many samples in its converged pictures
-    bumps: tuple[int, int] | None = None  # rings and sectors of the bumpy ball, where the scene shows it
+    longer: int = 1  # factor on the samples of its converged pictures
+    bumps: tuple[int, int] | None = None  # rings and sectors of the bumpy ball, if it is in the scene
 
 
 class Profile(NamedTuple):
-    """How much is rendered: sides of the picture and samples as multiples of a chart's own, and repeats."""
+    """How much to render: the picture's sides and the samples, relative to a chart's own, and the number of repeats."""
 
     side: float
-    left_out: int  # points of most samples that are not rendered
+    left_out: int  # number of points, those with the most samples, that are not rendered
     reference: int  # samples of half a reference, as a multiple of the longest point's
     repeats: int
 
@@ -63,7 +63,7 @@ def abbe(label: str, *samples: int, **settings: str) -> Series:
 
 
 def models(*samples: int, first: str) -> tuple[Series, ...]:
-    """Every model of color, `first` first."""
+    """Returns one series for every color model, with `first` first."""
     names = [first, *(name for name in MODELS if name != first)]
     return tuple(abbe(f"Abbe, {name}", *samples, model=MODELS[name]) for name in names)
 
@@ -223,7 +223,7 @@ CHARTS = (
 
 
 def scaled(chart: Chart, profile: Profile, pixels: int | None = None) -> Chart:
-    """The chart at the profile's samples and size, or with `pixels` along its longer side."""
+    """Returns the chart with the profile's samples and size, or with `pixels` along its longer side."""
     factor = pixels / max(chart.size) if pixels else profile.side
     size = tuple(max(LEAST, round(side * factor)) for side in chart.size)
     points = lambda samples: samples[: max(2, len(samples) - profile.left_out)]  # noqa: E731
@@ -232,7 +232,7 @@ def scaled(chart: Chart, profile: Profile, pixels: int | None = None) -> Chart:
 
 
 def scene_text(chart: Chart, series: Series) -> str:
-    """The scene file of a series."""
+    """Returns the text of a series' scene file."""
     lines = []
     settings = "".join(f"{key} = {value}\n" for key, value in series.settings.items())
     for line in chart.scene.read_text("utf-8").splitlines():
@@ -255,7 +255,7 @@ def scene_text(chart: Chart, series: Series) -> str:
 
 
 def write_scene(chart: Chart, series: Series, path: Path) -> Path:
-    """The scene file of a series and what it reads."""
+    """Writes the scene file of a series and the files that it reads, and returns its path."""
     path.write_text(scene_text(chart, series), "utf-8")
     for name in ("textures", "meshes"):
         if not path.with_name(name).exists():

@@ -1,10 +1,10 @@
-"""One renderer that lives in a Python process, in a process of its own: tools/chart/renderers.py starts it.
+"""Runs one renderer that is a Python module, in a process of its own: tools/chart/renderers.py starts it.
 
     python -m chart.worker mitsuba llvm_ad_rgb scene.toml     # then lines `SAMPLES SEED OUT.npy` on its input
 
 Answers each line with the processor seconds that rendering took, user and system, of all threads; loading the scene
-does not count. What the renderer itself prints goes to standard error. Packages of renderers bring libraries that
-cannot share a process, hence one for each.
+does not count. The renderer's own output goes to standard error. The renderers' packages contain libraries that cannot
+share a process, so each gets its own.
 """
 
 import importlib

@@ -1,11 +1,11 @@
-"""The classic backward tracer, written from its formulas alone, to hold the renderer's image of a scene against.
+"""A classic backward ray tracer, written independently from its formulas, as a reference for the renderer's images.
 
     python tools/classic.py [scenes/classic.toml]    # renders it both ways; exit code 1 if they disagree
 
 Rays start at pixel centers and carry one weight per band. Each generation of rays is one set of arrays: find the
-nearest surface, add what shines there, split into reflected and transmitted rays, and go on until the weights are
-small. No random numbers. Diffuse surfaces see point lights only. Outside of all bodies the index is 1, and bodies do
-not overlap.
+nearest surface, add its emission and direct light, split into reflected and transmitted rays, and continue until the
+weights are small. There are no random numbers. Diffuse surfaces are lit by point lights only. The index outside of all
+bodies is 1, and bodies do not overlap.
 """
 
 import argparse
@@ -25,17 +25,17 @@ class Rays(NamedTuple):
     pixel: np.ndarray
     origin: np.ndarray
     direction: np.ndarray
-    weight: np.ndarray  # per band, without the factor that radiance takes from the index
-    scale: np.ndarray  # that factor: the product of all (n1 / n2)^2
+    weight: np.ndarray  # per band, without the factor that refraction puts on radiance
+    scale: np.ndarray  # the factor from refraction: the product of all (n1 / n2)^2
     body: np.ndarray  # the material around the ray, -1 outside
-    last: np.ndarray  # the surface it leaves, -1 at the camera
+    last: np.ndarray  # the surface that it leaves, -1 at the camera
 
     def pick(self, rows, **changes):
         return Rays(*(values[rows] for values in self))._replace(**changes)
 
 
 def camera_rays(camera, film):
-    """One ray through the center of each pixel, rows from the top."""
+    """Returns one ray through the center of each pixel, rows from the top."""
     width, height = film["width"], film["height"]
     position, target = np.array(camera["position"], float), np.array(camera["look_at"], float)
     forward = unit(target - position)
@@ -52,14 +52,14 @@ def camera_rays(camera, film):
 
 
 def nearest(scene, rays):
-    """Distance and number of the first surface on each ray."""
+    """Returns the distance and the number of the first surface on each ray."""
     distances = [shape.distance(rays.origin, rays.direction, rays.last == i) for i, shape in enumerate(scene.shapes)]
     surface = np.argmin(distances, axis=0)
     return np.min(distances, axis=0), surface
 
 
 def direct_light(scene, rays, point, normal, reflectance):
-    """Lambert under point lights: reflectance / pi x intensity x cos / d^2, or nothing if anything stands between."""
+    """Returns Lambert reflection of point lights: reflectance / pi x intensity x cos / d^2, or 0 in shadow."""
     total = np.zeros_like(point)
     for light in scene.lights:
         to_light = np.array(light["position"], float) - point
@@ -72,7 +72,7 @@ def direct_light(scene, rays, point, normal, reflectance):
 
 
 def fresnel(cosine, n1, n2):
-    """Unpolarized reflectance and the cosine of refraction, 1 and 0 at total reflection. Hecht, Optics, 4.6."""
+    """Returns unpolarized reflectance and cosine of refraction, 1 and 0 at total reflection (Hecht, Optics, 4.6)."""
     cosine = cosine[:, None]
     cosine_t = np.sqrt(np.maximum(1 - (n1 / n2) ** 2 * (1 - cosine**2), 0))
     s = (n1 * cosine - n2 * cosine_t) / (n1 * cosine + n2 * cosine_t)
@@ -86,7 +86,7 @@ def reflected(rays, normal, weight):
 
 
 def split(rays, normal, entering, material, number):
-    """The reflected ray and one transmitted ray per distinct index; `normal` faces the arriving ray."""
+    """Yields the reflected ray and one transmitted ray per distinct index; `normal` faces the arriving ray."""
     cosine = -dot(rays.direction, normal)
     n1 = np.where(entering[:, None], 1.0, material.index)
     n2 = np.where(entering[:, None], material.index, 1.0)
@@ -102,7 +102,7 @@ def split(rays, normal, entering, material, number):
 
 
 def scatter(scene, rays, normal, front, number):
-    """What shines where rays of one material arrive, and the rays that go on."""
+    """Returns the light that leaves one material toward the arriving rays, and the rays that continue from there."""
     material = scene.materials[number]
     facing = np.where(front[:, None], normal, -normal)
     if material.kind == "diffuse":
@@ -115,7 +115,7 @@ def scatter(scene, rays, normal, front, number):
 
 
 def step(scene, rays, image):
-    """Carries rays to their next surface, adds to the image what shines there, and returns the rays that leave it."""
+    """Traces rays to their next surface, adds the light found there to the image, and returns rays that continue."""
     distance, surface = nearest(scene, rays)
     miss = np.isinf(distance)
     np.add.at(image, rays.pixel[miss], (rays.weight * rays.scale[:, None])[miss] * scene.environment)
@@ -140,7 +140,7 @@ def step(scene, rays, image):
 
 
 def trace(scene):
-    """The image, height x width x 3."""
+    """Returns the image, height x width x 3."""
     width, height = scene.film["width"], scene.film["height"]
     image = np.zeros((width * height, 3))
     rays = camera_rays(scene.camera, scene.film)
@@ -151,7 +151,7 @@ def trace(scene):
 
 
 def error(image, expected):
-    """Difference per pixel and band, in units of the tolerance 1e-5 x max(|expected|, 1e-3)."""
+    """Returns the difference per pixel and band, in units of the tolerance 1e-5 x max(|expected|, 1e-3)."""
     return np.abs(image - expected) / (TOLERANCE * np.maximum(np.abs(expected), FLOOR))
 
 

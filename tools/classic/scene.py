@@ -22,14 +22,14 @@ def dot(a, b):
 
 
 class Plane:
-    """n.r + W = 0."""
+    """The plane n.r + W = 0."""
 
     def __init__(self, point, normal):
         self.n = unit(np.array(normal, float))
         self.W = -dot(self.n, np.array(point, float))
 
     def distance(self, origin, direction, leaving):
-        """Distance along each ray, infinite where there is no hit. A ray that is `leaving` here never comes back."""
+        """Returns the distance along each ray, infinite without a hit. A ray `leaving` here never comes back."""
         t = -(origin @ self.n + self.W) / (direction @ self.n)
         return np.where((t > 0) & ~leaving & self.holds(origin + t[:, None] * direction), t, np.inf)
 
@@ -41,7 +41,7 @@ class Plane:
 
 
 class Triangle(Plane):
-    """p1 + u e1 + v e2 with u, v >= 0 and u + v <= 1; seen counterclockwise from its front."""
+    """p1 + u e1 + v e2 with u, v >= 0 and u + v <= 1; counterclockwise when seen from its front."""
 
     def __init__(self, points):
         self.p1, p2, p3 = np.array(points, float)
@@ -58,7 +58,7 @@ class Triangle(Plane):
 
 
 class Disc(Plane):
-    """|r - p1|^2 < R^2 in its plane."""
+    """The points of a plane with |r - p1|^2 < R^2."""
 
     def __init__(self, center, normal, radius):
         super().__init__(center, normal)
@@ -69,13 +69,13 @@ class Disc(Plane):
 
 
 class Sphere:
-    """t = n.d -+ s with s^2 = R^2 - |d x n|^2, where d leads from the ray's origin to the center."""
+    """A sphere: t = n.d -+ s with s^2 = R^2 - |d x n|^2, where d leads from the ray's origin to the center."""
 
     def __init__(self, center, radius):
         self.center, self.radius = np.array(center, float), radius
 
     def distance(self, origin, direction, leaving):
-        """A ray that is `leaving` here has its origin on the sphere: one root is 0, the other is ahead or behind."""
+        """Returns the distance along each ray. One that is `leaving` has a root of 0, and only the other counts."""
         d = self.center - origin
         middle = dot(direction, d)
         cross = np.cross(d, direction)
@@ -89,7 +89,7 @@ class Sphere:
 
 
 class Material(NamedTuple):
-    """One for all kinds; every quantity holds one number per band."""
+    """A material of any kind; every quantity holds one number per band."""
 
     kind: str
     reflectance: np.ndarray

@@ -1,1 +1,1 @@
-"""Images in parts: a job for a farm, a task for Slurm, and `python tools/farm.py`, which says how many parts make sense."""
+"""Images in parts: a job for a farm, a task for Slurm, and `python tools/farm.py` to choose their number."""

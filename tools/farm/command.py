@@ -5,9 +5,10 @@
     python tools/farm.py scenes/cornell.toml --verify 1 4 16 64
     python tools/farm.py scenes/cornell.toml --chart farm.png
 
-Measures on this machine what every part repeats and what they share out, and tells what that makes of 1 to 10,000 parts:
-processor time, time on as many machines, and the share of processor time that is overhead. `tools/farm/model.py` has the
-formulas. `--verify` renders so many parts one after another, and says how far off the forecast was.
+Measures on this machine the work that every part repeats and the work that parts share. From these it forecasts, for 1
+to 10,000 parts, processor time, time on as many machines, and the share of processor time that is overhead.
+`tools/farm/model.py` has the formulas. `--verify` renders the given numbers of parts one after another, and says how
+far off the forecast was.
 """
 
 import argparse
@@ -33,7 +34,7 @@ def counted(parts):
 
 
 def told(work):
-    """What was measured, a line each."""
+    """Returns what was measured, one line each."""
     rows = [
         ("start of the command", work.start),
         ("reading the scene", work.load),
@@ -69,7 +70,7 @@ def advice(work):
 
 
 def verify(work, renderer, counts):
-    """Renders so many parts one after another: what they took, beside the forecast."""
+    """Renders these numbers of parts one after another, and returns the times beside the forecast."""
     lines = [f"{'parts':>6} {'processor time':>15} {'forecast':>10} {'off':>8} {'slowest part':>13} {'forecast':>10}"]
     for count in counts:
         parts = [renderer.part(number, count) for number in range(1, count + 1)]
@@ -87,7 +88,7 @@ def verify(work, renderer, counts):
 
 
 def draw(work, path):
-    # Only a chart needs it.
+    # Only the chart needs matplotlib.
     from matplotlib.figure import Figure
 
     rows = [forecast(work, parts) for parts in COUNTS]

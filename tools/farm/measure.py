@@ -1,4 +1,4 @@
-"""Measures what a render in parts consists of."""
+"""Measures the costs that make up a render in parts."""
 
 from pathlib import Path
 from statistics import median
@@ -9,26 +9,26 @@ import render
 
 from .model import Work
 
-# Parts that are merged to see what one costs, and how often that is measured.
+# The numbers of parts that are merged to find the cost of one, and the number of repeats.
 FEW, MANY, REPEATS = 2, 256, 5
-# What a part costs a merge is not what it shows: an image of a tile has it too, and is rendered at once.
+# The cost of a part to a merge does not depend on its content: an image of one tile has it too, and renders at once.
 BLACK = """
 camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
 film = { width = 16, height = 16 }
 render.samples = 1
 """
-# Parts whose tiles tell how much tiles vary.
+# The number of parts whose times show how much tiles vary.
 COMPARED = 8
 
 
 class Renderer(NamedTuple):
-    """Renders a scene into a folder."""
+    """Renders a scene into a folder, and returns seconds of processor time."""
 
     scene: Path
     folder: Path
     threads: int
-    samples: int | None  # of each pixel, if not those of the scene
-    flags: tuple  # more words for the command
+    samples: int | None  # per pixel; None for those of the scene
+    flags: tuple  # further arguments of the command
 
     def of_scene(self, *words, samples=None):
         samples = samples or self.samples
@@ -48,7 +48,7 @@ class Renderer(NamedTuple):
 
 
 def tiles_of(exr):
-    """How many tiles of 16 x 16 pixels the image has."""
+    """Returns the number of tiles of 16 x 16 pixels in the image."""
     (left, top), (right, bottom) = render.read(exr).header["dataWindow"]
     return int(-(-(right - left + 1) // 16) * -(-(bottom - top + 1) // 16))
 
@@ -64,7 +64,7 @@ def merged(renderer, count):
 
 
 def merging(renderer):
-    """What merging takes whatever the number of parts, and what it takes for each."""
+    """Returns the fixed cost of a merge, and its cost for each part."""
     scene, folder = renderer.folder / "black.toml", renderer.folder / "black"
     scene.write_text(BLACK, "utf-8")
     black = Renderer(scene, folder, threads=1, samples=None, flags=())
@@ -78,13 +78,13 @@ def measure(renderer):
     planned = measured(lambda: renderer.of_scene("--plan"))
     whole = renderer.whole()
     count = tiles_of(renderer.folder / "whole.exr")
-    # Beyond the number of tiles a part has none: what is left is what all of them do.
+    # A part numbered beyond the number of tiles has no tiles: what is left is the work that every part repeats.
     repeated = measured(lambda: renderer.part(count + 1, count + 1))
     tiles = max(0.0, whole - repeated)
     merge, merge_part = merging(renderer)
     compared = min(COMPARED, count)
     costs = np.array([renderer.part(number, compared) for number in range(1, compared + 1)]) - repeated
-    # Each has so many tiles, whose deviations by chance even out by the root of their number.
+    # Each part has count / compared tiles, whose random deviations average out by the square root of that number.
     variation = float(costs.std(ddof=1) / costs.mean() * np.sqrt(count / compared)) if compared > 1 else 0.0
     load, plan = max(0.0, checked - start), max(0.0, planned - checked)
     photons = max(0.0, repeated - start - load - plan)

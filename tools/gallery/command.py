@@ -1,4 +1,4 @@
-"""The gallery in scenes/: makes the meshes and images it needs, renders every scene to a small picture, writes scenes/README.md.
+"""The gallery in scenes/: makes its meshes and images, renders every scene to a small picture, writes scenes/README.md.
 
     python tools/gallery.py make                # scenes/meshes, scenes/textures, scenes/generated, scenes/large/instances.toml
     python tools/gallery.py render              # every scene: scenes/pictures, then scenes/README.md
@@ -8,7 +8,7 @@
     python tools/gallery.py plan                # the plan's words alone, then scenes/README.md
     python tools/gallery.py write               # scenes/README.md alone
 
-Everything made is the same on every run. Needs numpy, and for pictures OpenEXR and the release build (or $RENDER).
+Every run makes the same files. Needs numpy, and for pictures OpenEXR and the release build (or $RENDER).
 """
 
 import argparse
@@ -45,18 +45,20 @@ the width, or at half of it for scenes with a photon map or light vertices. The 
 
 
 def scenes():
-    """Names of all scenes, in the order of the gallery."""
+    """Returns the names of all scenes, in the order of the gallery."""
     found = {str(path.relative_to(SCENES).with_suffix("")) for path in SCENES.rglob("*.toml")}
     return [name for name in ORDER if name in found] + sorted(found.difference(ORDER))
 
 
 def first_line(name):
-    """What to look for in a scene."""
+    """Returns a scene's first line, which says what to look for."""
     return (SCENES / f"{name}.toml").read_text("utf-8").splitlines()[0].removeprefix("# ")
 
 
 def make_lenses():
-    """A singlet of N-SF11, and a crown of N-BK7 with a flint of N-SF11, both of focal length 1.9 by the thin-lens formula."""
+    """Yields profiles: a singlet of N-SF11, an achromat of N-BK7 and N-SF11, and a ring.
+
+    Both lenses have the focal length 1.9 by the thin-lens formula."""
     focal, crown, flint = 1.9, (1.5168, 64.17), (1.7847, 25.68)
     radius = 2 * (flint[0] - 1) * focal
     yield "singlet", shapes.lens(radius, radius, 0.34, 0.8)
@@ -69,7 +71,7 @@ def make_lenses():
 
 
 def make():
-    """Every mesh and image that a scene names."""
+    """Makes every mesh and image that a scene reads."""
     meshes, images = SCENES / "meshes", SCENES / "textures"
     shapes.write_ply(meshes / "brilliant.ply", *shapes.brilliant())
     for name, profile in [("tumbler", shapes.tumbler()), ("water", shapes.water()), *make_lenses()]:
@@ -89,7 +91,7 @@ def make():
 
 
 def make_landscape():
-    """Two million triangles and the colors on them, too large to keep: scenes/generated."""
+    """Makes two million triangles and their colors, in scenes/generated: they are too large for the repository."""
     heights = shapes.landscape()
     points, faces, uv = shapes.sheet(heights, 24, 24)
     shapes.write_ply(SCENES / "generated/landscape.ply", points, faces, uv=uv)
@@ -97,12 +99,12 @@ def make_landscape():
 
 
 def needs_making(name):
-    """Whether a scene reads what is not kept in the repository."""
+    """Whether a scene reads files that are not kept in the repository."""
     return "generated/" in (SCENES / f"{name}.toml").read_text("utf-8")
 
 
 def make_sunflower(path, count=2000):
-    """Writes the places of the beads after the line that says so: every one turned from the last by the golden angle (Vogel 1979)."""
+    """Writes the beads' places after the line that marks them, each turned by the golden angle (Vogel 1979)."""
     mark = "# What follows is written by tools/gallery.py.\n"
     head, found, _ = path.read_text("utf-8").partition(mark)
     if not found:
@@ -122,7 +124,7 @@ def make_sunflower(path, count=2000):
 
 
 def shrink(rgb, width):
-    """A picture of at most `width` columns, sRGB, every pixel the mean of those it covers."""
+    """Returns an sRGB picture of at most `width` columns, each pixel the mean over its area."""
     height, full = rgb.shape[:2]
     if full <= width:
         return encode(rgb)
@@ -138,13 +140,13 @@ def shrink(rgb, width):
 
 
 def encode(rgb):
-    """sRGB of linear colors (IEC 61966-2-1)."""
+    """Converts linear colors to sRGB (IEC 61966-2-1)."""
     rgb = np.clip(rgb, 0, 1)
     return np.where(rgb <= 0.0031308, 12.92 * rgb, 1.055 * rgb ** (1 / 2.4) - 0.055)
 
 
 def render_picture(name, quick):
-    """Renders a scene, keeps its picture below 150 kB, and returns what was measured."""
+    """Renders a scene, writes its picture, below 150 kB, and returns what was measured."""
     import render
 
     scene = SCENES / f"{name}.toml"
@@ -167,19 +169,19 @@ def render_picture(name, quick):
 
 
 def plan_of(name):
-    """What `render --plan` says of a scene."""
+    """Returns the output of `render --plan` for a scene."""
     import render
 
     return render.said("--plan", SCENES / f"{name}.toml")
 
 
 def words(plan):
-    """What the page says of a plan: the model of color, and the photons if there are any."""
+    """Returns the lines of a plan that the page quotes: the color model, and the photons if there are any."""
     return PARTS.join(line for line in plan.splitlines() if line.startswith(("model ", "photon tracing: ", "photon map: ")))
 
 
 def reduced(name, share=5):
-    """The text of a scene whose picture is `share` times smaller each way, its files named wherever the text is kept."""
+    """Returns a scene's text with its picture `share` times smaller each way, and absolute paths of its files."""
     scene = SCENES / f"{name}.toml"
     text = scene.read_text("utf-8")
     text = re.sub(r'"([^"\n]+\.(?:ply|png|hdr|csv))"', lambda found: f'"{(scene.parent / found[1]).resolve()}"', text)
@@ -187,30 +189,30 @@ def reduced(name, share=5):
 
 
 def noise(first, second):
-    """relMSE of one of two renders that differ by their seeds alone: half of what they differ by."""
+    """Returns the relMSE of either of two renders that differ only in their seeds: half of that between them."""
     mean = (first + second) / 2
     return float(np.mean((first - second) ** 2 / 2 / (mean**2 + 0.01)))
 
 
 def measure_error(name):
-    """The noise of a scene at its own samples."""
+    """Returns the noise of a scene at its own samples."""
     import render
 
     plan = plan_of(name)
-    # A map of few pixels takes other numbers of photons and passes than one of many; small images have no light vertices.
+    # A small image would have other numbers of photons and passes of a photon map, and no light vertices.
     share = 2 if "photon map: " in plan or "light vertices" in plan else 5
     first, second = (render.render(reduced(name, share), seed=seed, threads=2).rgb for seed in (1, 2))
     return {"error": float(f"{noise(first, second):.2g}")}
 
 
 def seconds_to_bar(name, measured):
-    """Time on two cores of a scene at 640 x 360 to a relMSE of 0.01."""
+    """Returns the time that a scene takes on two cores at 640 x 360 to a relMSE of 0.01."""
     film = tomllib.loads((SCENES / f"{name}.toml").read_text("utf-8"))["film"]
     return measured["seconds"] * 640 * 360 / film["width"] / film["height"] * measured["error"] / 0.01
 
 
 def table(measured):
-    """Time and error of every scene that has been measured."""
+    """Returns a table of the time and the error of every measured scene."""
     text = "\n| scene | samples | time, s | relMSE | s to 0.01 |\n|---|---|---|---|---|\n"
     for name in scenes():
         if {"error", "seconds"} <= measured.get(name, {}).keys():
@@ -221,7 +223,7 @@ def table(measured):
 
 
 def readme():
-    """The text of scenes/README.md."""
+    """Returns the text of scenes/README.md."""
     measured = json.loads(MEASURED.read_text("utf-8"))
     text = HEAD + table(measured)
     for name in scenes():

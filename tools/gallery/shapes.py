@@ -1,6 +1,6 @@
 """The meshes of the gallery: everything in scenes/meshes, and the landscape, which is too large to keep.
 
-Points are numpy arrays n x 3, faces lists of indices, counterclockwise seen from outside. Heights go along +y.
+Points are numpy arrays n x 3; faces are lists of indices, counterclockwise when seen from outside. +y is up.
 """
 
 import itertools
@@ -9,7 +9,7 @@ import numpy as np
 
 
 def write_ply(path, points, faces, normals=None, uv=None):
-    """A binary PLY file of triangles."""
+    """Writes a binary PLY file of triangles."""
     columns = [("x y z", points), ("nx ny nz", normals), ("s t", uv)]
     columns = [(names.split(), np.asarray(values)) for names, values in columns if values is not None]
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
@@ -23,7 +23,9 @@ def write_ply(path, points, faces, normals=None, uv=None):
 
 
 def convex(normals, offsets):
-    """The polyhedron normals . p <= offsets: points and triangles, each face a fan. Planes pass through at most a few corners."""
+    """Returns the convex polyhedron normals . p <= offsets: points and triangles, each face a fan.
+
+    Planes pass through at most a few corners."""
     triples = np.array(list(itertools.combinations(range(len(normals)), 3)))
     determinants = np.linalg.det(normals[triples])
     triples = triples[np.abs(determinants) > 1e-9]
@@ -44,10 +46,10 @@ def convex(normals, offsets):
 
 
 def brilliant(table=0.53, crown=34.5, pavilion=40.75, star=0.5, lower=0.77, girdle=0.05, sides=96):
-    """A round brilliant of 57 facets, radius 1, its axis +y, the middle of its girdle in y = 0.
+    """Returns a round brilliant of 57 facets with radius 1 and the axis +y; the middle of its girdle is in y = 0.
 
-    Proportions of Marcel Tolkowsky, Diamond Design (1919): table, as a share of the diameter, crown and pavilion angle in
-    degrees. Star facets reach `star` of the way to the girdle, lower halves `lower` of the way to the culet."""
+    Proportions of Marcel Tolkowsky, Diamond Design (1919): table, as a share of the diameter, crown and pavilion angle
+    in degrees. Star facets reach `star` of the way to the girdle, lower halves `lower` of the way to the culet."""
     crown, pavilion = np.tan(np.radians([crown, pavilion]))
     between = np.cos(np.pi / 8)
     half = girdle / 2
@@ -78,8 +80,9 @@ def brilliant(table=0.53, crown=34.5, pavilion=40.75, star=0.5, lower=0.77, gird
 
 
 def lathe(profile, segments=96):
-    """A surface of revolution about y with smooth normals. `profile` is a list of (radius, y), from the axis to the axis or
-    closed, the outside at its right hand."""
+    """Returns a surface of revolution about y with smooth normals.
+
+    `profile` is a list of (radius, y), from axis to axis or closed, with the outside on its right."""
     profile = np.array(profile, float)
     closed = np.allclose(profile[0], profile[-1])
     steps = np.diff(profile, axis=0)
@@ -113,14 +116,16 @@ def lathe(profile, segments=96):
 
 
 def arc(center, radius, start, end, steps=8):
-    """Points of a circle in a profile, from `start` to `end` degrees, counterclockwise if `end` is larger."""
+    """Returns points on a circle, for a profile, from `start` to `end` degrees; counterclockwise if `end` is larger."""
     angles = np.radians(np.linspace(start, end, steps))
     return [(center[0] + radius * np.cos(a), center[1] + radius * np.sin(a)) for a in angles]
 
 
 def lens(front, back, thickness, radius, steps=24):
-    """A lens about y between two spheres of radii `front` (top, convex if positive) and `back` (bottom), `thickness` on the
-    axis and its middle in the origin; its edge is round with the radius of what is left there."""
+    """Returns the profile of a lens about y, with its center at the origin and `thickness` on the axis.
+
+    It lies between spheres of the radii `front` (top, convex if positive) and `back` (bottom). Its edge is a cylinder
+    of `radius`."""
 
     def cap(r, way):
         heights = [*np.linspace(0, radius - 0.004, steps), radius]
@@ -130,14 +135,15 @@ def lens(front, back, thickness, radius, steps=24):
 
 
 def flint(back, thickness, radius, bottom, top, steps=24):
-    """What a crown of the bottom `bottom` lacks to an achromat: `thickness` of flint behind it on the axis, its back of radius
-    `back`; its top is flat and lies within the crown, at the height `top`."""
+    """Returns the profile of an achromat's flint, `thickness` on the axis, behind a crown that ends at `bottom`.
+
+    Its back has the radius `back`. Its top is flat and lies inside the crown, at the height `top`."""
     heights = np.array([*np.linspace(0, radius - 0.004, steps), radius])
     return [(h, bottom - thickness + back - np.sqrt(back * back - h * h)) for h in heights] + [(radius, top), (radius - 0.004, top), (0, top)]
 
 
 def tumbler():
-    """A drinking glass: radius 0.38 at the foot to 0.46 at the rim, height 1.25, a wall of 0.035 and a thick bottom."""
+    """Returns a glass's profile: radius 0.38 at the foot, 0.46 at the rim, height 1.25, wall 0.035, thick bottom."""
     outside = [(0, 0), (0.3, 0), *arc((0.34, 0.045), 0.045, -90, -4), *[(0.385 + 0.075 * t, 0.045 + 1.19 * t) for t in (0.3, 0.65, 0.98)]]
     rim = arc((0.4425, 1.23), 0.0185, 0, 180, 9)
     inside = [(0.349 + 0.075 * t, 0.045 + 1.19 * t) for t in (0.98, 0.65, 0.3)]
@@ -145,7 +151,7 @@ def tumbler():
 
 
 def water(level=0.86, overlap=0.012):
-    """What stands in the tumbler, reaching into its wall by `overlap`, with a meniscus."""
+    """Returns the profile of the water in the tumbler, with a meniscus. It reaches into the wall by `overlap`."""
     wall = lambda y: 0.349 + 0.075 * (y - 0.045) / 1.19 + overlap
     bottom = [(0, 0.115 - overlap), (0.2, 0.118 - overlap), *arc((0.305, 0.175), 0.05 + overlap, -90, 0)]
     rise = [(wall(level) - 0.06 * t, level + 0.022 * (1 - t) ** 3) for t in np.linspace(0.1, 1, 8)]
@@ -153,7 +159,7 @@ def water(level=0.86, overlap=0.012):
 
 
 def tube(radius=0.04, wall=0.006, length=1.5):
-    """A drinking straw along +y, with texture coordinates: round it and along it."""
+    """Returns a drinking straw along +y, with texture coordinates around it and along it."""
     outline = [(radius, 0), (radius, length), (radius - wall, length), (radius - wall, 0), (radius, 0)]
     points, faces, uv, segments = [], [], [], 48
     for (r0, y0), (r1, y1) in itertools.pairwise(outline):
@@ -169,7 +175,7 @@ def tube(radius=0.04, wall=0.006, length=1.5):
 
 
 def vase():
-    """A vase of clay with a narrow neck, 0.4 high, open at the top."""
+    """Returns the profile of a clay vase with a narrow neck, 0.4 high, open at the top."""
     t = np.linspace(0, 1, 16)
     outside = 0.055 + 0.075 * np.sin(np.pi * t**0.8) ** 1.4 + 0.02 * t**8
     wall = [(radius, 0.4 * y) for radius, y in zip(outside, t)]
@@ -178,7 +184,7 @@ def vase():
 
 
 def bowl():
-    """A shallow bowl, 0.36 wide, with a foot."""
+    """Returns the profile of a shallow bowl, 0.36 wide, with a foot."""
     t = np.linspace(0.15, 1, 10)
     outside = [(0.18 * x, 0.012 + 0.09 * x**2.2) for x in t]
     inside = [(0.18 * x - 0.004, 0.02 + 0.084 * x**2.2) for x in t[::-1]]
@@ -186,14 +192,14 @@ def bowl():
 
 
 def grid(rows, columns):
-    """The triangles between points in rows and columns."""
+    """Returns the triangles between points in rows and columns."""
     corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
     upper = np.stack([corner, corner + columns, corner + 1], 1)
     return np.concatenate([upper, np.stack([corner + 1, corner + columns, corner + columns + 1], 1)])
 
 
 def curtain(width=0.55, height=2.15, folds=5, columns=61, rows=15):
-    """A hanging cloth from the origin down, gathered toward the top, with smooth normals; its folds run along +x and swing in z."""
+    """Returns a cloth hanging from the origin, gathered toward the top, with smooth normals; it folds in z along +x."""
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     swing = 0.035 * (0.6 + 0.5 * t) * np.sin(2 * np.pi * folds * s + 0.8 * np.sin(3 * t)) + 0.012 * np.sin(17 * s + 4 * t)
     points = np.stack([(s - 0.5) * width * (0.9 + 0.12 * t), -height * t, swing], axis=-1)
@@ -203,7 +209,7 @@ def curtain(width=0.55, height=2.15, folds=5, columns=61, rows=15):
 
 
 def noise(size, cells, seed):
-    """Smooth noise of a few cells on a square of size x size, within -1 and 1."""
+    """Returns smooth noise of a few cells on a square of size x size, within -1 and 1."""
     values = np.random.default_rng(seed).uniform(-1, 1, (cells + 2, cells + 2))
     place = np.linspace(0, cells, size, endpoint=False)
     i = place.astype(int)
@@ -214,7 +220,7 @@ def noise(size, cells, seed):
 
 
 def ridges(size=1025):
-    """Heights of mountains by ridged noise (Musgrave, in Texturing and Modeling, 1994): every octave is roughest on the crests."""
+    """Returns heights of mountains by ridged noise (Musgrave, Texturing and Modeling, 1994), roughest on the crests."""
     heights, weight, amplitude = np.zeros((size, size)), np.ones((size, size)), 1.0
     for octave in range(9):
         crest = (1 - np.abs(noise(size, 4 * 2**octave, 41 + octave))) ** 2
@@ -225,7 +231,7 @@ def ridges(size=1025):
 
 
 def sheet(heights, width, depth):
-    """A grid of heights as a mesh around the origin, with texture coordinates 0 to 1."""
+    """Returns a grid of heights as a mesh around the origin, with texture coordinates 0 to 1."""
     rows, columns = heights.shape
     s, t = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows))
     points = np.stack([(s - 0.5) * width, heights, (t - 0.5) * depth], axis=-1).reshape(-1, 3)
@@ -233,7 +239,7 @@ def sheet(heights, width, depth):
 
 
 def waves(size=65, width=5.2):
-    """Heights of water in a pool, `width` x `width`: twelve waves that cross, all equally steep, from 1.1 to 0.4 long."""
+    """Returns heights of water, `width` x `width`: twelve crossing waves, equally steep, 1.1 to 0.4 long."""
     x, z = np.meshgrid(np.linspace(0, width, size), np.linspace(0, width, size))
     random, heights = np.random.default_rng(5), np.zeros((size, size))
     for length in np.geomspace(1.1, 0.4, 12):
@@ -243,7 +249,7 @@ def waves(size=65, width=5.2):
 
 
 def block(heights, width, depth, bottom):
-    """A sheet of heights as the top of a body with upright sides and a flat bottom, and its normals, smooth on top."""
+    """Returns a body with upright sides, a flat bottom and a sheet of heights as its top, with smooth normals."""
     points, faces, _ = sheet(heights, width, depth)
     down, along = np.gradient(heights, depth / (heights.shape[0] - 1), width / (heights.shape[1] - 1))
     normals = np.stack([-along, np.ones_like(heights), -down], axis=-1).reshape(-1, 3)
@@ -266,7 +272,7 @@ def block(heights, width, depth, bottom):
 
 
 def sweep(width=30, front=14, back=-4, radius=3, height=14):
-    """A studio's paper: a floor that bends up into a wall behind."""
+    """Returns the paper backdrop of a studio: a floor that bends up into a wall behind."""
     bend = [(back - radius * np.sin(a), radius - radius * np.cos(a), a) for a in np.linspace(0, np.pi / 2, 25)]
     outline = [(front, 0.0, 0.0), *bend, (back - radius, height, np.pi / 2)]
     points = np.array([(x, y, z) for z, y, _ in outline for x in (-width / 2, width / 2)])
@@ -276,7 +282,7 @@ def sweep(width=30, front=14, back=-4, radius=3, height=14):
 
 
 def landscape():
-    """Heights of a lake among mountains, 1025 x 1025: the mountains rise to the north (-z), the lake lies before them."""
+    """Returns heights of a lake, 1025 x 1025, with mountains that rise to the north (-z) behind it."""
     heights = ridges()
     size = heights.shape[0]
     x, z = np.meshgrid(np.linspace(-1, 1, size), np.linspace(-1, 1, size))

@@ -8,12 +8,14 @@ from .shapes import noise
 
 
 def write_png(path, image):
-    """A PNG of 8 bits, or of 16 where the image has them: height x width (gray), x 3 (color) or x 4 (with alpha), or shares of 1."""
+    """Writes a PNG of an image height x width (gray), x 3 (color) or x 4 (with alpha).
+
+    It has 8 bits, or 16 if the image has 16. Floats are shares of 1, and become 8 bits."""
     pixels = np.round(np.clip(image, 0, 1) * 255).astype(np.uint8) if image.dtype.kind == "f" else image
     height, width = pixels.shape[:2]
     kind, bits = 0 if pixels.ndim == 2 else {3: 2, 4: 6}[pixels.shape[2]], 8 * pixels.itemsize
     pixels = pixels.astype(f">u{pixels.itemsize}").view(np.uint8)
-    # Each row minus the one above it (filter 2) packs best for pictures and patterns alike.
+    # Each row minus the one above it (filter 2) compresses best for pictures and patterns alike.
     rows = pixels.reshape(height, -1)
     rows = rows - np.vstack([np.zeros_like(rows[:1]), rows[:-1]])
     data = np.hstack([np.full((height, 1), 2, np.uint8), rows]).tobytes()
@@ -27,7 +29,7 @@ def write_png(path, image):
 
 
 def write_hdr(path, rgb):
-    """A Radiance picture of linear colors, without run lengths."""
+    """Writes a Radiance picture of linear colors, without run-length encoding."""
     exponent = np.ceil(np.log2(np.maximum(rgb.max(axis=-1, keepdims=True), 1e-30)) + 1e-6)
     mantissa = np.floor(rgb * 256 / 2**exponent)
     data = np.concatenate([mantissa, exponent + 128], axis=-1).astype(np.uint8)
@@ -37,14 +39,14 @@ def write_hdr(path, rgb):
 
 
 def stripes():
-    """Red on white, slanting once round a straw in a unit of its length."""
+    """Returns red stripes on white that wind once around a straw in a unit of its length."""
     s, t = np.meshgrid(np.linspace(0, 1, 128, endpoint=False), np.linspace(0, 1, 128, endpoint=False))
     edge = np.clip((np.abs((s + t) % 1 - 0.5) - 0.25) * 64 + 0.5, 0, 1)[..., None]
     return edge * [0.93, 0.92, 0.88] + (1 - edge) * [0.72, 0.06, 0.08]
 
 
 def wood(size=256):
-    """Boards with grain along the width; colors as sRGB."""
+    """Returns wooden boards with grain along the width, as sRGB."""
     long, cross = np.meshgrid(np.linspace(0, 1, size, endpoint=False), np.linspace(0, 1, size, endpoint=False))
     board = (cross * 4).astype(int)
     bend = noise(size, 3, 1) * 0.05 + noise(size, 6, 2) * 0.012
@@ -56,7 +58,7 @@ def wood(size=256):
 
 
 def tiles(size=256, count=8):
-    """Tiles of a pool with their joints, no two of the same blue; colors as sRGB."""
+    """Returns the tiles of a pool with their joints, in varying shades of blue, as sRGB."""
     s, t = np.meshgrid(np.linspace(0, count, size, endpoint=False), np.linspace(0, count, size, endpoint=False))
     shade = np.random.default_rng(11).uniform(-1, 1, (count, count))[t.astype(int), s.astype(int)]
     image = np.array([0.55, 0.77, 0.80]) + shade[..., None] * [0.06, 0.045, 0.03]
@@ -65,7 +67,7 @@ def tiles(size=256, count=8):
 
 
 def chart(size=512):
-    """A test chart, white on black: a checkerboard and two dartboards; gray."""
+    """Returns a test chart, white on black: a checkerboard and two dartboards; gray."""
     x, y = np.meshgrid(np.linspace(-2, 2, 2 * size), np.linspace(1, -1, size))
     image = np.where((np.floor(x * 4) + np.floor(y * 4)) % 2 == 0, 1.0, 0.0)
     for middle in (-1, 1):
@@ -76,7 +78,7 @@ def chart(size=512):
 
 
 def painting(size=256):
-    """Sunset over hills, in flat shapes, as sRGB."""
+    """Returns a sunset over hills, in flat shapes, as sRGB."""
     s, t = np.meshgrid(np.linspace(0, 1, size), np.linspace(0, 1, size))
     top, low = np.array([0.13, 0.18, 0.42]), np.array([0.98, 0.62, 0.35])
     band = np.floor(np.clip(t / 0.62, 0, 1) * 7) / 7
@@ -92,7 +94,7 @@ def painting(size=256):
 
 
 def sky(size=64):
-    """A clear evening as seen from a mountain, latitude and longitude, +z in the middle: linear, the sun itself left out."""
+    """Returns a clear evening sky by latitude and longitude, +z in the middle: linear, without the sun."""
     up = np.cos((np.arange(size) + 0.5) * np.pi / size)[:, None, None]
     turn = ((np.arange(2 * size) + 0.5) * np.pi / size)[None, :, None]
     haze = np.exp(-np.maximum(up, 0) * 5)
@@ -102,10 +104,12 @@ def sky(size=64):
 
 
 def soap(size=160):
-    """The thickness of a bubble by longitude and latitude, 16 bits: drained to a black film at the top, thick below, and stirred."""
+    """Returns the thickness of a soap bubble by longitude and latitude, in 16 bits.
+
+    It has drained to a black film at the top, is thick below, and is stirred."""
     up = np.linspace(1, 0, size)[:, None] * np.ones((1, 2 * size))
     turn = np.linspace(0, 2 * np.pi, 2 * size, endpoint=False)[None, :] * np.ones((size, 1))
-    # Swirls that join where the longitude begins again: waves of whole numbers, bent by each other.
+    # Swirls that join where the longitude wraps around: waves of whole numbers, bent by each other.
     bend, stir = np.zeros_like(up), np.random.default_rng(5)
     for order in range(1, 9):
         around, along, phase = stir.integers(1, order + 2), stir.uniform(2, 3 * order + 2), stir.uniform(0, 2 * np.pi, 2)
@@ -116,7 +120,7 @@ def soap(size=160):
 
 
 def ground(heights, water):
-    """Colors of the landscape, sRGB: sand, meadow, rock where it is steep, snow on top."""
+    """Returns the colors of the landscape, as sRGB: sand, meadow, rock where it is steep, snow on top."""
     slope = np.hypot(*np.gradient(heights, 24 / heights.shape[0]))
     patchy = noise(heights.shape[0], 40, 7) * 0.12 + noise(heights.shape[0], 160, 8) * 0.08
     above = heights - water + patchy * 0.5

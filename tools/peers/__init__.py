@@ -1,1 +1,1 @@
-"""Other renderers in Abbe's scenes, and the scenes that the chart has of its own."""
+"""Other renderers in Abbe's scenes, and scenes made only for the chart."""

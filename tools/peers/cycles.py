@@ -1,8 +1,8 @@
-"""A scene file of Abbe in Blender's Cycles (the package bpy), on one thread of the processor.
+"""Renders a scene file of Abbe in Blender's Cycles (the package bpy), on one thread of the processor.
 
     picture = cycles.Renderer("CPU", Path("scene.toml")).picture(samples=64, seed=1)
 
-Neither denoised, clamped, blurred nor sampled adaptively; paths of up to 1024 surfaces; Cycles knows no dispersion.
+Without denoising, clamping, blurring or adaptive sampling; paths of up to 1024 surfaces. Cycles has no dispersion.
 """
 
 import tempfile
@@ -15,7 +15,7 @@ DEPTH = 1024
 
 
 class Renderer:
-    """A scene in Blender's one world."""
+    """A scene in bpy, whose state is global."""
 
     def __init__(self, device: str, path: Path, flat_lamp: bool = False):
         import bpy
@@ -44,7 +44,7 @@ class Renderer:
 
 
 def set_up(scene, film: dict) -> None:
-    """Cycles without anything that trades correctness for a calmer picture."""
+    """Sets up Cycles without anything that trades correctness for a smoother picture."""
     scene.render.engine = "CYCLES"
     settings = {
         "device": "CPU",
@@ -109,9 +109,9 @@ def add_sun(bpy, scene, values: dict) -> None:
 
 
 def pane(tree, node, index: float):
-    """A window pane whose shadow is transparent: of both surfaces together 2 R / (1 + R) is reflected."""
+    """Returns a shader for a pane with a transparent shadow. Its two surfaces together reflect 2 R / (1 + R)."""
     made = lambda kind, operation: setattr(one := tree.nodes.new(kind), "operation", operation) or one  # noqa: E731
-    # The node of Fresnel's formula takes the inverse index on the back, where a pane has the same.
+    # The Fresnel node inverts the index on the back. Inverting it here as well makes a pane the same from both sides.
     back, inverse, fresnel = tree.nodes.new("ShaderNodeNewGeometry"), made("ShaderNodeMath", "POWER"), node("ShaderNodeFresnel")
     sign = made("ShaderNodeMath", "MULTIPLY_ADD")
     tree.links.new(back.outputs["Backfacing"], sign.inputs[0])
@@ -135,7 +135,7 @@ def pane(tree, node, index: float):
 
 
 def material(bpy, name: str, entry: dict):
-    """The material as a tree of shader nodes."""
+    """Returns the material as a tree of shader nodes."""
     kind, values = parts(entry)
     result = bpy.data.materials.new(name)
     result.use_nodes = True

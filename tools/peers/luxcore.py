@@ -1,10 +1,10 @@
-"""A scene file of Abbe in LuxCore, on one thread.
+"""Renders a scene file of Abbe in LuxCore, on one thread.
 
     picture = luxcore.Renderer("PATHCPU", Path("scene.toml")).picture(samples=64, seed=1)
 
-Its Sobol sampler, no limit to brightness, paths of up to 64 surfaces. The variants: PATHCPU, its path tracer; BIDIRCPU,
-paths from both ends; "PATHCPU hybrid", its path tracer with half of the paths from the lights, for caustics; "PATHCPU
-photons", its path tracer with its cache of caustic photons, whose radius shrinks.
+Uses its Sobol sampler, no clamping, and paths of up to 64 surfaces. The variants: PATHCPU, its path tracer; BIDIRCPU,
+bidirectional path tracing; "PATHCPU hybrid", its path tracer with half of the paths from the lights, for caustics;
+"PATHCPU photons", its path tracer with its cache of caustic photons, whose radius shrinks.
 """
 
 import atexit
@@ -32,13 +32,13 @@ WAYS = {
 
 
 class Renderer:
-    """A scene and LuxCore, which parses it anew for every picture."""
+    """A scene in LuxCore, which is parsed anew for every picture."""
 
     def __init__(self, engine: str, path: Path, flat_lamp: bool = False):
         import pyluxcore
 
         pyluxcore.Init(lambda message: None)
-        atexit.register(pyluxcore.SetLogHandler, None)  # else its threads call a handler that is gone
+        atexit.register(pyluxcore.SetLogHandler, None)  # otherwise its threads call a dead handler
         self.luxcore, self.path, self.flat_lamp = pyluxcore, path, flat_lamp
         self.engine, _, self.way = engine.partition(" ")
 
@@ -74,7 +74,9 @@ class Renderer:
 
 
 def upright(picture: np.ndarray) -> np.ndarray:
-    """The top row first. Without a filter LuxCore's rows lie one too high; the last, which it lacks, is no number."""
+    """Returns the picture with the top row first.
+
+    Without a filter LuxCore's rows lie one too high. The last row, which it lacks, becomes NaN."""
     result = np.roll(picture[::-1], -1, axis=0).astype(np.float64)
     result[-1] = np.nan
     return result
@@ -123,7 +125,7 @@ def luxcore_light(light: dict) -> dict:
 def luxcore_scene(luxcore, path: Path, flat_lamp: bool):
     scene = read(path)
     camera, film = scene["camera"], scene["film"]
-    wider = max(film["width"] / film["height"], 1.0)  # it measures the view along the longer side
+    wider = max(film["width"] / film["height"], 1.0)  # its field of view is along the longer side
     half = np.tan(np.radians(camera["vertical_fov"]) / 2) * wider
     values = {
         "scene.camera.type": "perspective",

@@ -1,4 +1,4 @@
-"""A scene file of Abbe in Mitsuba 3: any of its variants, on one thread.
+"""Renders a scene file of Abbe in Mitsuba 3: in any of its variants, on one thread.
 
     picture = mitsuba.Renderer("llvm_ad_rgb", Path("scene.toml")).picture(samples=64, seed=1)
 """
@@ -27,7 +27,7 @@ class Renderer:
 
 
 def mitsuba_material(entry: dict) -> dict:
-    """The BSDF, with `emitter` beside it where the material shines."""
+    """Returns the BSDF, and an `emitter` if the material emits light."""
     kind, values = parts(entry)
     color = lambda value: {"type": "rgb", "value": rgb(value)}  # noqa: E731
     if kind == "diffuse":
@@ -69,7 +69,7 @@ def mitsuba_shape(mitsuba, kind: str, values: dict, folder: Path) -> dict:
 
 
 def far_disc(mitsuba, sun: dict, distance: float = 1e4) -> dict:
-    """A sun as a disc far away, which a path may also meet by chance: Mitsuba aims at nothing behind a pane."""
+    """Returns a sun as a distant disc, which paths can also hit by chance: Mitsuba samples no light behind a pane."""
     toward = np.array(sun["toward"], float) / np.linalg.norm(sun["toward"])
     half = np.radians(sun.get("angular_diameter", 0.533)) / 2
     at = toward * distance
@@ -80,7 +80,7 @@ def far_disc(mitsuba, sun: dict, distance: float = 1e4) -> dict:
 
 
 def mitsuba_scene(mitsuba, path: Path, flat_lamp: bool = False) -> dict:
-    """The scene as mitsuba.load_dict reads it, with the multijitter sampler and the path integrator's defaults."""
+    """Returns the scene for mitsuba.load_dict, with the multijitter sampler and the path integrator's defaults."""
     scene = read(path)
     camera, film = scene["camera"], scene["film"]
     look = mitsuba.ScalarTransform4f().look_at(

@@ -1,12 +1,12 @@
-"""A scene file of Abbe in POV-Ray 3.7's language, and the command that renders it at one of several qualities.
+"""Writes a scene file of Abbe in POV-Ray 3.7's language, and the command that renders it at one of several qualities.
 
     command = povray.command(Path("scene.toml"), quality=2, seed=1, folder=Path("out"))
 
-POV-Ray has no path tracer. Lamps become area lights of many points, whose beams fall off as the cosine and the
-squared distance; light between matte surfaces is radiosity, samples of it interpolated, to a limited depth. It takes
-no seed, so that its noise cannot be told from its bias, and only a common reference can judge it. Quality, 1 to 4,
-raises the points of the lamp, the rays and the density of radiosity and the samples of a pixel. Only scenes of quads
-and meshes, diffuse and emissive, are written: its photons for caustics are another approximation, left out here.
+POV-Ray has no path tracer. Lamps become area lights of many points, whose beams fall off with the cosine and the
+squared distance. Light between matte surfaces is radiosity, interpolated between samples, to a limited depth. It takes
+no seed, so its noise cannot be separated from its bias, and only a common reference can judge it. Quality, 1 to 4,
+raises the number of points of the lamp, the rays and the density of radiosity, and the samples of a pixel. Only scenes
+of diffuse and emissive quads and meshes are supported. Its photons for caustics are another approximation, left out.
 """
 
 import subprocess
@@ -47,7 +47,7 @@ def mesh_text(mesh: tuple, material: str) -> str:
 
 
 def lamp_text(quad: dict, radiance: list[float], side: int) -> str:
-    """A parallelogram that shines to its front: points whose light falls off as the cosine and the squared distance."""
+    """Returns a parallelogram that emits to its front: points whose light falls off with cosine and distance^2."""
     center, u, v = (np.array(quad[key], float) for key in ("center", "u", "v"))
     normal = np.cross(u, v)
     area = 4 * np.linalg.norm(normal)
@@ -86,7 +86,7 @@ def scene_text(path: Path, quality: int) -> str:
 
 
 def command(path: Path, quality: int, seed: int, folder: Path) -> list:
-    """The command that renders the scene; `seed` changes nothing, as POV-Ray takes none."""
+    """Writes the scene and returns the command that renders it. POV-Ray takes no seed, so `seed` has no effect."""
     source = folder / "scene.pov"
     source.write_text(scene_text(path, quality), "utf-8")
     film = read(path)["film"]

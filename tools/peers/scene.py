@@ -1,10 +1,11 @@
-"""A scene file of Abbe as other renderers take it: its camera, shapes, materials and lights, and spheres as triangles.
+"""Reads a scene file of Abbe for other renderers: its camera, shapes, materials and lights, and spheres as triangles.
 
     shapes(read("scene.toml"))      # [(kind, values, material), ..]
 
-Knows what the scenes of tools/chart/scenes.py hold: perspective cameras; quads, cubes, spheres and meshes; diffuse, mirror,
-dielectric, thin and emissive materials; an even sky and a sun. Spheres above a radius of 1e4, the walls of smallpt, become the squares
-they stand for; `flat_lamp` lets a disc stand for the tip of a huge lamp as well, which every renderer can aim at.
+Supports what the scenes of tools/chart/scenes.py use: perspective cameras; quads, cubes, spheres and meshes; diffuse,
+mirror, dielectric, thin and emissive materials; a uniform sky and a sun. Spheres above a radius of 1e4, the walls of
+smallpt, become the squares that they stand for. `flat_lamp` also replaces the tip of a huge spherical lamp by a disc,
+which every renderer can sample.
 """
 
 import tomllib
@@ -14,8 +15,8 @@ import numpy as np
 from gallery.shapes import write_ply
 
 WALL, LAMP = 1e4, 100.0
-BALL = (256, 512)  # rings and sectors of a sphere made of triangles
-BUMPY = (810, 810)  # those of the bumpy ball
+BALL = (256, 512)  # rings and sectors of a triangulated sphere
+BUMPY = (810, 810)  # rings and sectors of the bumpy ball
 
 
 def read(path: Path) -> dict:
@@ -28,7 +29,7 @@ def rgb(value) -> list[float]:
 
 
 def parts(entry: dict) -> tuple[str, dict]:
-    """Kind and values of a shape or a material."""
+    """Returns kind and values of a shape or a material."""
     ((kind, values),) = entry.items()
     return kind, values
 
@@ -39,7 +40,7 @@ def quad_triangles(center, u, v) -> tuple[np.ndarray, np.ndarray]:
 
 
 def box(center, size) -> dict:
-    """The mesh of a cube, facing outward."""
+    """Returns the mesh of a cube, facing outward."""
     half = np.broadcast_to(np.array(size, float), 3) / 2
     ends = np.array(center, float) - half, np.array(center, float) + half
     points = [[float(ends[corner >> axis & 1][axis]) for axis in range(3)] for corner in range(8)]
@@ -48,12 +49,12 @@ def box(center, size) -> dict:
 
 
 def lights(scene: dict, kind: str) -> list[dict]:
-    """The values of all lights of a kind that are no objects."""
+    """Returns the values of all lights of a kind, without emissive objects."""
     return [light[kind] for light in scene.get("light", []) if kind in light]
 
 
 def wall(center: np.ndarray, radius: float, room: np.ndarray) -> dict:
-    """The side of the room that a huge sphere stands for, as a quad that faces inward."""
+    """Returns the side of the room that a huge sphere stands for, as a quad that faces inward."""
     middle = room.mean(axis=0)
     axis = int(np.abs(center - middle).argmax())
     sign = np.sign(center - middle)[axis]
@@ -66,7 +67,7 @@ def wall(center: np.ndarray, radius: float, room: np.ndarray) -> dict:
 
 
 def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
-    """Kind, values and material of each object; huge spheres have become quads, and a huge lamp the disc of its rim."""
+    """Returns kind, values and material of each object; huge spheres are quads, a huge lamp the disc of its rim."""
     found = [(*parts(entry["shape"]), entry["material"]) for entry in scene["object"]]
     huge = [values for kind, values, _ in found if kind == "sphere" and values["radius"] > WALL]
     if huge:
@@ -75,7 +76,7 @@ def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
         for values in huge:
             axis = int(np.abs(values["center"] - anchor).argmax())
             sign = np.sign(values["center"][axis] - anchor[axis])
-            room[int(sign < 0), axis] = values["center"][axis] - sign * values["radius"]  # the room is inside of it
+            room[int(sign < 0), axis] = values["center"][axis] - sign * values["radius"]  # the room is inside it
     result = []
     for kind, values, material in found:
         if kind == "sphere" and values["radius"] > WALL:
@@ -91,7 +92,7 @@ def shapes(scene: dict, flat_lamp: bool = False) -> list[tuple[str, dict, str]]:
 
 
 def bumpy_ball(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points and triangles of a ball with bumps, closed and facing outward."""
+    """Returns points and triangles of a ball with bumps, closed and facing outward."""
     theta = np.pi * (np.arange(1, rings) / rings)[:, None]
     phi = 2 * np.pi * (np.arange(sectors) / sectors)[None]
     bumps = np.sin(9 * theta) * np.sin(12 * phi) + 0.3 * np.sin(61 * theta) * np.sin(80 * phi)
@@ -108,12 +109,12 @@ def bumpy_ball(rings: int, sectors: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_bumpy_ball(path: Path, rings: int = BUMPY[0], sectors: int = BUMPY[1]) -> None:
-    """A bumpy ball, of 1.3 million triangles unless told otherwise, as a PLY file."""
+    """Writes a bumpy ball, by default of 1.3 million triangles, as a PLY file."""
     write_ply(path, *bumpy_ball(rings, sectors))
 
 
 def ball(center, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points, triangles and normals of a sphere."""
+    """Returns points, triangles and normals of a sphere."""
     rings, sectors = BALL
     theta, phi = np.pi * np.arange(rings + 1)[:, None] / rings, 2 * np.pi * np.arange(sectors + 1)[None] / sectors
     normals = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta) + 0 * phi, np.sin(theta) * np.sin(phi)], -1)
@@ -126,7 +127,7 @@ def ball(center, radius: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Points and triangles of a file of write_bumpy_ball."""
+    """Returns points and triangles of a file from write_bumpy_ball."""
     header, body = path.read_bytes().split(b"end_header\n", 1)
     count = int(header.split(b"element vertex ")[1].split()[0])
     points = np.frombuffer(body[: 12 * count], "<f4").reshape(-1, 3)
@@ -135,7 +136,7 @@ def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def disc_triangles(center, normal, radius: float, sectors: int = 256) -> tuple[np.ndarray, np.ndarray]:
-    """A fan that faces along the normal, of the disc's area."""
+    """Returns a triangle fan that faces along the normal and has the area of the disc."""
     normal = np.array(normal, float) / np.linalg.norm(normal)
     u = np.cross(normal, np.roll(normal, 1))
     u /= np.linalg.norm(u)
@@ -148,7 +149,7 @@ def disc_triangles(center, normal, radius: float, sectors: int = 256) -> tuple[n
 
 
 def triangles(kind: str, values: dict, folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-    """Points, faces and, where it is smooth, normals of any shape."""
+    """Returns points, faces and, for smooth shapes, normals of any shape."""
     if kind == "sphere":
         return ball(**values)
     if kind == "disc":

@@ -1,12 +1,12 @@
-"""Plants bugs into a copy of the renderer, one at a time, and shows that each is found.
+"""Plants bugs into a copy of the renderer, one at a time, and shows that each is detected.
 
     python tools/planted.py                 # all of them: some minutes of building for each
     python tools/planted.py --only schlick  # one
     python tools/planted.py --check         # only whether every patch of tools/planted still applies
 
-Copies the source to a folder below target/planted, applies a patch, builds and runs tools/validate.py --quick; where
-the book cannot see a bug, because no scene file reaches that code, the named Rust test. Prints bug -> the rows and tests
-that turned red. Exit code 1 if a bug stays unseen or a patch does not apply.
+Copies the source to a folder below target/planted, applies a patch, builds, and runs tools/validate.py --quick. If the
+book cannot see a bug, because no scene file reaches that code, runs the named Rust test instead. Prints each bug and
+the rows and tests that turned red. Exit code 1 if a bug stays unseen or a patch does not apply.
 """
 
 import argparse
@@ -22,7 +22,7 @@ import render
 
 PATCHES = render.ROOT / "tools/planted"
 WORK = render.ROOT / "target/planted"
-# Builds that take less time; what they compute is the same.
+# Settings for faster builds, whose results are the same.
 QUICK_BUILD = [
     "--config=profile.release.package.abbe.codegen-units=16",
     "--config=profile.release.package.abbe.opt-level=1",
@@ -33,7 +33,7 @@ QUICK_BUILD = [
 
 class Bug(NamedTuple):
     words: str
-    test: tuple[str, str] | None = None  # file and name of the Rust test that must fail where the book cannot see it
+    test: tuple[str, str] | None = None  # file and name of the Rust test that must fail if the book cannot see it
 
 
 BUGS = {
@@ -69,14 +69,14 @@ BUGS = {
 
 
 def applies(patch, folder, *flags):
-    """Applies a patch in a folder, as if that belonged to no repository; the complaint, or nothing."""
+    """Applies a patch in a folder, as if it belonged to no repository; returns the error, or an empty text."""
     environment = {**os.environ, "GIT_CEILING_DIRECTORIES": str(folder.parent)}
     run = subprocess.run(["git", "apply", *flags, patch], cwd=folder, env=environment, capture_output=True, text=True)
     return run.stderr.strip() or (f"exit code {run.returncode}" if run.returncode else "")
 
 
 def check():
-    """Whether the folder holds the bugs of the table and every patch applies to the tree as it is."""
+    """Returns the problems: bugs without a patch, patches without a bug, and patches that do not apply to the tree."""
     found = {path.stem for path in PATCHES.glob("*.patch")}
     problems = [f"{name}: no patch" for name in BUGS.keys() - found]
     problems += [f"{name}.patch is in no table" for name in found - BUGS.keys()]
@@ -87,7 +87,7 @@ def check():
 
 
 def copy_source(folder):
-    """The files that cargo needs, unchanged; their times stay, so that only what a patch touches is built again."""
+    """Copies the files that cargo needs, with their times, so that only what a patch touches is built again."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("src", "tests", "benches", "scenes", "Cargo.toml", "Cargo.lock", "README.md"):
         source, target = render.ROOT / name, folder / name
@@ -104,7 +104,7 @@ def cargo(folder, target, *words):
 
 
 def red_rows(binary, out):
-    """The rows of the book that fail with this renderer; a book that cannot be read through is one row of its own."""
+    """Returns the rows of the book that fail with this renderer. If the book stops, that is the only row."""
     environment = {**os.environ, "RENDER": str(binary)}
     command = [sys.executable, str(render.ROOT / "tools/validate.py"), "--quick", "--out", str(out)]
     (out / "validation.json").unlink(missing_ok=True)
@@ -116,7 +116,7 @@ def red_rows(binary, out):
 
 
 def red_test(bug, folder, target):
-    """The named test, if it fails."""
+    """Returns the named test, if it fails."""
     if bug.test is None:
         return []
     file, name = bug.test
@@ -126,12 +126,12 @@ def red_test(bug, folder, target):
 
 
 def plant(name, work):
-    """What turns red with the bug, or raises RuntimeError."""
+    """Returns what turns red with the bug; raises RuntimeError if it cannot be built."""
     folder, target = work / "source", work / "target"
     copy_source(folder)
     if complaint := applies(PATCHES / f"{name}.patch", folder):
         raise RuntimeError(f"the patch does not apply: {complaint}")
-    # A file that cargo built before with other content may have the same time: the patched ones are new.
+    # Cargo may have built other content with the same time before, so the patched files are touched.
     for line in (PATCHES / f"{name}.patch").read_text().splitlines():
         if line.startswith("+++ b/"):
             os.utime(folder / line.removeprefix("+++ b/"))
@@ -160,7 +160,7 @@ def main(words=None):
         except RuntimeError as error:
             red, problems = [], [*problems, f"{name}: {error}"]
         unseen += [] if red else [name]
-        told = red[:: -(-len(red) // 3)] if red else ["NOTHING"]  # three from all over the book
+        told = red[:: -(-len(red) // 3)] if red else ["NOTHING"]  # three, spread over the book
         print(f"{name:30} {BUGS[name].words}\n{'':30}   {len(red)} red, such as {'; '.join(told)}", flush=True)
     print("every bug is seen" if not unseen else "", *problems, *unseen, sep="\n  UNSEEN: ")
     return int(bool(unseen or problems))

@@ -1,1 +1,1 @@
-"""One page of what the tools found: `python tools/report.py`."""
+"""One page with the results of the tools: `python tools/report.py`."""

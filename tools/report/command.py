@@ -1,11 +1,11 @@
-"""Puts what the tools found into one HTML page that needs nothing else: target/report/index.html.
+"""Puts the results of the tools into one self-contained HTML page: target/report/index.html.
 
     python tools/report.py                  # from what target/validate, target/chart and target/stability hold
     python tools/report.py --run            # runs the tools first: up to an hour
     python tools/report.py --run --quick    # runs them at a reduced size
 
-Pictures are inside the page and nothing is requested from elsewhere. A part whose tool has not been run is said in one
-line, with the command that makes it. Prints where the page is, and which parts are missing.
+Pictures are embedded in the page, and nothing is loaded from elsewhere. If a tool has not been run, its part is one
+line with the command that makes it. Prints where the page is, and which parts are missing.
 """
 
 import argparse
@@ -36,13 +36,13 @@ FILES = {"validate": "validation.json", "chart": "chart.json", "stability": "sta
 
 
 class Template(string.Template):
-    """@@name@@ stands for a part."""
+    """A template in which @@name@@ stands for a part."""
 
     pattern = r"@@(?:(?P<escaped>@@)|(?P<named>[a-z]+)@@|(?P<braced>(?!))|(?P<invalid>))"
 
 
 def run_tools(quick: bool) -> list[str]:
-    """Runs each tool, and says which ones failed."""
+    """Runs each tool, and returns those that failed."""
     failed = []
     for tool in TOOLS:
         command = [sys.executable, str(render.ROOT / f"tools/{tool}.py"), *(["--quick"] if quick else [])]
@@ -54,7 +54,7 @@ def run_tools(quick: bool) -> list[str]:
 
 @functools.cache
 def plan(path: Path) -> list[str]:
-    """The plan's words for a scene; none if there is no renderer, or it lacks a file of the scene."""
+    """Returns the words of the plan for a scene; none if there is no renderer, or a file of the scene is missing."""
     try:
         run = subprocess.run([render.binary(), "--plan", path], capture_output=True, text=True, check=False)
     except SystemExit:
@@ -63,7 +63,7 @@ def plan(path: Path) -> list[str]:
 
 
 def find_scenes() -> list[dict]:
-    """All scenes of the gallery with picture, first line, command, time and plan."""
+    """Returns all scenes of the gallery with picture, first line, command, time and plan."""
     measured = json.loads(gallery.MEASURED.read_text("utf-8")) if gallery.MEASURED.is_file() else {}
     names, found = gallery.scenes(), []
     with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -85,7 +85,7 @@ def find_scenes() -> list[dict]:
 
 
 def read_result(folder: Path, tool: str) -> dict | None:
-    """What a tool left, or nothing."""
+    """Returns the result of a tool, or None."""
     path = folder / tool / FILES[tool]
     if not path.is_file():
         return None
@@ -96,7 +96,7 @@ def read_result(folder: Path, tool: str) -> dict | None:
 
 
 def made(folder: Path, tool: str, result: dict | None) -> tuple[str, str, str]:
-    """Part, command, time of a tool's result."""
+    """Returns part, command and time of a tool's result."""
     title = TOOLS[tool][0]
     if result is None:
         return title, f"python tools/{tool}.py", "not yet"
@@ -105,7 +105,7 @@ def made(folder: Path, tool: str, result: dict | None) -> tuple[str, str, str]:
 
 
 def output(command: list) -> str:
-    """The first line that a command prints, or nothing."""
+    """Returns the first line that a command prints, or an empty text."""
     try:
         run = subprocess.run(command, cwd=render.ROOT, capture_output=True, text=True, check=False)
     except (OSError, SystemExit):
@@ -114,7 +114,7 @@ def output(command: list) -> str:
 
 
 def versions(results: dict) -> dict:
-    """Of the renderer, of what reads its files, of the renderers beside it, of the machine."""
+    """Returns the versions of the renderer, of the packages and renderers that the tools used, and of the machine."""
     found = {}
     try:
         found["Abbe"] = output([render.binary(), "--version"])
@@ -131,7 +131,7 @@ def versions(results: dict) -> dict:
 
 
 def facts(scenes: list, results: dict) -> str:
-    """The page in one line of numbers."""
+    """Returns the page's summary: one line of numbers."""
     told = [f"<b>{len(scenes)}</b> scenes"]
     if book := results["validate"]:
         good = sum(map(parts.passes, book["rows"]))
@@ -144,7 +144,7 @@ def facts(scenes: list, results: dict) -> str:
 
 
 def page(scenes: list, results: dict, folder: Path) -> str:
-    """The whole page as text."""
+    """Returns the text of the whole page."""
     charts = {}
     if results["chart"]:
         charts |= {f"chart {scene['name']}": parts.speed_chart(scene) for scene in results["chart"]["scenes"]}
@@ -182,7 +182,7 @@ def page(scenes: list, results: dict, folder: Path) -> str:
 
 
 def write(folder: Path, out: Path) -> list[str]:
-    """Writes the page from the results in `folder` and returns which tools' parts are missing."""
+    """Writes the page from the results in `folder`, and returns the tools whose parts are missing."""
     results = {tool: read_result(folder, tool) for tool in TOOLS}
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(page(find_scenes(), results, folder), "utf-8")

@@ -1,6 +1,6 @@
 """The parts of the report as HTML: scenes, charts, the validation book, stability plots, how all was made.
 
-Each function takes what report.py has found and returns a piece of the page; page/page.js draws the charts.
+Each function takes results that report.py has collected and returns a piece of the page; page/page.js draws the charts.
 """
 
 import base64
@@ -11,12 +11,12 @@ from pathlib import Path
 
 OURS = ("--a0", "--a1", "--a2", "--a3", "--a4")
 OTHERS = ("--n0", "--n1", "--n2", "--n3", "--n4", "--n5")
-DASHES = ("none", "7 4", "2 3")  # when the colors have been used up
+DASHES = ("none", "7 4", "2 3")  # used in turn, once all colors have been used
 BORDERS = {"none": "solid", "7 4": "dashed", "2 3": "dotted"}
 
 
 def text(value) -> str:
-    """Safe inside an element or an attribute."""
+    """Escapes a value for use in an element or an attribute."""
     return html.escape(str(value), quote=True)
 
 
@@ -25,7 +25,7 @@ def missing(what: str, command: str) -> str:
 
 
 def table(label: str, heads: tuple, rows: list[str], tall=False, identity="") -> str:
-    """A table in a box of its own that scrolls, by the mouse as by the keyboard."""
+    """Returns a table in a box that scrolls, with the mouse or the keyboard."""
     head = "".join(f'<th scope="col">{text(name)}</th>' for name in heads)
     box = f'<div class="scroll{" tall" if tall else ""}" tabindex="0" role="region" aria-label="{text(label)}">'
     named = f' id="{identity}"' if identity else ""
@@ -33,7 +33,7 @@ def table(label: str, heads: tuple, rows: list[str], tall=False, identity="") ->
 
 
 def picture(path: Path) -> str:
-    """A PNG as a data URI."""
+    """Returns a PNG as a data URI."""
     return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
 
 
@@ -42,7 +42,7 @@ def duration(seconds: float) -> str:
 
 
 def card(scene: dict) -> str:
-    """One scene: picture, what to look for, command, time, the plan's words."""
+    """Returns one scene: picture, what to look for, command, time, the words of the plan."""
     parts = []
     if scene["picture"]:
         parts.append(f'<img src="{picture(scene["picture"])}" alt="{text(scene["line"])}">')
@@ -65,7 +65,7 @@ def scenes(found: list[dict]) -> str:
 
 
 def colored(series: list[dict]) -> list[dict]:
-    """Ours in cool colors, others in warm ones, one after the other; then dashed."""
+    """Colors our series in cool colors and the others in warm ones, in turn; then dashes the lines."""
     counts = {True: 0, False: 0}
     for one in series:
         palette = OURS if one["ours"] else OTHERS
@@ -81,7 +81,7 @@ def drawable(value) -> bool:
 
 
 def speed_chart(scene: dict) -> dict:
-    """A scene of chart.json as page.js draws it."""
+    """Converts a scene of chart.json for page.js."""
     series = []
     for one in scene["series"]:
         points = [
@@ -100,7 +100,7 @@ def speed_chart(scene: dict) -> dict:
 
 
 def stability_chart(plot: dict, folder: Path) -> dict:
-    """A plot of stability.json and its CSV as page.js draws it."""
+    """Converts a plot of stability.json and its CSV for page.js."""
     series: dict = {}
     with (folder / plot["csv"]).open(newline="", encoding="utf-8") as file:
         xlabel, ylabel = next(csv.reader([next(file)]))[2:4]
@@ -115,7 +115,7 @@ def stability_chart(plot: dict, folder: Path) -> dict:
 
 
 def figure(chart: dict, key: str) -> str:
-    """The place of a chart, and which color is which."""
+    """Returns the place of a chart, and its legend."""
     names = ""
     for one in chart["series"]:
         line = f"border-top-color:var({one['color']});border-top-style:{BORDERS[one['dash']]}"
@@ -137,7 +137,7 @@ def points_table(chart: dict, heads: tuple[str, str]) -> str:
 
 
 def told(words: list[str], most=8) -> str:
-    """Sentences as a list; what is beyond `most` of them has to be asked for."""
+    """Returns sentences as a list; those beyond `most` are folded away."""
     first, rest = (
         f'<ul class="told">{"".join(f"<li>{text(line)}</li>" for line in lines)}</ul>'
         for lines in (words[:most], words[most:])
@@ -162,13 +162,13 @@ def speed(found: list[dict], charts: dict) -> str:
 
 
 def numbers(value) -> list[float]:
-    """The numbers of a value that is one, a list of them, or nothing."""
+    """Returns the numbers of a value that is a number, a list of numbers, or None."""
     listed = value if isinstance(value, (list, tuple)) else [value]
     return [float(one) for one in listed if one is not None]
 
 
 def shown(value) -> str:
-    """A number or a list of them: of equal ones one, of a long list its range."""
+    """Returns a number or a list of numbers as text: equal ones once, a long list as its range."""
     if isinstance(value, str):
         return text(value)
     values = numbers(value)
@@ -180,7 +180,7 @@ def shown(value) -> str:
 
 
 def z_bar(value, limit: float) -> str:
-    """The z that is furthest from 0, as a bar to the left or right of the middle."""
+    """Returns the z that is furthest from 0, as a bar to the left or right of the middle."""
     values = [one for one in numbers(value) if one == one] if not isinstance(value, str) else []
     if not values:
         return '<span class="small">exact</span>'
@@ -219,7 +219,7 @@ FILTERS = """<form class="filters" aria-label="Choose rows">
 
 
 def validation(book: dict) -> str:
-    """The book as a table that can be searched."""
+    """Returns the book as a table that can be searched."""
     rows = book["rows"]
     groups = dict.fromkeys(row["group"] for row in rows)
     options = "".join(f"<option>{text(group)}</option>" for group in groups)
@@ -234,13 +234,13 @@ def validation(book: dict) -> str:
 
 
 def test_names(names: str) -> str:
-    """Each on lines of its own, broken between words."""
+    """Returns each test's name as lines of its own, broken between words."""
     lines = (text(name).replace("_", "_<wbr>").replace("::", "::<wbr>") for name in names.splitlines())
     return "".join(f"<code>{line}</code>" for line in lines)
 
 
 def stability(book: dict, charts: dict) -> str:
-    """Plots with their words, and which test holds which row."""
+    """Returns plots with their words, and a table of which test covers which row."""
     cards = []
     for plot in book["plots"]:
         key = f"stability {plot['row']}"
@@ -266,7 +266,7 @@ def stability(book: dict, charts: dict) -> str:
 
 
 def making(made: list[tuple[str, str, str]], versions: dict) -> str:
-    """Commands and versions."""
+    """Returns tables of commands and versions."""
     rows = [
         f'<tr><th scope="row">{text(name)}</th><td><code>{text(command)}</code></td><td>{text(when)}</td></tr>'
         for name, command, when in made

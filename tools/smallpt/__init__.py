@@ -1,1 +1,1 @@
-"""The 99-line program and what Abbe makes of its scene: `python tools/smallpt_reference.py`."""
+"""The 99-line program smallpt, compared with Abbe in its scene: `python tools/smallpt_reference.py`."""

@@ -1,7 +1,7 @@
-"""What the 99-line program (tools/smallpt/smallpt.cpp) shows in the regions of scenes/smallpt.toml, and how Abbe compares.
+"""Means of the 99-line program (tools/smallpt/smallpt.cpp) in regions of scenes/smallpt.toml, and Abbe's.
 
     python tools/smallpt_reference.py             # say what each habit of the program changes, region by region
-    python tools/smallpt_reference.py --compare   # render with Abbe and hold it against the program (20 CPU minutes)
+    python tools/smallpt_reference.py --compare   # render with Abbe and compare it with the program (20 CPU minutes)
     python tools/smallpt_reference.py --render    # run the program anew into smallpt/reference.json (15 CPU minutes)
 
 All pictures are 256 x 192, from eight seeds whose spread gives the standard errors.
@@ -27,7 +27,7 @@ SIZE = (256, 192)
 SEEDS = range(1, 9)
 LONG, SHORT = 512, 64
 EXACT_FLAGS = ("--box", "--no-clamp")
-# For each habit the samples and the flags of the run that is compared with EXACT_FLAGS at as many samples.
+# For each habit, the samples and the flags of the run that is compared with EXACT_FLAGS at equal samples.
 HABITS = {
     "tent filter": (SHORT, ("--no-clamp",)),
     f"clamp at {SHORT} samples": (SHORT, ("--box",)),
@@ -38,14 +38,14 @@ HABITS = {
 
 
 def compile_program(folder: Path) -> Path:
-    """Compiles the 99-line program as fast as g++ makes it."""
+    """Compiles the 99-line program with g++'s full optimization for this machine."""
     binary = folder / "smallpt"
     subprocess.run(["g++", "-O3", "-march=native", "-o", binary, PROGRAM], check=True)
     return binary
 
 
 def read_pfm(path: Path) -> np.ndarray:
-    """The image in a little-endian color PFM, the top row first."""
+    """Returns the image in a little-endian color PFM, the top row first."""
     with path.open("rb") as file:
         if file.readline() != b"PF\n":
             raise ValueError(f"{path} is no color PFM")
@@ -55,7 +55,7 @@ def read_pfm(path: Path) -> np.ndarray:
 
 
 def run_program(binary: Path, samples: int, seed: int, flags: tuple[str, ...]) -> np.ndarray:
-    """The picture of the 99-line program at the reference's size."""
+    """Returns the picture of the 99-line program at the reference's size."""
     out = binary.with_name("regions.pfm")
     command = [binary, samples, *SIZE, seed, out, *flags]
     subprocess.run([str(word) for word in command], check=True, preexec_fn=lambda: os.nice(10))
@@ -63,7 +63,7 @@ def run_program(binary: Path, samples: int, seed: int, flags: tuple[str, ...]) -
 
 
 def tabulate(values: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict:
-    """Means and errors as they stand in the JSON file."""
+    """Returns means and errors in the form of the JSON file."""
     return {
         name: {"mean": [float(f"{x:.5g}") for x in mean], "error": [float(f"{x:.2g}") for x in error]}
         for name, (mean, error) in values.items()
@@ -71,12 +71,12 @@ def tabulate(values: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict:
 
 
 def runs_of(binary: Path, samples: int, flags: tuple[str, ...]) -> list[dict[str, np.ndarray]]:
-    """The regions of the program's pictures, one for each seed."""
+    """Returns the region means of the program's pictures, one for each seed."""
     return [region_means(run_program(binary, samples, seed, flags)) for seed in SEEDS]
 
 
 def render_reference(folder: Path) -> dict:
-    """The long run, and with the same seeds the relative change that each habit makes."""
+    """Returns the means of the long run, and the relative change by each habit, with the same seeds."""
     binary = compile_program(folder)
     plain = {samples: runs_of(binary, samples, EXACT_FLAGS) for samples in (LONG, SHORT)}
     changes = {}
@@ -98,12 +98,12 @@ def render_reference(folder: Path) -> dict:
 
 
 def line(region: str, changes, errors) -> str:
-    """The changes of a region in percent, each with its standard error."""
+    """Returns the changes of a region in percent, each with its standard error."""
     return f"  {region:<12}" + "".join(f"  {100 * x:+8.3f} ({100 * e:.3f})" for x, e in zip(changes, errors))
 
 
 def compare(reference: dict) -> str:
-    """Abbe's means beside the program's, each with its standard error."""
+    """Returns the differences of Abbe's means from the program's, each with its standard error."""
     text = scene_text(*SIZE)
     runs = [region_means(render.render(text, samples=LONG, seed=seed).rgb) for seed in SEEDS]
     lines = [f"Abbe against {PROGRAM.name}, difference in percent (one standard error), R G B"]
@@ -115,7 +115,7 @@ def compare(reference: dict) -> str:
 
 
 def table(reference: dict) -> str:
-    """The changes in percent, a line for each habit and region."""
+    """Returns the changes in percent, a line for each habit and region."""
     lines = ["changes in percent (one standard error), R G B"]
     for habit, entry in reference["relative_changes"].items():
         lines.append(f"\n{habit}")

@@ -3,7 +3,8 @@
     from smallpt.regions import region_means, scene_text, sees_glass
     region_means(image)["floor"]            # R, G, B
 
-Six regions cover the picture; the glass ball stands apart, for there the 99-line program's Schlick approximation shows.
+Six regions sample the picture. The glass ball is separate, because it shows the 99-line program's Schlick
+approximation.
 """
 
 import tomllib
@@ -34,7 +35,7 @@ class Sphere(NamedTuple):
 
 
 def region_means(image: np.ndarray) -> dict[str, np.ndarray]:
-    """The mean of each region and band of an image (height, width, 3), the top row first."""
+    """Returns the mean of each region and band of an image (height, width, 3), the top row first."""
     height, width = image.shape[:2]
     means = {}
     for name, (left, top, right, bottom) in REGIONS.items():
@@ -45,7 +46,7 @@ def region_means(image: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def mean_and_error(runs: list[dict[str, np.ndarray]]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Mean over independent runs and its standard error, for each region and band."""
+    """Returns the mean over independent runs and its standard error, for each region and band."""
     pooled = {}
     for name in REGIONS:
         values = np.array([run[name] for run in runs])
@@ -54,13 +55,13 @@ def mean_and_error(runs: list[dict[str, np.ndarray]]) -> dict[str, tuple[np.ndar
 
 
 def scene_text(width: int, height: int) -> str:
-    """The scene at another size."""
+    """Returns the text of the scene at another size."""
     text = SCENE.read_text("utf-8")
     return text.replace("width = 1024", f"width = {width}").replace("height = 768", f"height = {height}")
 
 
 def spheres() -> dict[str, Sphere]:
-    """The spheres of the scene by name."""
+    """Returns the spheres of the scene by name."""
     with SCENE.open("rb") as file:
         objects = tomllib.load(file)["object"]
     balls = {entry["name"]: entry["shape"]["sphere"] for entry in objects}
@@ -68,7 +69,7 @@ def spheres() -> dict[str, Sphere]:
 
 
 def camera_rays(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-    """Where the rays through the pixel centers start, and their unit directions, each (height, width, 3)."""
+    """Returns the origins and the unit directions of the rays through the pixel centers, each (height, width, 3)."""
     with SCENE.open("rb") as file:
         camera = tomllib.load(file)["camera"]
     position = np.array(camera["position"], float)
@@ -84,7 +85,7 @@ def camera_rays(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def distances(sphere: Sphere, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
-    """Distance to the first crossing ahead, infinite where there is none."""
+    """Returns the distance to the first crossing ahead, infinite where there is none."""
     offset = sphere.center - origin
     middle = (offset * direction).sum(axis=-1)
     squared = sphere.radius**2 - (np.cross(offset, direction) ** 2).sum(axis=-1)
@@ -95,7 +96,7 @@ def distances(sphere: Sphere, origin: np.ndarray, direction: np.ndarray) -> np.n
 
 
 def sees_glass(width: int, height: int) -> np.ndarray:
-    """The pixels that see the glass ball directly, or pass its silhouette within about one and a half pixels."""
+    """Returns the pixels that see the glass ball directly, or come within some one and a half pixels of its edge."""
     origin, direction = camera_rays(width, height)
     glass = spheres()["glass ball"]
     pixel_size = np.linalg.norm(direction[0, 0] - direction[0, 1]) * np.linalg.norm(glass.center - origin[0, 0])
@@ -103,7 +104,7 @@ def sees_glass(width: int, height: int) -> np.ndarray:
 
 
 def sees_front_wall(width: int, height: int) -> np.ndarray:
-    """The pixels whose center shows the black front wall in the mirror ball."""
+    """Returns the pixels whose center shows the black front wall in the mirror ball."""
     origin, direction = camera_rays(width, height)
     scene = spheres()
     names = list(scene)

@@ -1,4 +1,4 @@
-"""Draws where methods fail: the failing method beside Abbe, as what is hard about a scene grows.
+"""Draws where methods fail: the failing method beside Abbe, as a scene gets harder.
 
     python tools/stability.py               # all rows, two minutes: target/stability/*.svg, *.csv, stability.json
     python tools/stability.py --quick       # fewer points and samples: about 20 seconds
@@ -6,8 +6,7 @@
     python tools/stability.py --list        # which rows there are
 
 The failing methods are small numpy programs in f32 and f64, after the sources named beside them, or closed forms where
-a label says so. What is called "Abbe, rendered" is measured on images: a scene is written, rendered by `render`, and
-its EXR read back.
+a label says so. "Abbe, rendered" is measured on images: a scene is written, rendered by `render`, and its EXR is read.
 Prints a sentence with its numbers for each row.
 """
 
@@ -43,9 +42,9 @@ ROWS = {
 
 
 def catalog(text: str) -> list[dict]:
-    """The rows of a Markdown table `| row | what fails | what Abbe does | test |`; other lines do not count.
+    """Returns the rows of a Markdown table `| row | what fails | what Abbe does | test |`, and ignores all other lines.
 
-    Several tests of a row stand on lines of their own."""
+    Each of several tests of a row is on a line of its own."""
     rows = []
     for line in text.splitlines():
         cells = [cell.strip().replace("\\|", "|") for cell in line.strip().strip("|").replace("\\|", "\0").split("|")]
@@ -72,7 +71,7 @@ def keep(plot: Plot, folder: Path) -> dict:
 
 
 def merge(folder: Path, entries: list[dict], made_by: str) -> None:
-    """Writes stability.json: new entries in place of old ones of the same rows, in the order of ROWS."""
+    """Writes stability.json: new entries replace old ones of the same rows, in the order of ROWS."""
     path = folder / "stability.json"
     old = json.loads(path.read_text("utf-8"))["plots"] if path.is_file() else []
     plots = {entry["row"]: entry for entry in [*old, *entries] if entry["row"] in ROWS}

@@ -1,4 +1,4 @@
-"""Stability rows S1, S6, T1: where rays meet surfaces. Naive methods in numpy, ours on rendered images."""
+"""Stability rows S1, S6, T1: intersections of rays with surfaces. Naive methods in numpy, ours on rendered images."""
 
 import numpy as np
 from validation.scenes import plane, quad, sphere
@@ -10,13 +10,12 @@ INDEX = 1.5
 
 
 def ball_reflectance(cosine):
-    """What a ball of black glass shows of a sky of 1 at an angle of incidence."""
+    """Returns what a ball of black glass reflects of a sky of 1, at an angle of incidence."""
     return fresnel(INDEX, cosine)
 
 
 def ball_rays(distance: float, count: int, precision):
-    """Origin and unit directions from `distance` along z, across 0.999 of a ball of radius 1, rounded to a
-    precision."""
+    """Returns origin and unit directions from `distance` along z, across 0.999 of a unit ball, in a precision."""
     slope = 0.999 / distance * (2 * np.arange(count) + 1 - count) / count
     length = np.hypot(1, slope)
     zero = np.zeros(count)
@@ -24,22 +23,23 @@ def ball_rays(distance: float, count: int, precision):
 
 
 def expanded(origin, directions):
-    """R^2 - (|o|^2 - (o.n)^2) as in textbooks and smallpt; NaN where it misses."""
+    """Returns distances to a unit ball by R^2 - (|o|^2 - (o.n)^2), as in textbooks and smallpt; NaN on a miss."""
     b = -(directions @ origin)
     with np.errstate(invalid="ignore"):
         return b - np.sqrt(origin.dtype.type(1) - (origin @ origin - b * b))
 
 
 def by_cross_product(origin, directions):
-    """R^2 - |o x n|^2, which cancels nothing (Haines, Gunther, Akenine-Moller 2019)."""
+    """Returns distances to a unit ball by R^2 - |o x n|^2: no cancellation (Haines, Gunther, Akenine-Moller 2019)."""
     across = np.cross(np.broadcast_to(origin, directions.shape), directions).astype(origin.dtype)
     with np.errstate(invalid="ignore"):
         return -(directions @ origin) - np.sqrt(origin.dtype.type(1) - np.sum(across * across, -1))
 
 
 def shown(method, distance, count, precision):
-    """RMS relative error of the reflectance a method shows, against the closed form for the same rounded rays; a lost
-    ball shows the sky."""
+    """Returns the RMS relative error of the reflectance that a method shows, and the share of rays that it loses.
+
+    The truth is the closed form for the same rounded rays. A lost ray shows the sky."""
     origin, directions = ball_rays(distance, count, precision)
     t = method(origin, directions)
     hit = origin + t[:, None] * directions
@@ -56,7 +56,7 @@ def rms(errors):
 
 
 def s1(quick: bool) -> Plot:
-    """A ball seen from afar, by the reflectance it shows."""
+    """A ball seen from afar, judged by the reflectance it shows."""
     count = 64
     distances = 10.0 ** np.arange(1, 9, 1 if quick else 0.5)
     methods = [
@@ -94,7 +94,7 @@ def s1(quick: bool) -> Plot:
 
 
 def scaled_scene(size: float) -> str:
-    """Glass ball, metal ball, lamp and floor, every length times `size`."""
+    """Returns a scene with glass ball, metal ball, lamp and floor, every length times `size`."""
     materials = {
         "glass": {"dielectric": {"index": 1.5}},
         "metal": {"conductor": {"metal": "Au", "roughness": 0.3}},
@@ -123,8 +123,9 @@ def scaled_scene(size: float) -> str:
 
 
 def lost_chords(size: float, precision, count: int, epsilon=1e-4) -> float:
-    """Share of rays from a point on a sphere into it that do not end on its far side, when the first root above a fixed
-    epsilon counts (as in smallpt)."""
+    """Returns the share of rays from a point on a sphere into it that do not end on its far side.
+
+    The hit is the first root above a fixed epsilon, as in smallpt."""
     random = np.random.default_rng(7)
     point = random.standard_normal((count, 3))
     point = (size * point / np.linalg.norm(point, axis=-1, keepdims=True)).astype(precision)
@@ -168,7 +169,7 @@ def s6(quick: bool) -> Plot:
 
 
 def ball_mesh(rings=12, around=24):
-    """A closed ball of 528 triangles, turned at random; corners rounded to 32 bits."""
+    """Returns a closed ball of 528 triangles, rotated at random; corners rounded to 32 bits."""
     polar = np.pi * np.arange(1, rings) / rings
     angle = 2 * np.pi * np.arange(around) / around
     band = [(np.sin(p) * np.cos(a), np.sin(p) * np.sin(a), np.cos(p)) for p in polar for a in angle]
@@ -190,7 +191,7 @@ def ball_mesh(rings=12, around=24):
 
 
 def moller_trumbore_leaks(origins, direction, points, faces, precision) -> int:
-    """How many rays meet no triangle at all (Moller & Trumbore 1997)."""
+    """Returns the number of rays that hit no triangle at all (Moller & Trumbore 1997)."""
     o, d, p = origins.astype(precision), direction.astype(precision), points.astype(precision)
     a, e1, e2 = p[faces[:, 0]], p[faces[:, 1]] - p[faces[:, 0]], p[faces[:, 2]] - p[faces[:, 0]]
     q = np.cross(d, e2)
@@ -205,7 +206,7 @@ def moller_trumbore_leaks(origins, direction, points, faces, precision) -> int:
 
 
 def t1(quick: bool) -> Plot:
-    """Rays from inside a closed mesh at, and beside, its edges."""
+    """Rays from inside a closed mesh at its edges, and close to them."""
     points, faces = ball_mesh()
     edges = sorted({tuple(sorted((int(f[i]), int(f[i - 1])))) for f in faces for i in range(3)})
     chosen = np.random.default_rng(3).permutation(len(edges))[: 16 if quick else 64]

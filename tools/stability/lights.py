@@ -8,7 +8,7 @@ from .scenes import green, timed, view
 
 
 def caustic_scene(radius: float, samples: int, caustics: str, **settings) -> str:
-    """A floor below a glass ball below a lamp of one power, seen without the ball."""
+    """Returns a floor below a glass ball below a lamp of constant power, seen without the ball."""
     materials = {
         "glass": {"dielectric": {"index": 1.5}},
         "tiny": {"emissive": {"radiance": 1 / radius**2}},
@@ -34,10 +34,11 @@ def caustic_scene(radius: float, samples: int, caustics: str, **settings) -> str
 
 
 def a6(quick: bool) -> Plot:
-    """A caustic, met by chance or by photons: error times processor time.
+    """A caustic, found by chance or by photons: error times processor time.
 
-    By chance a path brings reflectance x radiance x transmittance or nothing, so its variance is that product times
-    what it brings on average, which the converged picture tells; one picture shows far too few of the rare paths."""
+    A path by chance contributes reflectance x radiance x transmittance, or nothing. Its variance is therefore that
+    product times its mean contribution, which the converged picture gives. A single picture contains far too few of the
+    rare paths."""
     radii = np.array([0.3, 0.03] if quick else [1.0, 0.3, 0.1, 0.03, 0.01, 0.003])
     many, tries = (64, {"off": 64, "auto": 16}) if quick else (1024, {"off": 512, "auto": 64})
     costs: dict = {"off": [], "auto": [], "expected": []}
@@ -76,7 +77,7 @@ def a6(quick: bool) -> Plot:
 
 
 def floor_under(shape: dict, radiance: float, eye, side: int) -> float:
-    """The mean of a white floor about the origin, by light straight from a lamp."""
+    """Returns the mean of a white floor around the origin, lit directly by a lamp."""
     objects = [("white", plane((0, 0, 0), (0, 1, 0))), ("shining", shape)]
     shining = {"shining": glow(radiance)}
     scene = view(objects, materials=shining, eye=eye, columns=side, rows=side, samples=64, diffuse_bounces=0)
@@ -84,7 +85,7 @@ def floor_under(shape: dict, radiance: float, eye, side: int) -> float:
 
 
 def l1(quick: bool) -> Plot:
-    """A floor under a far, small ball of light of the same irradiance."""
+    """A floor under a distant, small ball of light of constant irradiance."""
     sizes = 10.0 ** np.arange(-1, -6.1, -2 if quick else -0.5)
     lamps = [(sphere((0, 1, 0), float(size)), float(1 / size**2)) for size in sizes]
     ours = [abs(floor_under(*lamp, eye=(3, 1, 0), side=8) - 1) for lamp in lamps]
@@ -115,14 +116,15 @@ def l1(quick: bool) -> Plot:
 
 
 def wall_share(h):
-    """Form factor from a point of the floor to a square of side 2 that stands on it at distance h (Howell, B-5)."""
+    """Returns the form factor of a floor point and a square of side 2 standing at distance h (Howell, B-5)."""
     far = np.hypot(h, 2)
     return (np.arctan(1 / h) - h / far * np.arctan(1 / far)) / np.pi
 
 
 def area_deviation(h):
-    """Standard deviation over the mean of one point drawn evenly on that lamp, by the trapezoid rule over the
-    logarithms."""
+    """Returns standard deviation over mean for one point drawn uniformly on the square of `wall_share`.
+
+    Integrates by the trapezoid rule over the logarithms."""
     y = np.geomspace(1e-9, 2, 1500)[:, None]
     z = np.geomspace(1e-9, 1, 1500)
     square = (4 * h * y / (np.pi * (h * h + y * y + z * z) ** 2)) ** 2 * y * z / 2
@@ -180,7 +182,7 @@ def l3(quick: bool) -> Plot:
 
 
 def girard_f32(size: float) -> float:
-    """Solid angle by the excess of the angles (Girard), in f32, of a triangle of edge `size` at distance 1."""
+    """Returns the solid angle of a triangle of edge `size` at distance 1 by its spherical excess (Girard), in f32."""
     p = triangle_points(size).astype(np.float32)
     a, b, c = (v / np.sqrt(v @ v, dtype=np.float32) for v in p)
 
@@ -193,14 +195,15 @@ def girard_f32(size: float) -> float:
 
 
 def triangle_points(size: float):
-    """Corners around (0, 1, 0), in a plane that faces down."""
+    """Returns corners around (0, 1, 0), in a plane that faces down."""
     turns = np.radians([10, 130, 250])
     return np.stack([size / np.sqrt(3) * np.cos(turns), np.ones(3), size / np.sqrt(3) * np.sin(turns)], -1)
 
 
 def triangle_integral(size: float, power: float) -> float:
-    """Integral of cos^power / r^2 over the triangle seen from the origin, 8 x 8 Gauss points: power 1 for the solid
-    angle."""
+    """Returns the integral of cos^power / r^2 over the triangle seen from the origin, by 8 x 8 Gauss points.
+
+    Power 1 gives the solid angle."""
     nodes, weights = np.polynomial.legendre.leggauss(8)
     u, v = np.meshgrid((nodes + 1) / 2, (nodes + 1) / 2)
     w = np.outer(weights, weights).T / 4 * u

@@ -107,15 +107,16 @@ def d13(quick: bool) -> Plot:
 
 
 def ggx_f32(cosine, alpha):
-    """The density of facets as it is most often written, in f32."""
+    """Returns the GGX density of facets as it is usually written, in f32."""
     c2, a2 = np.float32(cosine) ** 2, np.float32(alpha) ** 2
     with np.errstate(divide="ignore"):
         return a2 / (np.float32(np.pi) * (c2 * (a2 - np.float32(1)) + np.float32(1)) ** 2)
 
 
 def single_scattering(alpha: float, count: int) -> float:
-    """Mean albedo of a lossless GGX metal for diffuse light, without what meets a second facet: facets drawn by the
-    visible normals of Heitz 2018, weight G2 / G1 (height-correlated Smith)."""
+    """Returns the mean albedo of a lossless GGX metal for diffuse light, without light that meets a second facet.
+
+    Facets are sampled by the visible normals of Heitz 2018, with weight G2 / G1 (height-correlated Smith)."""
     random = np.random.default_rng(11)
     cosine = np.sqrt((np.arange(count) + 0.5) / count)
     wo = np.stack([np.sqrt(1 - cosine**2), np.zeros(count), cosine], -1)
@@ -141,7 +142,7 @@ def single_scattering(alpha: float, count: int) -> float:
 
 
 def g6(quick: bool) -> Plot:
-    """A lossless rough metal ball under an even sky: it should vanish."""
+    """A lossless rough metal ball under a uniform sky: it should vanish."""
     roughness = np.array([0.3, 1.0] if quick else [0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0])
     alphas = roughness**2
     naive = [1 - single_scattering(alpha, 50_000) for alpha in alphas]
@@ -180,14 +181,13 @@ def g6(quick: bool) -> Plot:
 
 
 def through(indices) -> float:
-    """Transmittance of a stack of boundaries at normal incidence, all orders summed: reflectance over transmittance
-    adds up."""
+    """Returns the transmittance of a stack of boundaries at normal incidence, all orders summed: their R / T add up."""
     r = [((a - b) / (a + b)) ** 2 for a, b in pairwise(indices)]
     return 1 / (1 + sum(one / (1 - one) for one in r))
 
 
 def m3(quick: bool) -> Plot:
-    """Water on glass: with a gap of air, overlapping without a rule, and overlapping by priority."""
+    """Water on glass: with an air gap, overlapping without a rule, and overlapping by priority."""
     depths = np.array([1e-1, 1e-3, 1e-6] if quick else [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
     exact = through([1, GLASS, WATER, 1])
     gap, ours = [], []
@@ -229,7 +229,7 @@ def m3(quick: bool) -> Plot:
 
 
 def g4(quick: bool) -> Plot:
-    """The highlight of a point light on metal, polished ever more."""
+    """The highlight of a point light on metal that is polished more and more."""
     alphas = np.array([1e-2, 1e-3, 2e-4] if quick else [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 3e-4, 2e-4, 1.1e-4])
     tilts = np.array([0.0, 0.5, 1.0, 2.0])
     naive, ours = [], []

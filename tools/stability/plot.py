@@ -1,4 +1,4 @@
-"""How a stability plot looks and is kept: one style, an SVG and a CSV for each row.
+"""The style and the files of a stability plot: one style, an SVG and a CSV for each row.
 
     from stability.plot import Plot, Series, draw, write_csv
 
@@ -37,7 +37,7 @@ STYLE = {
 
 @dataclass
 class Series:
-    """One method: its values over the hard parameter."""
+    """One method: its values over the parameter that makes the scene hard."""
 
     label: str
     x: np.ndarray
@@ -50,7 +50,7 @@ class Series:
 
 @dataclass
 class Plot:
-    """One row of the catalog: what it shows, and the words made from its data."""
+    """One row of the catalog: its plot, and the words made from its data."""
 
     row: str
     title: str
@@ -58,18 +58,18 @@ class Plot:
     ylabel: str
     series: list[Series]
     words: str
-    linear: bool = False  # the vertical axis
-    source: str = ""  # where the naive method is from
-    bound: float = 0.0  # what our values stay below
+    linear: bool = False  # vertical axis
+    source: str = ""  # where the naive method comes from
+    bound: float = 0.0  # our values stay below it
     least: float = 0.0  # values below it are drawn as 0
-    z: float = 0.0  # where chance is left: how far our values are off at most, in standard errors
+    z: float = 0.0  # the largest error of our values in standard errors, if they are random
 
     def __post_init__(self):
         self.words = self.words.replace("%", " %").replace("  %", " %")
 
     @property
     def abbe(self) -> np.ndarray:
-        """All of our values."""
+        """All values of Abbe."""
         return np.concatenate([one.y for one in self.series if one.ours])
 
     @property
@@ -79,18 +79,18 @@ class Plot:
 
 
 def times(value: float) -> str:
-    """A factor in words: two digits, and no powers of ten."""
+    """Formats a factor with two digits, and no powers of ten."""
     return f"{float(f'{value:.2g}'):,.10g}"
 
 
 def floor_of(plot: Plot) -> float:
-    """Where zeros are drawn: below a third of the smallest value above 0, at a whole decade."""
+    """Returns the height at which zeros are drawn: a power of ten below a third of the smallest positive value."""
     values = np.concatenate([one.y[one.y > 0] for one in plot.series] or [np.ones(1)])
     return max(plot.least, float(10.0 ** np.floor(np.log10(values.min() / 3))))
 
 
 def spread_apart(places: list[float], gap: float, low: float, high: float) -> list[float]:
-    """Heights of labels, moved until they are `gap` apart and within the axes, in the order of `places`."""
+    """Returns heights of labels, moved apart by at least `gap` and into the axes, in the order of `places`."""
     order = np.argsort(places)
     moved = np.clip(np.array(places, float)[order], low, high)
     for i in range(1, len(moved)):
@@ -105,7 +105,7 @@ def spread_apart(places: list[float], gap: float, low: float, high: float) -> li
 
 
 def draw(plot: Plot, path: Path) -> None:
-    """The SVG: lines labelled at their ends, ours in blue and thicker."""
+    """Writes the SVG: lines labelled at their ends, ours blue and thicker."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(7.6, 4.3), facecolor="white")
         axes = figure.add_axes((0.115, 0.14, 0.60, 0.74))
@@ -160,7 +160,7 @@ def label_ends(axes, ends: list[tuple[float, str, str]]) -> None:
 
 
 def write_csv(plot: Plot, path: Path) -> None:
-    """Every point: series, whose it is, x, y."""
+    """Writes every point: series, kind (abbe or naive), x, y."""
     with path.open("w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["series", "kind", plot.xlabel, plot.ylabel])

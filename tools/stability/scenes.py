@@ -1,4 +1,4 @@
-"""Scenes for the stability plots, made of what the validation book's are, and what is read from their images.
+"""Scenes for the stability plots, built from those of the validation book, and values read from their images.
 
 from stability.scenes import photograph, view
 image = photograph(view([...], eye=(0, 0, 3), rows=64, height=2))
@@ -19,17 +19,17 @@ MATERIALS = {
 
 
 def view(objects, lights=(), materials=None, *, columns=1, rows=1, **more) -> str:
-    """A scene's text; `more` as of the book's `view`. `objects` pairs materials with shapes."""
+    """Returns a scene's text. `objects` pairs materials with shapes; `more` is passed to the book's `view`."""
     return scenes.toml_file(scenes.view(MATERIALS | (materials or {}), objects, lights, size=(columns, rows), **more))
 
 
 def photograph(text: str, **flags) -> render.Image:
-    """The image of a scene's text on one thread."""
+    """Renders a scene's text on one thread."""
     return render.render(text, threads=1, **flags)
 
 
 def timed(text: str, **flags) -> tuple[render.Image, float]:
-    """The image, and the processor time of the whole program."""
+    """Returns the image, and the processor time of the whole program."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     image = photograph(text, **flags)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -37,18 +37,18 @@ def timed(text: str, **flags) -> tuple[render.Image, float]:
 
 
 def green(text: str, **flags) -> np.ndarray:
-    """One channel of an image whose channels are alike."""
+    """Returns the green channel of an image whose channels are equal."""
     return photograph(text, **flags).channels["G"].astype(np.float64)
 
 
 def mean_and_error(text: str, seeds=8, **flags) -> tuple[float, float]:
-    """Mean of all pixels, and its standard error from independent seeds."""
+    """Returns the mean of all pixels, and its standard error from independent seeds."""
     means = [green(text, seed=seed, **flags).mean() for seed in range(1, seeds + 1)]
     return float(np.mean(means)), float(np.std(means, ddof=1) / np.sqrt(seeds))
 
 
 def fresnel(index: float, cosine):
-    """Reflectance of unpolarized light at a dielectric, by the cosine of the angle of incidence (Born & Wolf 1.5.2)."""
+    """Returns the reflectance of a dielectric for unpolarized light, by the cosine of incidence (Born & Wolf 1.5.2)."""
     cosine = np.clip(cosine, 0, 1)
     beyond = np.sqrt(index**2 - 1 + cosine**2)
     s = (cosine - beyond) / (cosine + beyond)
@@ -57,5 +57,5 @@ def fresnel(index: float, cosine):
 
 
 def slab(top: float, bottom: float, side=40.0) -> dict:
-    """A wide box between two heights."""
+    """Returns a wide box between two heights."""
     return scenes.cube((0, (top + bottom) / 2, 0), [side, top - bottom, side])

@@ -10,16 +10,16 @@ R = 0.04  # one boundary of glass of index 1.5 at normal incidence
 
 
 def stack_exact(panes):
-    """Transmittance of a stack of panes, all orders summed (Stokes 1862)."""
+    """Returns the transmittance of a stack of panes, all orders summed (Stokes 1862)."""
     return (1 - R) / (1 + (2 * panes - 1) * R)
 
 
 def stack_cut(panes: int, depth=10**9, weight=0.0) -> float:
-    """Transmittance when no path is longer than `depth` boundaries, or when paths are dropped below a weight."""
+    """Returns the transmittance if no path meets more than `depth` boundaries, or paths are dropped below a weight."""
     sides = 2 * panes
     down = {
         0: {0: 1}
-    }  # place -> reflections so far -> number of paths; all rays of one step have met as many boundaries
+    }  # place -> reflections so far -> number of paths; all rays of a step have met equally many boundaries
     up: dict = {}
     out = 0.0
     for step in range(min(depth, 4000)):
@@ -52,7 +52,7 @@ def stack_cut(panes: int, depth=10**9, weight=0.0) -> float:
 
 
 def stack_rendered(panes: int, quick: bool) -> tuple[float, float]:
-    """Transmittance and its standard error from the renderer's own image of the stack before a lamp."""
+    """Returns transmittance and its standard error from rendered images of the stack in front of a lamp."""
     objects = [("pane", slab(-0.2 * i, -0.2 * i - 0.1)) for i in range(panes)]
     objects.append(("lamp", plane((0, -0.2 * panes - 1, 0), (0, 1, 0))))
     scene = view(
@@ -68,7 +68,7 @@ def stack_rendered(panes: int, quick: bool) -> tuple[float, float]:
 
 
 def stack_plot(row, title, quick, methods, source):
-    """Light lost in stacks of panes, by several ways of ending a tree of paths."""
+    """Plots the light lost in stacks of panes, by several ways of ending a tree of paths."""
     panes = np.array([1, 4, 10] if quick else [1, 2, 3, 5, 7, 10, 14, 20])
     exact = stack_exact(panes)
     naive = [
@@ -150,7 +150,7 @@ def w6(quick: bool) -> Plot:
 
 
 def sum_f32(value: np.float32, counts) -> list[float]:
-    """Relative error of a running sum of equal samples in f32, by as many additions."""
+    """Returns the relative error of a running sum of equal samples in f32, after each number of additions."""
     total, done, result, block = np.float32(0), 0, [], 2**20
     for count in counts:
         while done < count:

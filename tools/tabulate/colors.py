@@ -1,11 +1,11 @@
-"""Writes what CIE and others tabulate about colors, as the package colour-science has it, as lines of a table."""
+"""Writes lines of tables with color data of CIE and others, from the package colour-science."""
 
 import warnings
 
 from .pages import number
 
 with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # colour warns of optional packages that are not needed here
+    warnings.simplefilter("ignore")  # colour warns about optional packages
     import colour
 
 OBSERVER = "CIE 1931 2 Degree Standard Observer"

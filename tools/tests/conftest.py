@@ -7,5 +7,5 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 
 def pytest_collection_modifyitems(items):
-    """The book takes longest: where tests run side by side it begins first, so that all end together."""
+    """Starts the validation book first: it takes longest, and tests that run in parallel then end together."""
     items.sort(key=lambda item: item.path.name != "test_validate.py")

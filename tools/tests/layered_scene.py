@@ -1,4 +1,4 @@
-"""The small scene of the tests of layers, and the forms in which its file may be asked for."""
+"""The small scene of the tests of layers, and the forms in which its file can be written."""
 
 import functools
 import tempfile
@@ -13,7 +13,8 @@ CROP = (20, 11, 31, 26)  # first column, first row, width and height
 OVERSCAN = (7, 3, 2, 9)  # columns and rows to the left, above, to the right and below
 COMPRESSIONS = tuple(check_exr.LOSSLESS.values())
 
-# A ball, glass that disperses and two cubes of one mesh on a floor, under a lamp, a spot and a sky: all layers hold something.
+# A ball, dispersive glass and two cubes of one mesh on a floor, under a lamp, a spot and a sky, so that no layer is
+# empty.
 SCENE = """
 camera = {{ position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }}
 film = {{ width = {width}, height = {height}{film} }}
@@ -56,7 +57,7 @@ group = "rim"
 spot = {{ position = [3, 3, -2], look_at = [0.7, 0.7, 0.6], cone_angle = 40, intensity = 8 }}
 """
 
-# The parts of the file of all layers, and their channels with the bits that they have at least.
+# The layers of the file with all layers, with their channels and their minimum number of bits.
 LAYERS = {
     **dict.fromkeys(("emission", "background", "direct", "indirect", "caustics", "dispersed", "shadow"), ("RGB", 16)),
     **dict.fromkeys((f"{lobe}_{kind}" for lobe in check_exr.LOBES for kind in ("direct", "indirect")), ("RGB", 16)),
@@ -76,7 +77,7 @@ LAYERS = {
 
 
 class Form(NamedTuple):
-    """How a file is asked for; what is left out is what it is by default."""
+    """The settings with which a file is rendered."""
 
     layers: bool = True
     precision: str = "float"
@@ -91,7 +92,7 @@ class Form(NamedTuple):
         return "-".join([*words, *(name for name in ("multipart", "crop", "overscan", "sharp") if getattr(self, name))])
 
     def scene(self):
-        """The scene, as text."""
+        """Returns the text of the scene."""
         film = f', precision = "{self.precision}", compression = "{self.compression}"'
         film += ", multipart = true" if self.multipart else ""
         film += ', layers = "all"' if self.layers else ""
@@ -101,7 +102,7 @@ class Form(NamedTuple):
         return SCENE.format(width=WIDTH, height=HEIGHT, film=film + ', metadata = { owner = "Émilie", comments = "shot 12" }')
 
     def bits(self):
-        """The channels of the file, with the bits of each."""
+        """Returns the channels of the file, with the bits of each."""
         least = 16 if self.precision == "half" else 32
         image = {**dict.fromkeys("RGBA", least), "Z": 32}
         layers = LAYERS.items() if self.layers else ()
@@ -115,7 +116,7 @@ def folder():
 
 @functools.cache
 def rendered(form):
-    """The file of a form, which is rendered once."""
+    """Returns the file of a form. Each is rendered once."""
     path = Path(folder().name) / f"{form}.exr"
     render.write(form.scene(), path)
     return path
@@ -123,5 +124,5 @@ def rendered(form):
 
 @functools.cache
 def read(form):
-    """What the file of a form holds."""
+    """Returns the contents of the file of a form."""
     return check_exr.read(rendered(form))

@@ -22,7 +22,7 @@ OBJECTS = ("floor", "ball", "стекло", "cubes [1]", "cubes [2]", "key lamp"
 
 
 class Compositor:
-    """An empty scene of Blender whose output is a socket of one of two nodes that read a file."""
+    """An empty Blender scene that outputs a socket of one of two nodes that read a file."""
 
     def __init__(self, form, folder):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -43,11 +43,11 @@ class Compositor:
         self.image.image = self.file
 
     def sockets(self):
-        """The kind of each socket of the file, by name."""
+        """Returns the kind of each socket of the file, by name."""
         return {socket.name: socket.type for socket in self.image.outputs}
 
     def pixels(self, socket):
-        """What comes out of a socket: red, green, blue and alpha."""
+        """Returns what comes out of a socket: red, green, blue and alpha."""
         self.tree.links.clear()
         self.tree.links.new(socket, self.output.inputs[0])
         bpy.ops.render.render(write_still=True)
@@ -55,7 +55,7 @@ class Compositor:
         return np.stack([channels[name] for name in "RGBA"])
 
     def matte(self, layer, name):
-        """The matte of a name, as the Cryptomatte node cuts it out."""
+        """Returns the matte of a name, as the Cryptomatte node extracts it."""
         node = self.tree.nodes.new("CompositorNodeCryptomatteV2")
         node.source, node.image, node.layer_name, node.matte_id = "IMAGE", self.file, layer, name
         return self.pixels(node.outputs["Matte"])[0]
@@ -116,7 +116,7 @@ def test_the_cryptomatte_node_cuts_out_every_object(tmp_path, form):
 
 
 def test_a_crop_opens_as_an_image_of_its_pixels_alone(tmp_path):
-    """Blender knows no display window: where the crop lies in the image is lost."""
+    """Blender ignores the display window, so the position of the crop in the image is lost."""
     form = Form(layers=False, crop=True)
     image = Compositor(form, tmp_path).file
     assert tuple(image.size) == CROP[2:]

@@ -1,4 +1,4 @@
-"""The chart of speed against accuracy: what it says of curves with known answers, and a tiny one, of Abbe and smallpt.
+"""The chart of speed against accuracy: its words for curves with known answers, and a tiny chart of Abbe and smallpt.
 
     python -m pytest tools/tests/test_chart.py      # 4 seconds of one core
 """
@@ -17,7 +17,7 @@ from peers import scene as peers_scene
 
 
 def unbiased(seconds_at_one: float, times=(1, 4, 16, 64)):
-    """A curve whose error is the root of seconds_at_one over the time."""
+    """Returns a curve whose error is the square root of seconds_at_one over the time."""
     return [(seconds_at_one * t, t**-0.5) for t in times]
 
 
@@ -81,8 +81,8 @@ def test_the_noise_of_the_reference_does_not_raise_the_error():
     noisy = lambda sigma: truth + random.normal(0, sigma, truth.shape)  # noqa: E731
     reference = measure.Reference(noisy(0.03), noisy(0.03))
     _, rms = measure.error(noisy(0.2), reference)
-    assert rms == pytest.approx(0.2, rel=0.02)  # 120 000 samples: 0.3 % for one standard error
-    shared = noisy(0.03) - truth  # as of the same seeds
+    assert rms == pytest.approx(0.2, rel=0.02)  # 120 000 samples: one standard error is 0.3 %
+    shared = noisy(0.03) - truth  # as if both used equal seeds
     brighter = measure.Reference(reference.first + 0.05 + shared, noisy(0.03) + 0.05)
     difference, unseen = measure.difference(brighter, reference)
     assert difference == pytest.approx(0.05 / 1.01**0.5, rel=0.05) and unseen < 0.01
@@ -91,7 +91,7 @@ def test_the_noise_of_the_reference_does_not_raise_the_error():
 
 
 def measured_with(fails_at: dict[str, int]) -> dict:
-    """A chart of Abbe, LuxCore and Cycles, made of noise; each fails at the seed that is given."""
+    """Measures a chart of Abbe, LuxCore, Cycles and Mitsuba, made of noise; each fails at the seed given for it."""
 
     class Noise:
         def __init__(self, label: str):
@@ -187,7 +187,7 @@ def test_every_series_of_ours_is_a_scene_that_the_renderer_accepts(one, tmp_path
 
 
 def test_the_lamp_of_pov_ray_sends_what_ours_sends():
-    """Irradiance straight below a small lamp by the formulas of POV-Ray's manual: color x 2 / (1 + (d / fade)^2)."""
+    """By the formula of POV-Ray's manual, the irradiance below a small lamp is color x 2 / (1 + (d / fade)^2)."""
     text = povray.lamp_text({"center": [0, 2, 0], "u": [0.01, 0, 0], "v": [0, 0, 0.01]}, [5, 5, 5], 4)
     color = float(text.split("rgb <")[1].split(",")[0])
     fade = float(text.split("fade_distance ")[1].split()[0])

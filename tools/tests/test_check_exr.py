@@ -21,7 +21,7 @@ OPTICS = {
 
 
 def world_to_ndc(world_to_camera, center, width, rows, columns, orthographic):
-    """From a camera and its window, which is width wide, to 0 at the top left and 1 at the bottom right of the image."""
+    """Returns the matrix to 0 at the top left and 1 at the bottom right of a window that is `width` wide."""
     size = np.array([width, width * rows / columns])
     (x, y), (left, top) = (1, -1) / size, 0.5 - (1, -1) * np.asarray(center) / size
     if orthographic:
@@ -32,7 +32,7 @@ def world_to_ndc(world_to_camera, center, width, rows, columns, orthographic):
 
 
 def header(**changes):
-    """A good header with changes; None leaves an attribute out. worldToNDC follows the others."""
+    """Returns a good header with changes; None leaves an attribute out. worldToNDC follows from the others."""
     good = {
         "type": OpenEXR.scanlineimage,
         "compression": OpenEXR.ZIP_COMPRESSION,
@@ -72,7 +72,7 @@ def channels(**changes):
 
 @pytest.fixture
 def found(tmp_path):
-    """The violations of a file that is good but for the given changes."""
+    """Returns the violations of a file that is good except for the given changes."""
 
     def write_and_check(header, channels):
         path = tmp_path / "image.exr"
@@ -95,7 +95,7 @@ def test_the_table_of_chromaticities_agrees_with_openexr():
     for space, chromaticities in check_exr.CHROMATICITIES.items():
         known = OpenEXR.colorInteropIDToChromaticities(space)
         if space == "lin_ciexyzd65_scene":
-            # OpenEXR has no chromaticities for XYZ; those of the axes X, Y and Z say what the channels are.
+            # OpenEXR has no chromaticities for XYZ. Those of the axes X, Y and Z say what the channels are.
             assert known is None
         else:
             assert known == pytest.approx(chromaticities, abs=1e-7)
@@ -110,7 +110,7 @@ def stretched():
 
 
 def far_away():
-    """Turned, and far from the origin."""
+    """Returns the matrix of a camera that is rotated, and far from the origin."""
     sine, cosine = np.sin(0.3), np.cos(0.3)
     turn = np.array([(cosine, 0, sine), (0, 1, 0), (sine, 0, -cosine)])
     matrix = np.eye(4)

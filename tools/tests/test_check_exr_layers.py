@@ -14,7 +14,7 @@ from test_check_exr import HEIGHT, SHIFTED, SMALLER, WIDTH, WINDOW, found, heade
 
 
 def layered(half=False, **changes):
-    """A good image with every layer: two objects and a bit of sky, lit by two lights."""
+    """Returns a good image with every layer: two objects and a bit of sky, lit by two lights."""
     numbers = np.random.default_rng(7)
     kinds = {name: numbers.random((3, HEIGHT, WIDTH)) for name in ("emission", "background", "direct", "indirect")}
     image, share = sum(kinds.values()), numbers.random((3, HEIGHT, WIDTH))
@@ -65,7 +65,7 @@ MATTES = {"CryptoObject": ("ball", "равнина"), "CryptoMaterial": ('a "red
 
 
 def matte_attributes(**changes):
-    """The attributes of all mattes; changes are those of CryptoObject."""
+    """Returns the attributes of all mattes; `changes` are to those of CryptoObject."""
     attributes = {}
     for matte, names in MATTES.items():
         manifest = {name: f"{check_exr.matte_number(name):08x}" for name in names}
@@ -102,14 +102,14 @@ def test_layers_by_themselves_break_no_rule(found):
 
 
 def changed(name, value, where=(5, 5)):
-    """A channel of the good image with another number at one place."""
+    """Returns a channel of the good image with another number at one place."""
     values = layered()[name].copy()
     values[where] = value
     return {name: values}
 
 
 def swapped(first, second):
-    """The good image with two channels in each other's place."""
+    """Returns two channels of the good image, swapped."""
     good = layered()
     return {first: good[second], second: good[first]}
 
@@ -193,7 +193,7 @@ def test_sums_are_as_exact_as_their_numbers_are_stored(found):
     attributes = {**matte_attributes(), "render/clamped": 0}
     image = layered(half=True)
     term = image["direct.R"]
-    # One unit in the last place of one term may be the rounding of all, a hundred may not.
+    # One unit in the last place of one term may come from the rounding of all terms. A hundred may not.
     term[4, 4] = np.nextafter(term[4, 4], np.float16(9))
     assert found(header(**attributes), {**image}) == []
     for _ in range(99):
@@ -210,7 +210,7 @@ def test_sums_say_nothing_of_what_did_not_fit(found):
 
 
 def several_parts(half=False, *, changes=None, **attributes):
-    """The good image with each layer in a part of its own; `changes` are attributes of the part of a name."""
+    """Returns the good image with each layer in a part of its own; `changes` are attributes by the name of the part."""
     image = layered(half)
     attributes = {"chromaticities": None, "render/clamped": 0 if half else None, **matte_attributes(), **attributes}
     first = header(**attributes)
@@ -229,7 +229,7 @@ def several_parts(half=False, *, changes=None, **attributes):
 
 @pytest.fixture
 def found_in_parts(tmp_path):
-    """The violations of a file of several parts."""
+    """Returns the violations of a file of several parts."""
 
     def write_and_check(parts):
         path = tmp_path / "parts.exr"
@@ -250,7 +250,7 @@ def test_a_good_file_of_several_parts_breaks_no_rule(found_in_parts, half):
 
 
 def lossy_parts(compression, half):
-    """The good file of several parts, its colors under a compression that loses, its depth apart."""
+    """Returns the good file of several parts with lossy compression of its colors, and depth in a part of its own."""
     parts = several_parts(half)
     parts["depth"] = {**parts["N"][0], "name": "depth"}, {"Z": parts["image"][1].pop("Z")}
     for header, channels in parts.values():

@@ -70,7 +70,7 @@ def test_the_scene_shows_parted_bands_and_every_kind_of_material(scene, expected
 
 
 def test_no_pixel_is_ill_conditioned(scene, expected):
-    """A camera moved by 1e-12, thousands of roundings, changes no value by a hundredth of the tolerance."""
+    """Moving the camera by 1e-12, thousands of roundings, changes no value by a hundredth of the tolerance."""
     position = [coordinate + 1e-12 for coordinate in scene.camera["position"]]
     moved = classic.trace(scene._replace(camera={**scene.camera, "position": position}))
     assert classic.error(moved, expected).max() < 0.01

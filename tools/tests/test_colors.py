@@ -1,4 +1,4 @@
-"""Patches look as colour-science says under every illuminant, seen straight and in colored mirrors; white is white.
+"""Patches look as colour-science says under every illuminant, directly and in colored mirrors; white is white.
 
 pytest tools/tests/test_colors.py
 """
@@ -15,7 +15,7 @@ D65 = np.array([0.3127, 0.3290, 1 - 0.3127 - 0.3290]) / 0.3290
 
 
 def test_the_reference_gives_the_published_chromaticities_of_smooth_lights():
-    # CIE 15:2004, table T.3, four decimals.
+    # CIE 15:2004, table T.3, to four decimals.
     published = {"A": (0.4476, 0.4074), "C": (0.3101, 0.3162), "D65": (0.3127, 0.3290), "D50": (0.3457, 0.3585)}
     for name, xy in published.items():
         xyz = colors.illuminant(name).xyz()
@@ -24,7 +24,7 @@ def test_the_reference_gives_the_published_chromaticities_of_smooth_lights():
 
 
 def test_the_reference_gives_the_patches_about_the_colors_of_the_first_chart():
-    # McCamy, Marcus and Davidson (1976), x, y and Y under C; Ohta measured another copy of the chart.
+    # McCamy, Marcus and Davidson (1976), x, y and Y under C. Ohta measured another copy of the chart.
     published = colors.colour.CCS_COLOURCHECKERS["ColorChecker 1976"].data
     light = colors.illuminant("C")
     for patch in colors.PATCHES:

@@ -1,4 +1,4 @@
-"""All tools have a help, and do nothing else when they are asked for it.
+"""All tools have a help, and do nothing else when asked for it.
 
 pytest tools/tests/test_commands.py
 """
@@ -9,7 +9,7 @@ import sys
 import pytest
 import render
 
-MODULES = {"render.py"}  # what the others share; no command
+MODULES = {"render.py"}  # shared by the others; not a command
 COMMANDS = sorted(path.name for path in (render.ROOT / "tools").glob("*.py") if path.name not in MODULES)
 
 

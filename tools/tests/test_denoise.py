@@ -1,4 +1,4 @@
-"""The denoiser adds a layer that is nearer to the truth than the image, and leaves all else in the file as it was.
+"""The denoiser adds a layer that is closer to the truth than the image, and leaves the rest of the file as it was.
 
 pytest tools/tests/test_denoise.py
 """
@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import render
 
-# A ball and a glass ball on a floor of two colors, under a small lamp and a dim sky.
+# A red ball and a glass ball on a floor, under a small lamp and a dim sky.
 SCENE = """
 camera = {{ position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }}
 film = {{ width = 128, height = 96, first = "visible"{film} }}
@@ -51,7 +51,7 @@ def noisy(path, film="", **flags):
 
 
 def said(capsys, *arguments):
-    """What the tool says as it gives up, without writing anything."""
+    """Returns the tool's message as it gives up without printing anything else."""
     with pytest.raises(SystemExit) as given_up:
         denoise.main([str(each) for each in arguments])
     assert capsys.readouterr() == ("", "")
@@ -120,7 +120,7 @@ def test_all_else_in_the_file_stays_as_it_was(tmp_path, film):
         assert np.isfinite(after.channels[name]).all()
     assert [header.get("name") for header, _ in after.parts[len(before.parts) :]] == ["denoised"] * ("multipart" in film)
     assert set(check_exr.violations(out)) <= {"layer 'denoised': not one that Abbe writes"}
-    # A second time the layer is replaced, in the file itself.
+    # A second run replaces the layer, in the file itself.
     once = out.read_bytes()
     assert denoise.main([str(out)]) == 0
     assert out.read_bytes() == once

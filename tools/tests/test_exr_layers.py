@@ -1,8 +1,9 @@
-"""Files of layers hold the same numbers in every form: whole, cropped or with overscan, in one part or several, in 16 or 32 bits, packed or not.
+"""Files of layers hold the same numbers in every form.
 
     pytest tools/tests/test_exr_layers.py
 
-Two readers tell what they hold, OpenEXR and OpenImageIO; points, plates and holdouts tell whether a compositor can use it.
+The forms are whole, cropped or with overscan, in one part or several, in 16 or 32 bits, compressed or not. Two readers
+show what the files hold, OpenEXR and OpenImageIO. Points, plates and holdouts show whether a compositor can use them.
 """
 
 import itertools
@@ -15,7 +16,8 @@ import pytest
 import render
 from layered_scene import COMPRESSIONS, CROP, HEIGHT, LAYERS, OVERSCAN, WIDTH, Form, read, rendered
 
-# Each precision with each compression in one part and in several, whole; crops, overscan and plain files of each precision.
+# Each precision with each compression in one part and in several, whole; crops, overscan and plain files of each
+# precision.
 FORMS = [
     *(Form(True, *each) for each in itertools.product(("float", "half"), COMPRESSIONS, (False, True))),
     Form(precision="float", compression="zips", crop=True),
@@ -27,13 +29,13 @@ FORMS = [
     Form(precision="float", multipart=True, crop=True, overscan=True),
     *(Form(False, precision, crop=crop) for precision in ("float", "half") for crop in (False, True)),
 ]
-# Colors under DWA have 16 bits.
+# DWA stores colors in 16 bits.
 LOSSY = [("pxr24", "float"), *((compression, "half") for compression in check_exr.LOSSY.values())]
 every_form = pytest.mark.parametrize("form", FORMS, ids=str)
 
 
 def window(form):
-    """First and last column and row of the pixels that a form holds."""
+    """Returns the first and the last column and row of the pixels in a form."""
     if form.crop:
         left, top, width, height = CROP
         return (left, top), (left + width - 1, top + height - 1)
@@ -42,7 +44,7 @@ def window(form):
 
 
 def expected(form, name):
-    """A channel of a form where it shows the format: that of the plainest file, cropped and rounded."""
+    """Returns a channel of a form inside the format: that of the plainest file, cropped and rounded."""
     (left, top), (right, bottom) = window(form)
     values = read(Form())[1][name][max(top, 0) : bottom + 1, max(left, 0) : right + 1]
     return values.astype(np.float16 if form.bits()[name] == 16 else np.float32)
@@ -101,7 +103,7 @@ def test_openimageio_reads_the_same_names_types_windows_and_pixels(form):
 
 
 def numbered(name):
-    """A compression as OpenEXR numbers it."""
+    """Returns the number of a compression in OpenEXR."""
     return next(number for number, known in (check_exr.LOSSLESS | check_exr.LOSSY).items() if known == name)
 
 
@@ -118,7 +120,7 @@ def test_a_compression_that_loses_changes_colors_alone(compression, precision):
         if not re.fullmatch(check_exr.LIGHT, name) or pixels.dtype == np.float16 and compression == "pxr24":
             assert pixels.tobytes() == exact.tobytes(), name
         elif compression == "pxr24":
-            # 15 bits of a mantissa are left, rounded.
+            # PXR24 keeps 15 bits of the mantissa, rounded.
             assert (np.abs(pixels - exact) <= 2**-16 * np.abs(exact)).all(), name
         elif name == "A":
             assert pixels.tobytes() == exact.tobytes()
@@ -136,7 +138,7 @@ def test_dwa_loses_what_the_encoder_of_openexr_loses(compression, tmp_path):
     for name in "RGB":
         true, own, other = (each[name].astype(np.float64) for each in (exact, read(form).channels, its))
         error = np.sqrt(((own - true) ** 2).mean())
-        # Both round the same cosines; a few that lie in the middle between two steps go the other way.
+        # Both round equal cosines, but a few that lie midway between two steps go different ways.
         assert 0 < error < 0.02 * np.sqrt((true**2).mean())
         assert np.sqrt(((own - other) ** 2).mean()) < 0.1 * error
 
@@ -169,7 +171,8 @@ def test_a_filter_that_subtracts_keeps_every_rule(form):
 
 def test_every_layer_holds_something():
     for layer in LAYERS:
-        # Four samples of a pixel meet no more than four objects, here two. Nothing is behind one surface alone.
+        # Four samples of a pixel hit at most four objects, here two. Light through one surface alone finds nothing
+        # behind it.
         if not layer.endswith(("01", "02")) and layer != "transmission_direct":
             assert read(Form()).layer(layer).any(), layer
 
@@ -196,7 +199,7 @@ def test_layers_of_the_command_line_are_those_of_the_scene(tmp_path):
         assert pixels.tobytes() == read(Form()).channels[name].tobytes(), name
 
 
-# Three small balls that shine, red, green and blue, and nothing else.
+# Three small light-emitting balls, red, green and blue, and nothing else.
 BALLS = {"R": (-0.8, 0.5, 0.3), "G": (0.9, 0.65, -1.2), "B": (0.4, -0.6, 0.8)}
 SPARKS = """
 camera = {{ position = [0.4, 0.7, 5], look_at = [0.1, 0.1, 0], up = [0.1, 1, 0], {camera} }}
@@ -246,7 +249,7 @@ def test_world_to_ndc_takes_what_is_met_to_its_pixel(camera):
     places = seen[:, :2] / seen[:, 3:] * (WIDTH, HEIGHT) - np.stack([columns, rows], axis=-1)
     assert met.sum() > 1000
     assert (places > -1e-3).all() and (places < 1 + 1e-3).all()
-    # The same matrix leads back, and Z is the depth along the view.
+    # The matrix can be inverted, and Z is the depth along the view.
     back = seen @ np.linalg.inv(np.asarray(header["worldToNDC"], np.float64))
     assert np.abs(back[:, :3] / back[:, 3:] - points[:, :3]).max() < 1e-4
     depth = points @ np.asarray(header["worldToCamera"], np.float64)[:, 2]
@@ -259,7 +262,7 @@ def test_a_view_all_around_has_no_world_to_ndc():
     assert "worldToNDC" not in header and "worldToCamera" in header
 
 
-# A ball that the sky lights, and a cube before it.
+# A ball lit by the sky, and a cube in front of it.
 PLATE = 0.3
 OBJECTS = f"""
 camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }}
@@ -280,24 +283,24 @@ material = "clay"
 
 
 def image(text):
-    """Red, green, blue and coverage of a scene, in 64 bits."""
+    """Returns red, green, blue and coverage of a scene, in 64 bits."""
     channels = render.render(text).channels
     return np.stack([channels[name] for name in "RGBA"], axis=-1).astype(np.float64)
 
 
 def without(text, key, of):
-    """The scene with a key at the object or light that a line begins."""
+    """Returns the scene with a key added to the object or light that begins with the line `of`."""
     return text.replace(of, f"{key}\n{of}")
 
 
 @pytest.fixture(scope="module")
 def cut_out():
-    """The objects before a sky that only lights them."""
+    """Renders the objects in front of a sky that only lights them."""
     return image(without(OBJECTS, "visible_to_camera = false", "environment.radiance"))
 
 
 def over(a, b):
-    """Porter & Duff 1984, of premultiplied colors."""
+    """Composites premultiplied colors (Porter & Duff 1984)."""
     return a + (1 - a[..., 3:]) * b
 
 
@@ -311,7 +314,7 @@ def test_objects_over_a_plate_of_the_sky_are_the_image_of_both(cut_out):
     both = image(OBJECTS)
     plate = np.broadcast_to([PLATE, PLATE, PLATE, 1.0], both.shape)
     assert over(cut_out, plate)[..., :3] == pytest.approx(both[..., :3], rel=1e-6, abs=1e-7)
-    # Over nothing, objects are themselves; over themselves, opaque ones change nothing.
+    # Over nothing, objects are unchanged; opaque objects over themselves change nothing.
     assert np.array_equal(over(cut_out, np.zeros_like(both)), cut_out)
     opaque = cut_out[..., 3] == 1
     assert np.array_equal(over(cut_out, plate)[opaque], cut_out[opaque])

@@ -1,9 +1,9 @@
-"""Other readers see the files as they are meant: OpenColorIO knows every color space by its name, ffmpeg reads every pixel.
+"""Other readers understand the files: OpenColorIO knows each color space by name, ffmpeg reads every pixel.
 
     python -m pip install imageio-ffmpeg                     # or a system's own ffmpeg; nothing else here needs it
     pytest tools/tests/test_exr_readers.py
 
-Where one of them is not installed, its tests are skipped.
+If one of them is not installed, its tests are skipped.
 """
 
 import itertools
@@ -17,7 +17,7 @@ import render
 from layered_scene import CROP, HEIGHT, WIDTH, Form, read, rendered
 
 SPACES = tuple(check_exr.CHROMATICITIES)
-# A lamp of a color that all of these spaces hold, in numbers: red, green and blue of Rec.709, under the film's own white.
+# A sky of a color inside all of these gamuts: red, green and blue of Rec.709, under the film's own white.
 LAMP = """
 camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }}
 film = {{ width = 8, height = 4, color_space = "{space}" }}
@@ -28,7 +28,7 @@ environment.radiance = {{ rgb = [0.2, 0.5, 0.8] }}
 
 
 def ffmpeg():
-    """The program, of the system or of the package imageio-ffmpeg."""
+    """Returns the program, from the system or from the package imageio-ffmpeg."""
     if found := shutil.which("ffmpeg"):
         return found
     return pytest.importorskip("imageio_ffmpeg", reason="ffmpeg is not installed").get_ffmpeg_exe()
@@ -42,7 +42,7 @@ def config():
 
 @pytest.fixture(scope="module")
 def lamps(tmp_path_factory):
-    """The lamp in every color space: the name of the space in the file, and red, green and blue."""
+    """Returns the name in the file of every color space, and red, green and blue of the lamp in it."""
     folder = tmp_path_factory.mktemp("lamps")
     found = {}
     for space in SPACES:
@@ -58,7 +58,7 @@ def test_opencolorio_takes_the_colors_of_a_space_to_those_of_another(config, lam
     spaces = [config.findColorSpaceForID(each) for each in (name, other_name)]
     assert all(spaces)
     convert = config.getProcessor(*(each.getName() for each in spaces)).getDefaultCPUProcessor()
-    # Matrices of a configuration are rounded to some six digits.
+    # The matrices of a configuration are rounded to some six digits.
     assert convert.applyRGB(rgb.tolist()) == pytest.approx(expected, rel=1e-5)
 
 
@@ -70,7 +70,7 @@ def test_ffmpeg_reads_the_pixels_of_openexr(form):
     planes = np.frombuffer(run.stdout, "<f2" if half else "<f4").reshape(4, HEIGHT, WIDTH)
     left, top, width, height = CROP if form.crop else (0, 0, WIDTH, HEIGHT)
     for plane, name in zip(planes, "GBRA", strict=True):
-        # It fills the display window: what is beyond a crop is 0.
+        # ffmpeg fills the display window: pixels outside a crop are 0.
         whole = np.zeros_like(plane)
         whole[top : top + height, left : left + width] = read(form).channels[name]
         assert np.array_equal(plane, whole), name

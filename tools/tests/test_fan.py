@@ -1,10 +1,11 @@
-"""A thin white beam through a prism lands on a screen as a continuous rainbow, as Snell, Fresnel and the light make it.
+"""A thin white beam through a prism lands on a screen as a continuous rainbow, as Snell, Fresnel and the light predict.
 
     pytest tools/tests/test_fan.py -s     # prints the largest difference and the standard error
 
-The spectrum is computed without the renderer: rays all over the beam, half a nanometer apart, refracted by Snell's law with
-Schott's Sellmeier coefficients of N-SF11, reflected inside as often as it may be, dimmed by Fresnel's equations at every face, and
-counted in the pixels that they land in. Light is unpolarized at every face, as the scene asks for.
+The spectrum is computed without the renderer. Rays from all over the beam, half a nanometer apart, are refracted by
+Snell's law with Schott's Sellmeier coefficients of N-SF11, reflected inside the prism any number of times, attenuated
+by Fresnel's equations at every face, and counted in the pixels where they land. Light is unpolarized at every face, as
+the scene asks for.
 """
 
 import math
@@ -17,10 +18,10 @@ from validation.scenes import toml_file
 
 POINTS, ROWS, SEEDS, SAMPLES = 81, 5, 4, 200
 HALF_APEX, EDGE = math.radians(30), 0.5
-# The beam: 0.01 wide where it meets the prism. The screen stands a few times the prism's size behind it.
+# The beam is 0.01 wide where it meets the prism. The screen is a few times the prism's size behind it.
 BEAM, DISTANCE, SCREEN = 0.01, 4.0, 3.0
 ENDS = (400.0, 700.0)
-# The apex is the origin, the faces are symmetric about -y, everything in the middle of z = 0.
+# The apex is the origin, the faces are symmetric about -y, and everything is centered in z = 0.
 LEFT = np.array([-math.cos(HALF_APEX), math.sin(HALF_APEX), 0])
 RIGHT = LEFT * [-1, 1, 1]
 FACES = np.array([LEFT, RIGHT, [0, -1, 0]])
@@ -29,7 +30,7 @@ ENTRY = 0.5 * EDGE * np.array([-math.sin(HALF_APEX), -math.cos(HALF_APEX), 0])
 
 
 def flint(nm):
-    """The index of N-SF11 (SCHOTT, optical glass data sheets)."""
+    """Returns the index of N-SF11 (SCHOTT, optical glass data sheets)."""
     squared = (np.asarray(nm) / 1000) ** 2
     terms = ((1.73759695, 0.013188707), (0.313747346, 0.0623068142), (1.89878101, 155.23629))
     return np.sqrt(1 + sum(b * squared / (squared - c) for b, c in terms))
@@ -40,8 +41,10 @@ def dot(a, b):
 
 
 def refract(way, normal, eta):
-    """Snell's law with vectors, `eta` the index before over that behind, `normal` toward where the light comes from; the new
-    way, and what unpolarized light keeps by Fresnel's equations: nothing where it is reflected totally."""
+    """Returns the refracted direction by Snell's law, and the Fresnel transmittance of unpolarized light.
+
+    `eta` is the index in front over the one behind; `normal` points to where the light comes from. Total reflection
+    transmits 0."""
     cos_i = -dot(way, normal)
     squared = 1 - eta**2 * (1 - cos_i**2)
     cos_t = np.sqrt(np.maximum(squared, 0))
@@ -51,8 +54,9 @@ def refract(way, normal, eta):
 
 
 def exits(origin, way, index, surfaces=8):
-    """All ways out of the prism for light that enters by the left face: from where, in which direction, and how much of it,
-    after 0, 1, 2 ... reflections inside."""
+    """Yields origin, direction and share of the light that leaves the prism after 0, 1, 2 ... reflections inside.
+
+    The light enters through the left face."""
     origin = origin - way * dot(origin, LEFT) / dot(way, LEFT)
     way, share = refract(way, LEFT, 1 / index)
     for _ in range(surfaces):
@@ -70,7 +74,7 @@ def unit(vector):
 
 
 class Bench:
-    """The beam at the least deviation of green, and the screen that it meets head-on."""
+    """The beam at minimum deviation of green, and a screen that it meets head-on."""
 
     def __init__(self):
         angle = math.atan2(LEFT[1], LEFT[0]) + math.asin(flint(550.0) * math.sin(HALF_APEX))
@@ -85,7 +89,7 @@ class Bench:
         self.foot = self.foot + self.across * (ends[0] + ends[1]) / 2
 
     def landings(self, ways, nm, surfaces=8):
-        """Places on the screen, along the fan and beside it, and what arrives there, for each way out of the prism."""
+        """Yields places on the screen, along the fan and across it, and what arrives there, for each exit."""
         for leaving, out, share in exits(self.lamp, ways, flint(nm), surfaces):
             toward = dot(out, self.facing)
             ahead = toward[:, 0] > 0.1
@@ -93,7 +97,7 @@ class Bench:
             yield np.stack([landed @ self.across, landed[:, 2]], axis=-1), np.where(ahead, share, 0)
 
     def cone(self):
-        """Half the angle of the beam."""
+        """Returns half the angle of the beam."""
         return math.atan(0.5 * BEAM / DISTANCE)
 
     def scene(self):
@@ -128,8 +132,8 @@ class Bench:
         )
 
     def expected(self, step=0.5, rings=32, surfaces=8):
-        """XYZ of every pixel column, mean over its rows; of light that meets so many surfaces inside."""
-        # Rays that stand for equal solid angles of the beam: rings of equal areas, turned by the golden angle.
+        """Returns XYZ of every column, as the mean over its rows, for light that meets up to `surfaces` faces."""
+        # Rays that stand for equal solid angles of the beam: rings of equal area, rotated by the golden angle.
         count = rings * rings
         radius = np.sqrt((np.arange(count) + 0.5) / count) * math.tan(self.cone())
         turn = np.arange(count) * math.pi * (3 - math.sqrt(5))
@@ -147,32 +151,32 @@ class Bench:
                 inside = (column >= 0) & (column < POINTS) & (np.abs(landed[:, 1]) < ROWS * self.pixel / 2)
                 flux = np.bincount(column[inside], weights=share[inside], minlength=POINTS) * power * solid_angle
                 xyz += flux[:, None] * sensitivity
-        # Radiance of a white screen: irradiance over pi.
+        # The radiance of a white screen is irradiance over pi.
         return xyz / (math.pi * ROWS * self.pixel**2)
 
 
 def red_first(image):
-    """Seen along the light, the fan may lead to either side."""
+    """Orders the columns from red to blue: seen along the light, the fan may lead to either side."""
     blue = image[:, 2]
     return image[::-1] if blue[: POINTS // 2].sum() > blue[POINTS // 2 :].sum() else image
 
 
 @cache
 def measured():
-    """XYZ of every column as expected, and as found under several seeds."""
+    """Returns XYZ of every column as expected, and as rendered with several seeds."""
     bench = Bench()
     images = [render.render(bench.scene(), samples=SAMPLES, seed=seed).rgb.mean(axis=0) for seed in range(SEEDS)]
     return red_first(bench.expected()), np.array([red_first(image) for image in images])
 
 
 def difference(expected, found):
-    """dE2000 where D65 as bright as the brightest place of the fan is white."""
+    """Returns dE2000, with D65 as bright as the brightest place of the fan as white."""
     white = illuminant("D65").xyz() * measured()[0][:, 1].max()
     return colour.delta_E(lab(expected, white), lab(found, white), method="CIE 2000")
 
 
 def equally_bright(colors):
-    """The same chromaticities, all half as bright as the brightest place: L* = 76."""
+    """Returns colors of the same chromaticities, each half as bright as the brightest place: L* = 76."""
     return colors * (0.5 * measured()[0][:, 1].max() / colors[:, 1:2])
 
 
@@ -196,15 +200,17 @@ def test_the_fan_has_no_band_and_no_gap():
     print(f"from place to place: {steps[0].max():.2f} dE2000 at most; off by {np.abs(steps[0] - steps[1]).max():.3f}")
     assert np.abs(steps[0] - steps[1]).max() < 0.5
     assert np.all(found[:, 1] > 0.9 * expected[:, 1])
-    # From red to violet the hue turns one way around the white of D65.
+    # From red to violet, the hue turns in one direction around the white of D65.
     x, y = (colors / found.sum(axis=1) for colors in found.T[:2])
     turns = np.diff(np.unwrap(np.arctan2(y - 0.329, x - 0.3127)))
     assert turns.min() > -0.005, f"the hue turns back by {turns.min()}"
 
 
 def test_light_of_three_reflections_inside_the_prism_is_a_part_of_the_fan():
-    """Closed paths in an equilateral prism: without them the expectation is off by several dE2000 at some places, so that the
-    tests above would tell if they were left out."""
+    """These are closed paths in an equilateral prism.
+
+    Without them the expectation is off by several dE2000 at some places, so the other tests would notice if they were
+    left out."""
     expected = measured()[0]
     straight = red_first(Bench().expected(surfaces=1))
     assert difference(straight, expected).max() > 3

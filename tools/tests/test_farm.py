@@ -1,4 +1,4 @@
-"""Open Job Description runs an image in parts, and a model says how many make sense: tools/farm.
+"""Open Job Description renders an image in parts, and a model says how many make sense: tools/farm.
 
 pytest tools/tests/test_farm.py
 """
@@ -46,7 +46,7 @@ def folder(tmp_path):
 
 
 def whole(folder, **flags):
-    """The bytes of the image that one render makes."""
+    """Returns the bytes of the image from a single render."""
     render.write(folder / "s.toml", folder / "whole.exr", **flags)
     return (folder / "whole.exr").read_bytes()
 
@@ -58,7 +58,7 @@ def command(folder, **parameters):
 
 
 def run(folder, code=0, **parameters):
-    """All that `openjd run` says."""
+    """Returns the output of `openjd run`."""
     done = subprocess.run(command(folder, **parameters), capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == code, done.stdout + done.stderr
     return done.stdout
@@ -107,14 +107,14 @@ def test_a_part_that_fails_stops_the_job_and_those_that_are_there_are_not_made_a
 def test_a_canceled_task_keeps_what_is_done_and_goes_on_from_there(folder):
     expected = whole(folder, samples=1000)
     started = subprocess.Popen(command(folder, Shards=2, Samples=1000, Threads=1), stdout=subprocess.PIPE, text=True)
-    # Nothing is told of a task that hangs.
+    # Ends a task that hangs, which would report nothing.
     timer = threading.Timer(300, started.kill)
     timer.start()
     said = ""
     for line in started.stdout:
         said += line
-        # The second is a second after the first. A busy machine may still be in its first photons: they are finished,
-        # so that something is kept.
+        # The second report comes a second after the first. A busy machine may still be tracing its first photons. It
+        # finishes them, so that something is kept.
         if said.count("\topenjd_progress: ") == 2:
             started.send_signal(signal.SIGINT)
             break
@@ -128,7 +128,7 @@ def test_a_canceled_task_keeps_what_is_done_and_goes_on_from_there(folder):
     assert (folder / "out/frame.exr").read_bytes() == expected
 
 
-# Ten seconds that every part repeats, a thousand of tiles.
+# Ten seconds that every part repeats, and a thousand of tiles.
 WORK = Work(start=1, load=2, plan=3, photons=4, tiles=1000, merge=5, merge_part=0.1, count=400)
 
 

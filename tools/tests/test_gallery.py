@@ -1,4 +1,4 @@
-"""The gallery shows every scene, and what its scripts make is what the repository holds.
+"""The gallery shows every scene, and its scripts make the files that the repository holds.
 
     pytest tools/tests/test_gallery.py
 """
@@ -15,7 +15,7 @@ from gallery import shapes
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """A copy of scenes/ in which everything has been made anew."""
+    """Returns a copy of scenes/ in which everything has been made anew."""
     kept, copy = gallery.SCENES, tmp_path_factory.mktemp("gallery")
     (copy / "large").mkdir()
     (copy / "large/instances.toml").write_bytes((kept / "large/instances.toml").read_bytes())
@@ -50,7 +50,8 @@ def test_every_scene_reaches_an_error_of_a_hundredth_within_three_minutes_at_640
 def test_the_noise_of_two_renders_is_their_variance_over_the_square_of_what_they_show():
     random = np.random.default_rng(1)
     first, second = (3 + random.normal(0, 0.2, (200, 200, 3)) for _ in range(2))
-    # The mean of 120 000 squares is uncertain by sqrt(2 / 120 000) = 0.4 %; that the mean is noisy too (0.02 / 9) adds 3 x 0.02 / 9 = 0.7 %.
+    # The mean of 120 000 squares is uncertain by sqrt(2 / 120 000) = 0.4 %; the noise of the mean (0.02 / 9) adds 3 x
+    # 0.02 / 9 = 0.7 %.
     assert gallery.noise(first, second) == pytest.approx(0.04 / 9.01, rel=0.03)
 
 

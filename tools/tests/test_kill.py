@@ -1,4 +1,4 @@
-"""Renders that are killed at any moment, or run out of disk: every file that is there is whole, and nothing is lost.
+"""Renders that are killed at any moment, or run out of disk space: every file on disk is complete, and nothing is lost.
 
     KILLS=50 python -m pytest tools/tests/test_kill.py        # 10 by default
 """
@@ -103,7 +103,7 @@ def test_a_full_disk_loses_no_old_image_and_is_told(folder):
 
 @pytest.fixture
 def unwritable(folder, request):
-    """A name in the folder under which nothing can be written, and what is said of it."""
+    """Makes a name in the folder under which nothing can be written, and yields the message about it."""
     place = folder / "place"
     if request.param == "file":
         place.write_text("no folder", "utf-8")

@@ -1,6 +1,6 @@
-"""What the compiler makes of code whose speed rests on how it is compiled.
+"""The machine code of functions whose speed depends on how they are compiled.
 
-The tests' build is optimized less than a release: what it does not fill in advance, a release does not either.
+The tests' build is optimized less than a release: memory that it does not fill in advance, a release does not either.
 """
 
 import os
@@ -17,7 +17,7 @@ LENGTH = re.compile(r"mov\s+\$(0x[0-9a-f]+),%edx$")
 
 
 def fills(listing):
-    """Name of the function and number of bytes of every memset of constant length."""
+    """Yields function name and number of bytes of every memset of constant length."""
     name, length = "", None
     for line in listing:
         if found := FUNCTION.match(line):
@@ -31,8 +31,10 @@ def fills(listing):
 
 
 def walks_that_fill(listing):
-    """Functions of the library that fill a walk's stack. Not those that run decoders of other makers: the one of JPEG
-    has a list of the same length for the pieces of a color profile, and may be compiled into its callers."""
+    """Returns functions of the library that fill the stack of a walk in advance.
+
+    Excludes functions that run third-party decoders. The JPEG decoder has a list of equal length for the pieces of a
+    color profile, and may be inlined into its callers."""
     decoders = ("scene::decode", "film::guard")
     own = lambda name: "abbe" in name and not any(decoder in name for decoder in decoders)
     return [name for name, length in fills(listing) if length in STACKS and own(name)]

@@ -1,4 +1,4 @@
-"""Holds what tools/peers/scene.py makes of Abbe's scenes for other renderers against the scenes themselves."""
+"""Compares the scenes that tools/peers/scene.py makes for other renderers with the scenes themselves."""
 
 from collections import Counter
 

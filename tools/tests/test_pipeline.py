@@ -1,4 +1,4 @@
-"""A program drives the renderer and reads nothing but its JSON.
+"""A program drives the renderer and reads only its JSON.
 
     pytest tools/tests/test_pipeline.py
 """
@@ -20,7 +20,7 @@ SMALL = ("--set", "film.width=24", "--set", "film.height=16", "--samples", "2")
 
 
 def events(*arguments, code=0):
-    """What the command says with --json, each line held by the schema."""
+    """Returns the events that the command prints with --json, after checking each line against the schema."""
     command = [str(render.binary()), "--json", *map(str, arguments)]
     run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert (run.returncode, run.stderr) == (code, "")
@@ -121,7 +121,7 @@ def test_a_turntable_of_eight_frames_is_driven_by_twenty_lines(tmp_path):
     names = [f"turntable.{frame:04}.exr" for frame in range(1, 9)]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     frames = [render.read(tmp_path / name) for name in names]
-    # Noise is the same in each frame: what differs is what has turned.
+    # Noise is the same in each frame, so frames differ only by the rotation.
     for frame, other in zip(frames, frames[1:] + frames[:1], strict=True):
         assert np.mean(np.abs(frame.channels["Z"] - other.channels["Z"]) > 0.01) > 0.05
     assert all(f"written {tmp_path / name}" in run.stdout for name in names)
@@ -152,7 +152,7 @@ def test_on_a_terminal_a_render_says_what_matters_of_its_plan_and_elsewhere_all(
     with subprocess.Popen(command, stderr=theirs) as run:
         os.close(theirs)
         said = b""
-        # A terminal that is closed is no file any more.
+        # Reading from a terminal that has been closed raises an error.
         with contextlib.suppress(OSError):
             while more := os.read(ours, 4096):
                 said += more

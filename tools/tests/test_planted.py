@@ -1,4 +1,4 @@
-"""The planted bugs still fit the source, so that tools/planted.py can show that each is found.
+"""The planted bugs still fit the source, so that tools/planted.py can show that each is detected.
 
 pytest tools/tests/test_planted.py
 """

@@ -1,4 +1,4 @@
-"""The renderer from Python: the bits of the command, by arrays that are not copied.
+"""The renderer from Python: the same bits as the command, in arrays that are not copied.
 
 pytest tools/tests/test_python.py
 """
@@ -23,7 +23,7 @@ abbe = pytest.importorskip("abbe", reason="the package is not installed: python3
 
 TURNTABLE = render.ROOT / "examples/turntable.toml"
 SMALL = {"film.width": 24, "film.height": 16}
-# A sphere in front of a lamp: noise, layers, spectra.
+# A sphere in front of a lamp: it has noise, layers and spectra.
 SCENE = {
     "camera": {"position": (0, 0, 5), "look_at": np.zeros(3), "vertical_fov": np.float32(40)},
     "film": {"width": 20, "height": np.int64(12)},
@@ -39,7 +39,7 @@ def with_(**sections):
 
 
 def same(a, b):
-    """Whether two files have the same channels, bit by bit; answers how many that are."""
+    """Asserts that two files have the same channels, bit by bit, and returns the number of channels."""
     a, b = render.read(a), render.read(b)
     assert a.channels.keys() == b.channels.keys()
     for name, pixels in a.channels.items():
@@ -47,7 +47,7 @@ def same(a, b):
     return len(a.channels)
 
 
-# Random paths, dispersion with photons, wavelengths that interfere.
+# Random paths, dispersion with photons, and interference.
 @pytest.mark.parametrize("name", ["cornell", "prism", "coatings"])
 def test_a_file_has_the_bits_of_the_command(name, tmp_path):
     scene = render.SCENES / f"{name}.toml"
@@ -61,7 +61,7 @@ def test_a_file_has_the_bits_of_the_command(name, tmp_path):
     assert same(by_command, by_python) > 60
 
 
-# Those that are planned within seconds.
+# The scenes that are planned within seconds.
 QUICK = sorted(path for path in render.SCENES.glob("*.toml") if path.stem not in ("bubble", "rainbow", "water"))
 
 
@@ -128,7 +128,7 @@ def test_spectra_are_those_of_the_file(tmp_path):
     with pytest.raises(ValueError, match="spectral=True"):
         abbe.render(SCENE).spectrum(0, 0)
     assert image.stokes_spectra is None and abbe.render(SCENE, layers=["S1", "S2", "S3"]).stokes_spectra is None
-    # A single band is one still.
+    # A single band keeps its axis.
     image = abbe.render(with_(film={**SCENE["film"], "spectral": {"from": 550, "to": 550, "step": 10}}))
     assert image.spectra.radiance.shape == (12, 20, 1) and image.spectrum(3, 3).radiance.shape == (1,)
 
@@ -240,7 +240,7 @@ def test_a_render_that_stopped_goes_on_to_the_same_bits(tmp_path):
     image = abbe.render(scene, samples=1024, checkpoint=kept, resume=True, progress=told.append)
     assert told[-1].share == 1
     assert np.array_equal(image.rgb, abbe.render(scene, samples=1024).rgb)
-    # All samples are there: nothing is rendered any more.
+    # All samples are already there, so nothing is rendered.
     assert np.array_equal(abbe.render(scene, samples=1024, checkpoint=kept, resume=True).rgb, image.rgb)
     with pytest.raises(abbe.OptionsError, match="1024 samples per pixel, more than that"):
         abbe.render(scene, samples=16, checkpoint=kept, resume=True)
@@ -256,7 +256,7 @@ def test_a_finished_image_outlives_its_last_checkpoint(tmp_path):
 
     def remove(so_far):
         shutil.rmtree(folder, ignore_errors=True)
-        # In its place, so that it is not made again.
+        # A file in place of the folder, so that it is not created again.
         folder.touch()
 
     kept = folder / "a.checkpoint"
@@ -305,7 +305,7 @@ print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing forks here")
 def test_a_forked_process_renders_and_writes_as_well(tmp_path):
-    # A file of several blocks, which threads pack together.
+    # A file of several blocks, which are compressed on several threads.
     scene = tomllib.loads(TURNTABLE.read_text("utf-8")) | {"film": {"width": 400, "height": 300}, "render": {"samples": 1}}
     ask = [sys.executable, "-c", FORKED, json.dumps(scene)]
     run = subprocess.run(ask, capture_output=True, text=True, timeout=60, cwd=tmp_path)
@@ -684,7 +684,7 @@ def test_dates_are_told_of_as_in_a_file():
 
 
 def ball(rings=24):
-    """Points and faces of a ball of triangles."""
+    """Returns points and faces of a triangulated ball."""
     around, up = np.meshgrid(np.linspace(0, 2 * np.pi, rings, endpoint=False), np.linspace(0, np.pi, rings)[1:-1])
     points = np.stack([np.sin(up) * np.cos(around), np.cos(up), np.sin(up) * np.sin(around)], axis=-1).reshape(-1, 3)
     row, column = map(np.ravel, np.mgrid[: rings - 3, :rings])

@@ -1,4 +1,4 @@
-"""What is wrong with scenes that are dicts: an exception with the key of each mistake and what to do, never a panic.
+"""Mistakes in scenes that are dicts: an exception with the key of each mistake and what to do, never a panic.
 
 pytest tools/tests/test_python_errors.py
 ABBE_FUZZ_CASES=100000 pytest tools/tests/test_python_errors.py -k distorted
@@ -22,12 +22,12 @@ abbe = pytest.importorskip("abbe", reason="the package is not installed: python3
 
 MESSAGES = render.ROOT / "tests/messages"
 BASE = (MESSAGES / "base.toml").read_text("utf-8").splitlines()
-# Most mistakes that the command shows of a scene.
+# The largest number of mistakes that the command prints about a scene.
 MOST_SHOWN = 20
 
 
 class Case:
-    """A case of tests/messages, as tests/messages.rs reads it."""
+    """A case of tests/messages, parsed as in tests/messages.rs."""
 
     def __init__(self, text):
         self.title, rest = text.split("\n", 1)
@@ -55,7 +55,7 @@ class Case:
             (folder / name).write_text(text, "utf-8")
 
     def set(self):
-        """The settings as Python writes them: what is not TOML is a text."""
+        """Returns the settings as written in Python: values that are not TOML are texts."""
         given = {}
         for setting in self.settings:
             key, equals, value = setting.partition("=")
@@ -70,7 +70,7 @@ class Case:
         return given
 
     def told(self):
-        """The messages of the command, each with its help."""
+        """Returns the command's messages, each with its help."""
         told = []
         for line in self.expected.splitlines():
             if line.startswith("error: "):
@@ -90,7 +90,7 @@ ALL = [pytest.param(case, id=f"{table}: {case.title}") for table in TABLES for c
 
 
 def has(scene, path):
-    """Whether a path such as `object[2].shape` leads somewhere in a scene."""
+    """Whether a path such as `object[2].shape` leads to a value in a scene."""
     value = scene
     for key, number in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
         try:
@@ -101,7 +101,7 @@ def has(scene, path):
 
 
 def plain(message):
-    """A message without what Python and TOML write in other ways: forms of numbers, quotes, and lines of the file."""
+    """Returns a message without the forms of numbers, quotes and lines of the file, which differ in Python."""
 
     def number(found):
         try:
@@ -146,7 +146,7 @@ def test_the_cases_are_those_of_the_command():
 
 
 class Odd:
-    """What is none of a scene, in its own way."""
+    """A value that no scene can hold: `tolist` returns the value itself."""
 
     def tolist(self):
         return self
@@ -259,7 +259,7 @@ def test_options_of_any_kind_are_taken_or_told(option, tmp_path, monkeypatch):
 
 
 def places(value, found):
-    """Every container of a scene with one of its keys."""
+    """Returns every container of a scene with each of its keys."""
     keys = value.keys() if isinstance(value, dict) else range(len(value))
     for key in keys:
         found.append((value, key))
@@ -295,7 +295,7 @@ def test_distorted_dicts_are_scenes_or_told(tmp_path):
     choose, right = random.Random(cases), 0
     for number in range(cases):
         try:
-            # Files that it names are looked for beside it, as the command does.
+            # Files that the scene names are looked for beside it, as by the command.
             abbe.Scene(distorted(copy.deepcopy(scene), choose), folder=MESSAGES)
             right += 1
         except abbe.SceneError as error:

@@ -1,4 +1,4 @@
-"""The examples in Python run, and show what they say.
+"""The Python examples run, and produce what they promise.
 
 pytest tools/tests/test_python_examples.py
 """
@@ -49,8 +49,8 @@ def test_the_furnace_passes_by_itself():
 
 
 def test_the_prism_keeps_snells_law(tmp_path):
-    # A pixel of 0.06 degrees: noise, and Fresnel's losses that change across the view, are a third of it. From 460 to
-    # 640 nm the edge moves by 20.
+    # The bar is one pixel, 0.06 degrees. Noise, and Fresnel losses that vary across the view, are a third of it. From
+    # 460 to 640 nm the edge moves by 20 pixels.
     assert example("prism").main(tmp_path / "prism.png") < 1
     assert (tmp_path / "prism.png").stat().st_size > 10_000
 
@@ -58,7 +58,7 @@ def test_the_prism_keeps_snells_law(tmp_path):
 def test_the_color_chart_is_that_of_the_tables(tmp_path):
     pytest.importorskip("colour", reason="colour-science is not installed")
     worst = example("color_chart").main(tmp_path / "chart.png")
-    # Noise of the darkest patch, whose paths end at random: all its channels are off by the same factor.
+    # The noise of the darkest patch, whose paths end at random: all its channels are off by the same factor.
     assert worst.keys() == {"D65", "A", "FL11"} and max(worst.values()) < 0.05, worst
 
 

@@ -1,4 +1,4 @@
-"""The package's types: what it says of itself is what it is, to pyright and to stubtest.
+"""The package's types are correct, according to pyright and stubtest.
 
 pytest tools/tests/test_python_types.py
 """
@@ -48,7 +48,7 @@ def pyright(path):
 
 
 def test_pyright_finds_nothing_in_the_package(tmp_path):
-    # It leaves out what is installed.
+    # pyright skips installed packages.
     package = Path(shutil.copytree(Path(abbe.__file__).parent, tmp_path / "abbe"))
     code, said = pyright(package)
     assert code == 0 and said.startswith("0 errors, 0 warnings"), said

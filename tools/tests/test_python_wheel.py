@@ -1,4 +1,4 @@
-"""The wheel by itself: where there is neither Rust nor this folder.
+"""The wheel on its own, without Rust and without this folder.
 
 pytest tools/tests/test_python_wheel.py
 """

@@ -1,4 +1,4 @@
-"""Absolute light: colors times whiteLuminance are the luminance that colour-science computes of the lamp; files say what they are of.
+"""Absolute light: colors times whiteLuminance give the lamp's luminance by colour-science, and files state their units.
 
 pytest tools/tests/test_radiometry.py
 """
@@ -32,7 +32,7 @@ def rendered(path, lamp="1", film="", camera="", model='"auto"', **flags):
 
 
 def luminance_of(lamp):
-    """Of wavelengths and radiances in W / (m^2 sr nm), by colour-science, in cd/m^2."""
+    """Returns the luminance in cd/m^2 of wavelengths and radiances in W / (m^2 sr nm), by colour-science."""
     shape = colour.SpectralShape(360, 830, 1)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape)
     spectrum = np.interp(shape.wavelengths, *np.transpose(lamp), left=0, right=0)
@@ -54,7 +54,7 @@ def test_colors_times_white_luminance_are_luminance(tmp_path, lamp, space, white
     film += f", white_luminance = {white}" if white else ""
     file = rendered(tmp_path / "image.exr", f"{{ samples = {lamp} }}", film)
     assert file.header["whiteLuminance"] == (white or 1)
-    # The luminance of each primary, by what the file says of them.
+    # The luminance of each primary, from the file's chromaticities.
     weights = [0, 1, 0]
     if space != "lin_ciexyzd65_scene":
         x, y = np.reshape(file.header["chromaticities"], (4, 2)).astype(np.float64).T
@@ -92,7 +92,7 @@ def test_openimageio_tells_luminance_lens_and_date(tmp_path):
         "whiteLuminance": 1,
         "pinholeFocalLength": behind,
         "effectiveFocalLength": focal_length,
-        "FNumber": focal_length / 10,  # which is aperture
+        "FNumber": focal_length / 10,  # `aperture` in the EXR
         "focus": 4,
         "near": 0.5,
         "utcOffset": 0,

@@ -1,8 +1,8 @@
-"""The report in a real headless Chromium: it asks for nothing, fits, is legible, and its charts tell their figures.
+"""The report in a real headless Chromium: it requests nothing, fits, is legible, and its charts show their figures.
 
     pytest tools/tests/test_report.py       # screenshots in target/report/
 
-Skipped, with the reason, where no Chromium can be installed.
+Skipped, with the reason, if no Chromium can be installed.
 """
 
 import json
@@ -20,7 +20,7 @@ from report import parts as report_parts
 from stability import command as stability
 from stability.plot import Plot, Series
 
-# Contrast (WCAG 2.2, 1.4.3), font sizes and overflow of every element that has text of its own.
+# Contrast (WCAG 2.2, 1.4.3) and font size of every element with text of its own.
 LEGIBLE = """() => {
   const channel = (c) => (c /= 255, c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
   const luminance = ([r, g, b]) => 0.2126 * channel(r) + 0.7152 * channel(g) + 0.0722 * channel(b);
@@ -56,7 +56,7 @@ def plot(row):
 
 
 def sample_results(folder):
-    """What the tools would leave, made up."""
+    """Writes made-up results of the tools."""
     random = np.random.default_rng(1)
     rows = []
     for i in range(130):
@@ -141,7 +141,7 @@ def chromium():
 
 @pytest.fixture
 def opened(chromium, samples):
-    """Opens the page at a width in a color scheme; afterwards nothing was written to the console or requested."""
+    """Opens the page at a width in a color scheme; checks that nothing was written to the console or requested."""
     contexts, complaints, requests = [], [], []
 
     def open_page(width, scheme="light", **settings):
@@ -162,7 +162,7 @@ def opened(chromium, samples):
 
 
 def keep(page, name, **settings):
-    """A screenshot for people to look at. Chromium now and then cannot make one of a long page, which fails no test."""
+    """Takes a screenshot to look at. Chromium sometimes cannot make one of a long page, which fails no test."""
     from playwright.sync_api import Error
 
     folder = render.ROOT / "target/report"

@@ -1,4 +1,4 @@
-"""Every shipped scene renders to a file that keeps the EXR rules and says where its camera stands.
+"""Every shipped scene renders to a file that obeys the EXR rules and states the position of its camera.
 
     pytest tools/tests/test_scenes.py
 """
@@ -19,7 +19,7 @@ SCENES = sorted(render.SCENES.rglob("*.toml"))
 
 @pytest.fixture(scope="module", params=SCENES, ids=[str(path.relative_to(render.SCENES)) for path in SCENES])
 def rendered(request, tmp_path_factory):
-    """A scene file as a dictionary, and the EXR of one sample per pixel, half as wide and high."""
+    """Returns a scene file as a dictionary, and its EXR with one sample per pixel, half as wide and high."""
     if gallery.needs_making(request.param.relative_to(render.SCENES).with_suffix("")):
         gallery.make_landscape()
     exr = tmp_path_factory.mktemp("scenes") / "scene.exr"

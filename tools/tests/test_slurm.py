@@ -1,4 +1,4 @@
-"""Slurm runs an image in parts: tools/farm/shard.sh, on a controller and a node that the test starts.
+"""Slurm renders an image in parts: tools/farm/shard.sh, on a controller and a node that the test starts.
 
 pytest tools/tests/test_slurm.py
 """
@@ -19,7 +19,7 @@ COMMANDS = ["slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol", "s
 SHARD = render.ROOT / "tools/farm/shard.sh"
 SECONDS = 120
 
-# What a cluster needs at least. A node without keys belongs to nobody but this test.
+# The minimum that a cluster needs. The node has no keys, because it serves only this test.
 CONFIGURATION = """
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -63,7 +63,7 @@ def until(found, what):
 
 
 class Cluster:
-    """Commands of a Slurm that runs in a folder."""
+    """The commands of a Slurm that runs in a folder."""
 
     def __init__(self, folder):
         self.configuration = folder / "slurm.conf"
@@ -79,7 +79,7 @@ class Cluster:
         return done.stdout.strip()
 
     def submit(self, folder, shards, *flags, tasks=None):
-        """The numbers of an array of parts, and of the job that lays them together."""
+        """Submits an array of parts, and the job that merges them; returns the numbers of both jobs."""
         array = ["--parsable", f"--array={tasks or f'1-{shards}'}", "--output=%a.log", SHARD]
         job = self.run("sbatch", *array, shards, "s.toml", "out/s.exr", *flags, folder=folder)
         merge = f'"$RENDER" merge --delete out/s.exr out/s.*-of-{shards}.part'
@@ -138,7 +138,7 @@ def test_a_task_that_runs_out_of_time_goes_on_in_another_turn(cluster, folder):
     log = folder / "2.log"
     until(lambda: log.exists() and "the render begins" in log.read_text("utf-8"), "the task has not begun")
     time.sleep(1)
-    # As Slurm sends it before the time limit. The last task has the number of the array.
+    # Slurm sends this signal before the time limit. The last task has the number of the array.
     cluster.run("scancel", "--batch", "--signal=USR1", f"{array}_2")
     assert cluster.wait(merge) == "COMPLETED", logs(folder)
     said = log.read_text("utf-8")

@@ -1,8 +1,8 @@
-"""Holds scenes/smallpt.toml against the 99-line program.
+"""Compares scenes/smallpt.toml with the 99-line program.
 
     python -m pytest tools/tests/test_smallpt.py
 
-Half a minute of one core leaves standard errors of at most LARGEST_ERROR; for a tenth of a percent run
+Half a minute of one core gives standard errors of at most LARGEST_ERROR; for a tenth of a percent run
 python tools/smallpt_reference.py --compare
 """
 
@@ -29,15 +29,15 @@ def pictures():
 
 @pytest.fixture(scope="module")
 def centered():
-    """A picture whose samples all leave a pixel's wall from the same point, so that a bad point shows."""
+    """Renders a picture in which all samples of a pixel hit the same point of a wall, so that a bad point shows."""
     text = scene_text(WIDTH // 2, HEIGHT // 2).replace("[film]", '[film]\nfilter = "center"')
     return render(text, samples=128).rgb
 
 
 def specks(image, ignored):
-    """Pixels darker than an eighth of the median of their 3 x 3 neighborhood, in the mean of the three bands.
+    """Returns pixels darker than an eighth of the median of their 3 x 3 neighborhood, in the mean of the three bands.
 
-    What noise and the shadows below the balls leave is a fifth and more.
+    With noise, and in the shadows below the balls, pixels keep a fifth or more.
     """
     brightness = image.mean(axis=2)
     padded = np.pad(brightness, 1, mode="edge")

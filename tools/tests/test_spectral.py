@@ -1,4 +1,4 @@
-"""Spectral images: other readers find the bands where they are, and their spectra make the colors of the RGB image.
+"""Spectral images: other readers find the bands at their wavelengths, and the spectra agree with the RGB image.
 
     pytest tools/tests/test_spectral.py
 
@@ -16,7 +16,7 @@ import pytest
 import render
 from test_check_exr import found, header, plane  # noqa: F401
 
-# A measured color chart, a red wall and gold, under an incandescent lamp and a blue sky.
+# A floor of a measured color, a red wall and a gold ball, under an incandescent lamp and a blue sky.
 ROOM = """
 camera = { position = [0, 1.2, 5], look_at = [0, 0.9, 0], vertical_fov = 40 }
 film = { width = 48, height = 32, spectral = true, color_space = "SPACE" }
@@ -41,7 +41,8 @@ material = "lamp"
 [[light]]
 environment.radiance = { rgb = [0.1, 0.2, 0.4] }
 """
-# A ball of dispersive glass: lanes part. Where a drawn wavelength falls in its band is noise, which takes samples to settle.
+# A ball of dispersive glass, so lanes part. A wavelength's random place in its band is noise, which takes many samples
+# to average out.
 PRISM = """
 camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 24 }
 film = { width = 32, height = 24, spectral = true }
@@ -57,7 +58,7 @@ film = { width = 4, height = 3, spectral = true }
 render = { samples = 4 }
 light = [{ environment.radiance.samples = [[300, 1], [900, 1]] }]
 """
-# A ball of glass behind a polarizer and a wave plate whose phase depends on the wavelength.
+# A ball of glass behind a polarizer and a wave plate whose retardance depends on the wavelength.
 POLARIZED = """
 camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 24 }
 film = { width = 16, height = 12, spectral = true, stokes = true, layers = ["polarization"] }
@@ -90,7 +91,7 @@ def folder():
 
 @functools.cache
 def rendered(name):
-    """The image of a scene, and its spectral image."""
+    """Returns the image of a scene, and its spectral image."""
     path = Path(folder().name) / f"{name}.exr"
     render.write(SCENES[name], path)
     return path, path.with_suffix(".spectral.exr")
@@ -104,7 +105,7 @@ def colour():
 
 
 def spectra(path):
-    """Centers of the bands in nm, and radiance: row, column and band."""
+    """Returns the centers of the bands in nm, and radiance by row, column and band."""
     file = check_exr.read(path)
     return np.array(list(file.bands())), np.stack([file.channels[name] for name in file.bands().values()], -1).astype(np.float64)
 
@@ -159,11 +160,11 @@ def test_colour_science_reads_the_components_of_stokes_vectors(colour):
 
 @pytest.mark.parametrize("name", ["room", "aces", "prism"])
 def test_spectra_seen_by_the_standard_observer_are_the_colors(colour, name):
-    """Within 0.5 % of the brightest channel, or of 1 % of the image's mean, and 0.3 dE2000, of the image's white."""
+    """Allows 0.5 % of the brightest channel, or of 1 % of the image's mean, and 0.3 dE2000, by the image's white."""
     image, spectral = rendered(name)
     bands, values = spectra(spectral)
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(colour.SpectralShape(360, 830, 1))
-    # The mean of the functions over each band, as each number is the mean of the light.
+    # The mean of the functions over each band, because each number is the mean of the light over its band.
     around = np.arange(-2, 3)
     at = (bands[:, None] - 360).astype(int) + around
     functions = observer.values[at].mean(axis=1)
@@ -183,7 +184,7 @@ def test_spectra_seen_by_the_standard_observer_are_the_colors(colour, name):
 
 
 def spectral_file(found, changes=(), header_changes=None):
-    """The violations of a good spectral image with changes."""
+    """Returns the violations of a good spectral image with changes."""
     channels = {"R": plane(0.5), "G": plane(0.5), "B": plane(0.5)}
     channels |= {f"S0.{nm},000000nm": plane(0.01) for nm in (500, 510, 520)}
     channels = {name: value for name, value in {**channels, **dict(changes)}.items() if value is not None}

@@ -1,4 +1,4 @@
-"""The image of three flat-colored spheres is the book's, pixel by pixel.
+"""The image of three flat-colored spheres equals the book's, pixel by pixel.
 
     pytest tools/tests/test_spheres.py
 
@@ -19,14 +19,14 @@ SPHERES = [
 
 
 def canvas_to_viewport():
-    """D = (x, y, d) on the 1 x 1 viewport at d = 1, y up, for every pixel."""
+    """Returns D = (x, y, d) on the 1 x 1 viewport at d = 1, y up, for every pixel."""
     centers = (np.arange(SIZE) + 0.5) / SIZE - 0.5
     x, y = np.meshgrid(centers, -centers)
     return np.stack([x, y, np.ones_like(x)], axis=-1)
 
 
 def intersect_ray_sphere(direction, center, radius):
-    """t1 and t2 of |O + t D - C| = r with O = 0, infinite where there are none."""
+    """Returns t1 and t2 of |O + t D - C| = r with O = 0, infinite where there are none."""
     offset = -np.array(center, float)
     a = np.sum(direction * direction, axis=-1)
     b = 2 * direction @ offset
@@ -37,7 +37,7 @@ def intersect_ray_sphere(direction, center, radius):
 
 
 def trace_ray(direction, t_min, t_max):
-    """The color of the closest sphere with t in t_min..t_max, or the background."""
+    """Returns the color of the closest sphere with t in t_min..t_max, or the background."""
     closest = np.full(direction.shape[:-1], np.inf)
     color = np.full(direction.shape, WHITE, float)
     for center, radius, flat in SPHERES:

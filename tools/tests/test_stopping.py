@@ -1,4 +1,4 @@
-"""What the tool says of `--error` is what it has measured.
+"""The report on `--error` agrees with the measured figures.
 
     pytest tools/tests/test_stopping.py
 """
@@ -21,5 +21,5 @@ def test_a_broken_word_is_told():
     good = {"kept": 1.0, "median": 0.6, "reached": 1.0}
     for wrong in ({"kept": 0.9}, {"median": 0.3}, {"reached": 0.5}):
         assert stopping.faults({"smooth": good, "lamp": {**good, **wrong}}, 40)
-    # Each may be kept just often enough, and all together not.
+    # Each scene may keep its promise just often enough, while all together do not.
     assert stopping.faults({name: {**good, "kept": 0.925} for name in stopping.SCENES}, 40)

@@ -1,4 +1,4 @@
-"""The committed optical tables: what the database holds, and what the catalogs print.
+"""The committed optical tables agree with the database and with printed catalogs.
 
 pytest tools/tests/test_tabulate.py
 """
@@ -21,7 +21,7 @@ def rows(name):
 
 
 def committed_index(key, wavelength_nm):
-    """n of a glass by its committed line, formula 1 or 2 of refractiveindex.info."""
+    """Returns n of a glass by its committed line, formula 1 or 2 of refractiveindex.info."""
     _, _, formula, _, coefficients, *_ = rows("glasses")[key]
     constant, *rest = map(float, coefficients.split())
     b, c = rest[0::2], [value ** {"1": 2, "2": 1}[formula] for value in rest[1::2]]
@@ -29,7 +29,7 @@ def committed_index(key, wavelength_nm):
     return (1 + constant + sum(bi * w2 / (w2 - ci) for bi, ci in zip(b, c, strict=True))) ** 0.5
 
 
-# The five decimals of the makers' data sheets, and of the formula of Malitson (1965).
+# Five decimals, from the makers' data sheets and the formula of Malitson (1965).
 @pytest.mark.parametrize(
     ("key", "index_f", "index_d", "index_c"),
     [
@@ -55,7 +55,7 @@ def test_committed_tables_are_in_order_and_complete():
 
 def test_committed_metals_and_colors_are_those_of_their_sources():
     assert "582.1:0.29:2.863" in rows("metals")["Au"][2]
-    # CIE 15:2004, tables T.1 and T.4: D65 at 560 nm is 100, the observer is most sensitive at 555 nm.
+    # CIE 15:2004, tables T.1 and T.4: D65 is 100 at 560 nm, and the observer is most sensitive at 555 nm.
     d65 = list(map(float, rows("colors")["illuminant/D65"][4].split()))
     assert d65[(560 - 300) // 5] == 100
     y = list(map(float, rows("colors")["observer/y"][4].split()))

@@ -74,7 +74,7 @@ def test_lamps_and_view_factors_are_the_tabulated_ones():
     assert formulas.irradiance_under_square(1, 1) == pytest.approx(1.740840, abs=5e-7)
     assert formulas.parallel_squares(1, 1) == pytest.approx(0.199825, abs=1e-6)
     assert formulas.perpendicular_rectangles(1, 1, 1) == pytest.approx(0.200044, abs=1e-6)
-    # A closed cube: itself nothing, one face opposite, four beside.
+    # A face of a closed cube sees nothing of itself, one face opposite and four beside it.
     assert formulas.parallel_squares(1, 1) + 4 * formulas.perpendicular_rectangles(1, 1, 1) == pytest.approx(1)
     assert formulas.coaxial_discs(1, 1, 1) == pytest.approx(0.381966, abs=1e-6)
     known = {0: 104.167, 0.2: 130.208, 0.5: 208.333, 0.8: 520.833, 0.9: 1041.667}
@@ -85,7 +85,7 @@ def test_lamps_and_view_factors_are_the_tabulated_ones():
 def test_a_ball_throws_the_light_that_the_literature_says():
     # Row T1: a lamp of power pi, so intensity 1/4.
     assert formulas.through_ball(1.5, 1.5, 7, 0.8, averaged=True) / 4 == pytest.approx(0.0084, abs=5e-5)
-    # Both polarizations, each by itself, are let through better than their mean twice.
+    # Transmitting both polarizations separately passes more light than applying their mean twice.
     assert 1.005 < formulas.through_ball(1.5, 1.5, 7, 0.8) / formulas.through_ball(1.5, 1.5, 7, 0.8, averaged=True) < 1.007
 
 
@@ -94,7 +94,7 @@ def picture(values):
 
 
 def judged(bias=0.0, noise=0.0, speck=0.0, effect=0.01, draw=np.random.Generator.standard_normal):
-    """A row that expects 1 everywhere, on two made-up images of 32 x 32 pixels."""
+    """Judges a row that expects 1 everywhere, on two made-up images of 32 x 32 pixels."""
     random = np.random.default_rng(7)
     pair = [1 + bias + noise * draw(random, size=(32, 32, 3)) for _ in range(2)]
     for values in pair:
@@ -121,9 +121,9 @@ def test_exact_and_evenly_noisy_images_pass():
 
 
 def test_noise_that_a_few_pixels_carry_is_said_to_be_of_unknown_size():
-    # Skewed, but every pixel knows of it.
+    # Skewed, but every pixel shows it.
     assert judged(bias=-0.02, noise=0.02, draw=np.random.Generator.standard_exponential).passes
-    # As if each pixel were a product of many factors of mean 1: their mean lies in a tail that few pixels find.
+    # As if each pixel were a product of many factors of mean 1: the mean comes from a tail that few pixels sample.
     tail = judged(bias=-1.0, noise=1.0, effect=10.0, draw=partial(np.random.Generator.lognormal, mean=-8.0, sigma=4.0))
     assert any("a heavy tail: about" in reason for reason in tail.reasons), tail.reasons
 
@@ -173,7 +173,7 @@ def write(path, values):
 
 
 def seen_through_a_prism(angles):
-    """What any renderer stores whose rays leave the prism at these angles in red, green and blue: 0.6 of the light."""
+    """Returns the image of a renderer whose rays leave the prism at these angles: 0.6 of red, green and blue."""
     from validation import angles as rows
     from validation.bench import EVEN, HIGH, LOW
 

@@ -1,4 +1,4 @@
-"""What the book expects of polarization, films and dyes are the numbers that others have computed, digit by digit.
+"""The book's expectations for polarization, films and dyes equal numbers that were computed independently.
 
 pytest tools/tests/test_validate_waves.py
 """
@@ -29,7 +29,7 @@ def near(found, expected, digits=6):
 
 
 def test_one_surface_has_the_known_amplitudes():
-    # R, its degree and c / a, and the same of what crosses.
+    # R, its degree of polarization and c / a, then the same numbers for the transmitted light.
     known = {
         "0": (0.040000, 0, -1, 0.960000, 0, 1),
         "30": (0.041523, 0.391918, -0.920000, 0.958477, -0.016978, 0.999856),
@@ -46,7 +46,7 @@ def test_one_surface_has_the_known_amplitudes():
             ("into air", (t, d_t, c_t), 0.5 / 1.5**2),
         ):
             stokes = rows()[f"light at 45 degrees {which} at {degrees} degrees"]
-            # The image's right lies in the plane of incidence.
+            # The image's right is in the plane of incidence.
             near(stokes[0] / times, a)
             near(-stokes[1:3] / stokes[0], (d, c))
             near(stokes[3], 0)
@@ -70,7 +70,7 @@ def test_total_reflection_has_the_known_phases():
 
 
 def test_piles_and_panes_have_the_known_shares():
-    # s and p of what crosses, and what averages make of it.
+    # The transmittance of s, of p, and with averaged polarizations.
     known = {
         (1, 1.5, "45"): (0.831479, 0.983209, 0.904327),
         (4, 1.5, "45"): (0.552272, 0.936058, 0.702652),
@@ -167,7 +167,8 @@ def test_sheets_and_filters_let_the_known_shares_through():
 
 
 def test_metals_mirror_the_known_components():
-    # R_s, R_p and the phase between them; S0 to S3 of two mirrors along the axes of the last one; in a plane, crossed.
+    # R_s, R_p and their phase difference; S0 to S3 of two mirrors along the axes of the last; two in a plane, and
+    # crossed.
     known = {
         ("Au", 45): (0.849414, 0.721504, 149.731837, (0.616945, 0.050234, 0.043242, -0.025236), 0.621036, 0.612855),
         ("Au", 75): (0.943701, 0.706358, 72.742012, (0.680673, 0.097907, -0.028745, -0.092527), 0.694756, 0.666590),
@@ -181,7 +182,7 @@ def test_metals_mirror_the_known_components():
         one = rows()[f"a mirror at {degrees} degrees of {metal}"]
         near((one[0] - one[1], one[0] + one[1]), (s, p))
         two = rows()[f"two mirrors at {degrees} degrees of {metal}"]
-        # The image's right lies in the plane of the mirror that the light meets last.
+        # The image's right is in the plane of incidence of the last mirror.
         near(abs(two), np.abs(twice))
         near(two[[0, 1]], (twice[0], -twice[1]))
         assert np.sign(two[2] * two[3]) == -np.sign(twice[2] * twice[3])
@@ -205,12 +206,12 @@ def test_metals_mirror_the_known_components():
 
 
 def at(nm, name):
-    """S0 to S3 at one of the lines."""
+    """Returns S0 to S3 at one of the lines."""
     return rows()[name].reshape(4, -1)[:, films.LINES.index(nm)]
 
 
 def assert_reflects(name, s, p, phase=None):
-    """In light at 45 degrees: shares of s and p, and the phase between them in degrees."""
+    """Asserts the reflectance of s and p, and the phase between them in degrees, for light at 45 degrees."""
     stokes = 2 * at(550.0, f"{name}, S0 to S3")
     near((stokes[0] - stokes[1], stokes[0] + stokes[1]), (s, p))
     if phase is not None:
@@ -255,7 +256,7 @@ def test_films_have_the_known_shares():
 
 
 def test_soap_and_titanium_have_the_known_colors():
-    # Y, x and y, CIELAB along the normal.
+    # Y, x and y along the normal; CIELAB along the normal; Y, x and y at 45 degrees.
     for thickness, straight, lab, slanting in (
         (100, (0.075937, 0.31403, 0.33860), (33.122, -1.724, 1.664), (0.092297, 0.29998, 0.32220)),
         (150, (0.046665, 0.43156, 0.43955), (25.763, 1.958, 25.506), (0.088802, 0.35556, 0.38060)),
@@ -294,7 +295,7 @@ def test_soap_and_titanium_have_the_known_colors():
 def test_dyes_have_the_known_colors():
     light = dyes.illuminant("D65")
     near(light[dyes.NM < 380].sum() / light.sum(), 0.070, 3)
-    # X, Y and Z; Y of the paper alone.
+    # X, Y and Z; then Y of the paper alone.
     for dye, name, xyz, paper in (
         ("yellow dye", "D65", (0.803904, 1.168084, 0.346924), 0.880930),
         ("yellow dye", "A", (0.991020, 0.995397, 0.129157), 0.903727),

@@ -1,2 +1,1 @@
-"""The validation book: scenes whose answer is known in closed form, one module of rows per group. Run
-tools/validate.py."""
+"""The validation book: scenes with a known closed-form answer, one module of rows per group (tools/validate.py)."""

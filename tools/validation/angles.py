@@ -1,4 +1,4 @@
-"""Optics II: where rays go. Angles and places are read off a screen (bench.py), never from the renderer's mind."""
+"""Optics II: where rays go. Angles and places are read off a screen (bench.py), never from the renderer's internals."""
 
 import numpy as np
 
@@ -20,7 +20,7 @@ BENCH = (
 
 
 def window(angles, half_width=5.0):
-    """A screen around a direction whose rising half holds so many degrees on either side."""
+    """Returns a screen around a direction. Its rising half covers `half_width` degrees on either side."""
     return Screen(round(float(np.mean(angles)), 1), FAR, 2 * FAR * float(np.tan(np.radians(half_width))))
 
 
@@ -29,7 +29,7 @@ def degrees_of_rounding(screen, factor=1.0):
 
 
 def together(measured, expected):
-    """In words, where colors ought to part and do not."""
+    """Returns an explanation if colors that should separate do not."""
     if np.ptp(measured) < 0.1 * np.ptp(expected):
         angles = ", ".join(f"{value:.2f}" for value in expected)
         return f"all three lanes leave at the same angle {measured.mean():.1f}; expected {angles}: no dispersion"
@@ -37,7 +37,7 @@ def together(measured, expected):
 
 
 def prism_rgb(name, apex=60.0):
-    """A prism at the incidence of least deviation of the d line; red, green and blue are the lines C, e and F."""
+    """Returns a row for a prism at minimum deviation of the d line; red, green and blue are the lines C, e and F."""
     incidence = formulas.least_incidence(formulas.index(name, D_LINE), apex)
     indices = formulas.index(name, np.array(RED_GREEN_BLUE))
     expected = formulas.prism_deviation(indices, apex, incidence)
@@ -67,7 +67,7 @@ def prism_rgb(name, apex=60.0):
 def line_row(
     name, experiments, screen, lines, pick, expected, mistake, guards, formula, title, words, reader=None, fine=FINE
 ):
-    """A bench in the light of spectral lines; `pick` tells which line of which experiment is a value."""
+    """Returns a row for a bench in the light of spectral lines; `pick` lists experiment and line of each value."""
     powers, amplified = line_powers(lines)
     light = {"lines": [[nm, 1] for nm in lines]}
 
@@ -84,7 +84,7 @@ def line_row(
 
 
 def least_deviation(name):
-    """The lines F, d and C, each at its own least deviation: three prisms, three lines."""
+    """Returns a row for the lines F, d and C, each at its own minimum deviation: three prisms, three lines."""
     lines = (F_LINE, D_LINE, C_LINE)
     indices = formulas.index(name, np.array(lines))
     apex = 60.0 if indices.max() < 1.9 else 20.0
@@ -132,13 +132,13 @@ def fan(name, incidence, lines, label):
 
 
 def rainbow(reflections, index, name=None):
-    """The ray of the bow and its neighbors 2 degrees of incidence beside, which must be turned farther."""
+    """Returns a row for the ray of the bow and two at 2 degrees of incidence beside it, which must deviate more."""
     steep = formulas.bow_incidence(index, reflections)
     incidences = [steep - 2, steep, steep + 2]
     turned = np.array([formulas.drop_deviation(index, i, reflections) for i in incidences])
     screen = window(turned, 0.25)
     experiments = [drop(index, i, reflections) for i in incidences]
-    # From the direction opposite to the sun.
+    # Measured from the direction opposite to the sun.
     bow = np.abs(180 - turned) if reflections == 1 else np.abs(turned - 180)
     scene = bench(experiments, screen, glass(index))
     words = BENCH.replace("; what the glass reflects is black", "") + (
@@ -162,7 +162,7 @@ def rainbow(reflections, index, name=None):
 
 
 def colored_bow(reflections, lines, label):
-    """Water's own bow, its lines read one by one at the incidence of the bow of each."""
+    """Returns a row for the bow of water: each line is read at the incidence of its own bow."""
     indices = formulas.index("water", np.array(lines))
     steep = formulas.bow_incidence(indices, reflections)
     turned = formulas.drop_deviation(indices, steep, reflections)
@@ -188,7 +188,7 @@ def colored_bow(reflections, lines, label):
 
 
 def shift(index, degrees, thickness=0.01):
-    """The parallel displacement by a tilted plate."""
+    """Returns a row for the parallel displacement by a tilted plate."""
     expected = formulas.slab_shift(index, degrees, thickness)
     angle = np.radians(degrees)
     normal, side = np.array([-np.sin(angle), np.cos(angle)]), np.array([np.cos(angle), np.sin(angle)])
@@ -216,12 +216,13 @@ def shift(index, degrees, thickness=0.01):
 
 
 def ball(name, height):
-    """Where a ray beside the axis of a ball of radius 1 crosses it; three lines."""
+    """Returns a row for the focus of a ball of radius 1: where a ray off the axis crosses it, for three lines."""
     lines, radius = (F_LINE, D_LINE, C_LINE), 0.008
     indices = formulas.index(name, np.array(lines))
     expected = formulas.ball_focus(indices, height)
     distance = 3 * radius
-    # The ball stands so that the ray meets it `height` radii from its axis, on the -x side, which bends it toward +x.
+    # The ball is placed so that the ray meets it `height` radii from its axis, on the -x side, which bends it toward
+    # +x.
     center = height * radius
     turned = np.arcsin(height / expected)
     place = radius * (3 * np.sin(turned) - height) / np.cos(turned)
@@ -229,8 +230,7 @@ def ball(name, height):
     body = Experiment(lambda y: sphere((center, y, 0), radius), (center, 0))
 
     def focus(place):
-        """The ray leaves as far from the center as it came, so one place on the screen tells its angle and its
-        focus."""
+        """Returns the focus from a place on the screen: the ray leaves as far from the center as it arrived."""
         place, turned = place / radius, 0.5
         for _ in range(200):  # place = (3 sin d - h) / cos d
             turned = np.arcsin(np.clip((place * np.cos(turned) + height) / 3, -1, 1))
@@ -252,7 +252,7 @@ def ball(name, height):
         f"its "
         f"center and {screen.half_width} half wide.",
         lambda ratio: focus(screen.place(ratio)),
-        # Near the axis colors are little apart, and what is less than a fifth of a pixel is not modelled.
+        # Near the axis colors separate little, and details below a fifth of a pixel are not modelled.
         FINE if far else 3 * FINE,
     )
     return row._replace(rounding=np.abs(focus(place + row.rounding) - focus(place)))

@@ -1,8 +1,9 @@
-"""An optical bench: where a ray goes is read off a screen whose brightness tells the place.
+"""An optical bench: the brightness of a screen tells where a ray hits it.
 
-Every ray is doubled: one pixel's ray lands on a screen whose reflectance rises linearly from 0.1 to 0.9, the pixel
-below sends the same ray through the same glass to an even screen of 0.5. The ratio tells the place, whatever the
-glass took. Rays run along -z in planes of constant y, one pair of planes above the other, and are bent toward +x.
+Every ray is doubled. One pixel's ray lands on a screen whose reflectance rises linearly from 0.1 to 0.9; the pixel
+below sends an equal ray through equal glass to a uniform screen of 0.5. Their ratio gives the place, whatever the
+glass absorbs or reflects. Rays run along -z in planes of constant y, one pair of planes above the other, and are bent
+toward +x.
 """
 
 from typing import NamedTuple
@@ -12,41 +13,41 @@ import numpy as np
 from .scenes import diffuse, extrude, quad, view
 
 PITCH = 0.02  # distance of the two rays of a pair
-FINE = 33  # pixels across that distance, an odd number: the one in the middle holds the ray
+FINE = 33  # pixels across that distance, an odd number: the middle one holds the ray
 LOW, HIGH, EVEN = 0.1, 0.9, 0.5
 RISING = diffuse({"image": "bench.exr", "wrap": "clamp"})
 THICK = 0.4 * PITCH  # half the height of a body around its ray's plane
 
 
 class Experiment(NamedTuple):
-    """What one pair of rays meets, built around the ray at x = 0."""
+    """The body that one pair of rays meets, built around the ray at x = 0."""
 
     body: object  # function (y) -> the shape around the ray's plane, no higher than PITCH
     exit: tuple  # (x, z) where the screen's axis begins
 
 
 class Screen(NamedTuple):
-    """Faces the direction `degrees` from -z toward +x, at a distance from each experiment's exit; half of it rises."""
+    """A screen that faces the direction `degrees` from -z toward +x, at a distance from each exit; half of it rises."""
 
     degrees: float
     distance: float
     half_width: float
 
     def place(self, ratio):
-        """Distance from the middle of the screen of what is so bright beside the even screen."""
+        """Returns the distance from the screen's middle, by the ratio of its brightness to the even screen's."""
         return ((ratio * EVEN - LOW) / (HIGH - LOW) - 0.5) * self.half_width
 
     def angle(self, ratio):
-        """Direction of the ray in degrees."""
+        """Returns the direction of the ray in degrees."""
         return self.degrees + np.degrees(np.arctan(self.place(ratio) / self.distance))
 
     def rounding(self, count=32):
-        """Bound of what rounding does to a place: two values of up to 32 factors each."""
+        """Returns a bound on the effect of rounding on a place: two values of up to 32 factors each."""
         return 2 * count * 2.0**-24 * (HIGH / EVEN) * EVEN / (HIGH - LOW) * self.half_width
 
 
 def bench(experiments, screen, material, light=1.0, fine=FINE, **settings):
-    """The scene: two pixels per experiment, from the top."""
+    """Returns the scene: two pixels per experiment, from the top."""
     angle = np.radians(screen.degrees)
     along, across = np.array([np.sin(angle), 0, -np.cos(angle)]), np.array([np.cos(angle), 0, np.sin(angle)])
     count, objects = len(experiments), []
@@ -75,7 +76,7 @@ def bench(experiments, screen, material, light=1.0, fine=FINE, **settings):
 
 
 def middles(image):
-    """The pixels of the rays, from the top: (rays, 3)."""
+    """Returns the pixels of the rays, from the top: (rays, 3)."""
     height, width = image.rgb.shape[:2]
     if width % 2 == 0 or height % (2 * width):
         raise ValueError(
@@ -85,21 +86,20 @@ def middles(image):
 
 
 def ratios(image):
-    """Rising by even screen, of every experiment and channel."""
+    """Returns the ratio of rising to even screen, for every experiment and channel."""
     pixels = middles(image)
     return pixels[0::2] / pixels[1::2]
 
 
 def column_ratios(image):
-    """The same of one experiment whose rays all go the same way, wherever they start: one estimate per column of
-    pixels."""
+    """Returns the ratios of one experiment whose rays are all parallel after it: one estimate per column of pixels."""
     upper, lower = np.split(image.rgb, [len(image.rgb) // 2])
     middle = slice(len(upper) // 4, len(upper) - len(upper) // 4)
     return upper[middle].mean(axis=0) / lower[middle].mean(axis=0)
 
 
 def prism(index, apex, incidence, face=0.01):
-    """A prism whose first face the ray meets in its middle."""
+    """Returns a prism whose first face the ray meets in its middle."""
     steep, inside = np.radians(incidence), np.arcsin(np.sin(np.radians(incidence)) / index)
     first = np.array([np.cos(steep), np.sin(steep)])
     second = np.array([np.cos(steep - np.radians(apex)), np.sin(steep - np.radians(apex))])
@@ -112,7 +112,7 @@ def prism(index, apex, incidence, face=0.01):
 
 
 def drop(index, incidence, reflections, radius=0.005):
-    """A ball that the ray meets at an angle, on the side from which it is turned toward +x."""
+    """Returns a ball that the ray meets at an angle, on the side from which it is bent toward +x."""
     steep = np.radians(incidence)
     center = radius * np.array([np.sin(steep), -np.cos(steep)])
     chord = np.pi - 2 * np.arcsin(np.sin(steep) / index)

@@ -21,13 +21,13 @@ GROUPS = {
 
 @functools.cache
 def rows(quick, group=None):
-    """The rows of one group, or of all."""
+    """Returns the rows of one group, or of all groups."""
     modules = [GROUPS[group]] if group else GROUPS.values()
     return [row for module in modules for row in module.rows(quick)]
 
 
 def write_assets(folder):
-    """The only image that scenes read: two texels, between which a screen rises linearly from 0.1 to 0.9."""
+    """Writes the only image that scenes read: two texels, between which a screen rises linearly from 0.1 to 0.9."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "bench.exr"
     if not path.is_file():

@@ -1,6 +1,7 @@
-"""Caustics: the light that glass and mirrors throw, found by photons, has the energy that it had before.
+"""Caustics: light redirected by glass and mirrors, and found by photons, keeps its energy.
 
-What crosses more than one surface of glass asks for polarization, as the formulas have it."""
+Rows in which light crosses more than one surface of glass turn polarization on, as their formulas do.
+"""
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from .row import Row
 from .scenes import cube, diffuse, extrude, glass, quad, rgb, sphere, sun, view
 
 GROUP = "caustics"
-# So dark that what it sends back up and down again through the glass, some tenth of it, is no part of any answer.
+# So dark that light which it sends up, and the glass down again, some tenth of it, does not affect any result.
 DARK = 1e-4
 FLOOR = quad((0, 0, 0), (6, 0, 0), (0, 0, -6))
 
@@ -29,7 +30,7 @@ def lit(
     reader=readers.gray,
     **camera,
 ):
-    """The mean irradiance of a square of the floor, by its radiance."""
+    """Returns a row for the mean irradiance of a square of the floor, measured by its radiance."""
     samples, seeds, size = (64, 6, 12) if quick else (1024, 8, 16)
     camera = {"eye": (0, 0.5, 0), "target": (0, 0, 0), "up": (0, 0, -1), "height": patch} | camera
     scene = view(materials | {"floor": diffuse(DARK)}, objects, lights, size=size, samples=samples, **camera)
@@ -42,7 +43,7 @@ def lit(
 
 
 def slabs(quick):
-    """A floor under a glass roof: the sun comes through as through a plate, with all reflections between its faces."""
+    """Yields a floor under a glass roof: the sun comes through it as through a plate, with all interreflections."""
     indices = (1.333, 1.52, 2.42)
     for degrees in (0, 45, 60):
         cosine = np.cos(np.radians(degrees))
@@ -72,8 +73,7 @@ def slabs(quick):
 
 
 def mirrors(quick):
-    """The sun by way of a mirror, which stands upright beside the floor: as if a second one shone from the other
-    side."""
+    """Yields the sun with a mirror that stands upright beside the floor: as if a second sun shone from that side."""
     for degrees, reflectance in ((30, 0.8), (60, 0.5)):
         angle = np.radians(degrees)
         expected = np.cos(angle) * (1 + reflectance)
@@ -98,7 +98,7 @@ def mirrors(quick):
 
 
 def pieces(quick):
-    """The same on a floor laid in pieces and seen in a mirror before the camera, so that photons are gathered."""
+    """Yields the sun and a mirror on a floor laid in pieces, seen in another mirror, so that photons are gathered."""
     angle, reflectance = np.radians(60), 0.8
     for count in (40, 400):
         half = 1 / count
@@ -127,7 +127,7 @@ def pieces(quick):
 
 
 def balls(quick):
-    """Row T1 of the literature of light tracing: a ball under a lamp."""
+    """Yields row T1 of the literature on light tracing: a ball under a lamp."""
     for index, half_side in ((1.5, 0.8), (1.5, 0.2), (1.333, 0.5)):
         expected = formulas.through_ball(index, 1.5, 7.0, half_side)
         light = {"point": {"position": [0.0, 7.0, 0.0], "intensity": 1}}
@@ -152,7 +152,7 @@ def balls(quick):
 
 
 def beam(quick):
-    """All that leaves a prism, beside what the sun sends straight."""
+    """Yields all light that leaves a prism, plus direct light of the sun."""
     index, apex, face = 1.5168, np.radians(60), 1.0
     incidence = np.radians(formulas.least_incidence(index, 60))
     deviation = 2 * incidence - apex
@@ -167,7 +167,7 @@ def beam(quick):
     side = 2.0
     patch = quad((place[0], 0, place[1]), side * np.array([across[0], 0, across[1]]), (0, side, 0))
     each = formulas.both_polarizations(index, np.degrees(incidence))
-    # What all three faces reflect, each at 30 degrees, leaves again in the same direction.
+    # Light reflected by all three faces, each at 30 degrees, leaves in the same direction again.
     through = sum((1 - r) ** 2 / (1 - r**3) for r in each) / 2
     power = face * np.cos(incidence) * 1.0 * through
     direct, area = np.cos(deviation), side**2
@@ -178,7 +178,7 @@ def beam(quick):
         "light of irradiance 1; the mean over a "
         f"square of {side:g} across its beam, 6 behind it, which the sun lights straight as well."
     )
-    # The third face is black: the sun would shine through it as well.
+    # The third face is black, because the sun would shine through it as well.
     ends = [polygon[1], polygon[2]]
     normal = np.array([ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]])
     base = (ends[0] + ends[1]) / 2 + 1e-3 * normal * np.sign(normal @ (ends[0] - polygon[0]))

@@ -1,7 +1,7 @@
-"""Color: what reaches the file is the sum over the wavelengths of light, reflectance and observer.
+"""Color: the value in the file is the sum over wavelengths of light, reflectance and observer.
 
 The reference is colour-science, nm by nm from 360 to 830, CIE 1931 2 degrees (CIE 15:2018, equation 7.1); colors.py
-says how its tables are read between their samples.
+says how its tables are interpolated.
 """
 
 import numpy as np
@@ -36,14 +36,13 @@ WIDE = colors.colour.MSDS_CMFS["CIE 1964 10 Degree Standard Observer"]
 
 
 def observer(table, nm):
-    """Sensitivities X, Y, Z at wavelengths, 3 x n, such that a spectrum of 1 everywhere has Y = 1."""
+    """Returns sensitivities X, Y, Z at wavelengths, 3 x n, such that a spectrum of 1 everywhere has Y = 1."""
     values = np.stack([np.interp(colors.WAVELENGTHS, table.wavelengths, axis, 0, 0) for axis in table.values.T])
     return np.stack([np.interp(nm, colors.WAVELENGTHS, axis) for axis in values]) / values[1].sum()
 
 
 def line_powers(lines):
-    """The matrix from XYZ to the power of each of a few lines, and by how much it amplifies rounding at equal
-    powers."""
+    """Returns the matrix from XYZ to powers of a few lines, and its amplification of rounding at equal powers."""
     matrix = observer(colors.OBSERVER, np.array(lines))
     inverse = np.linalg.pinv(matrix)
     return inverse, float((np.abs(inverse) @ matrix.sum(axis=1)).max())
@@ -54,12 +53,12 @@ def sky(radiance, **settings):
 
 
 def with_samples(scene, count=1):
-    """Patches in an even sky need no more: each sample is exact."""
+    """Returns the scene with `count` samples: one is enough for patches under a uniform sky, where each is exact."""
     return scene | {"render": scene["render"] | {"samples": count}}
 
 
 def by_ten_degrees(light, reflectances):
-    """The same sums with the observer of 1964."""
+    """Returns sums over light and reflectance with the observer of 1964."""
     values = observer(WIDE, light.nm)
     return (light.power * reflectances) @ values.T / (light.power @ values[1])
 
@@ -90,7 +89,7 @@ def chart(name):
 
 
 def planck(kelvin):
-    """Radiance by Planck's law (c2 = 0.01438776877 m K), Y = 1."""
+    """Returns a row for radiance by Planck's law (c2 = 0.01438776877 m K), Y = 1."""
     nm = colors.WAVELENGTHS
     power = 1 / (nm**5 * np.expm1(1.438776877e7 / (nm * kelvin)))
     light = colors.Light(f"{kelvin} K", {"blackbody": kelvin}, nm, power / (colors.OBSERVER.values[:, 1] @ power))
@@ -130,7 +129,7 @@ def emission(name, *pairs):
 
 
 def metamers(name):
-    """Two paints that look alike under D65 and not under another light: their difference in X, Y and Z."""
+    """Returns a row for two paints that match under D65 and not under another light: their difference in X, Y and Z."""
     nm = np.arange(400.0, 701.0, 20)
     day, other = colors.illuminant("D65"), colors.illuminant(name)
     base = 0.35 + 0.15 * np.sin(nm / 40)
@@ -147,8 +146,7 @@ def metamers(name):
     curves = [{"samples": [[float(x), float(y)] for x, y in zip(nm, paint, strict=True)]} for paint in paints]
     scene = with_samples(colors.patches_scene(curves, light.curve, "rgb", XYZ))
     expected = xyz[0] - xyz[1]
-    # Under A, three numbers that were made for daylight would still agree; under D65, the other observer would see
-    # them part.
+    # Under A, three numbers made for daylight would still match. Under D65, the other observer would see a difference.
     wide = observer(WIDE, colors.WAVELENGTHS)
     wide = (wide / (wide[1] @ light.power)) @ (light.power * (np.interp(colors.WAVELENGTHS, nm, paints[0] - paints[1])))
     guards, mistake = (
@@ -177,7 +175,7 @@ def srgb(linear):
 
 
 def files():
-    """The file holds radiance itself, in the primaries that its header names."""
+    """Yields rows that show that the file holds radiance itself, in the primaries that its header names."""
     for numbers in ((0.25, 0.5, 2.0), (1e-3, 0.18, 100.0), (1e-20, 1e20, 1e3)):
         numbers = np.array(numbers)
         yield Row(

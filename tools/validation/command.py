@@ -9,9 +9,9 @@
     python tools/validate.py --row NAME other.exr         # judges another renderer's picture of that scene
     python tools/validate.py --with-mitsuba               # the scenes that Mitsuba 3 can render as well, pixel by pixel
 
-Prints expected and measured value, standard error and z of each row, and writes target/validate/validation.json with
-what each row guards against besides. A row passes if no value misses by more than 4 standard errors and if its
-standard error is at most a quarter of what the mistake would change. Exit code 1 if a row fails.
+Prints expected and measured value, standard error and z of each row, and writes these and what each row guards against
+to target/validate/validation.json. A row passes if no value is off by more than 4 standard errors, and if its standard
+error is at most a quarter of what the mistake would change. Exit code 1 if a row fails.
 """
 
 import argparse
@@ -34,12 +34,12 @@ OUT = render.ROOT / "target/validate"
 
 
 def key(row):
-    """A row's name as one word."""
+    """Returns a row's name as one word."""
     return re.sub(r"[^A-Za-z0-9.+]+", "-", f"{row.name}").strip("-")
 
 
 def images(row, folder):
-    """The images of a row's scene, one for each seed."""
+    """Yields the images of a row's scene, one for each seed."""
     book.write_assets(folder)
     scene = folder / f"{key(row)}.toml"
     scene.write_text(toml_file(row.scene), "utf-8")
@@ -57,7 +57,7 @@ def measure(row, folder):
 
 
 def show(judged):
-    """One line per row, or the largest miss of many values."""
+    """Prints one line for a row: its value, or the one of many that is off the most."""
     worst = abs(judged.z).argmax()
     figures = [array[worst] for array in (judged.expected, judged.measured, judged.standard_error, judged.z)]
     expected, measured, error, z = figures
@@ -71,12 +71,12 @@ def show(judged):
 
 
 def finite(value):
-    """A number, or null, for JSON has no others."""
+    """Returns a finite number, or None, because JSON has no others."""
     return float(value) if math.isfinite(value) else None
 
 
 def entry(judged):
-    """The row as it stands in validation.json."""
+    """Returns the row in the form of validation.json."""
     row = judged.row
     listed = [judged.expected, judged.measured, judged.standard_error, judged.z, judged.effect]
     expected, measured, error, z, effect = ([finite(x) for x in values] for values in listed)
@@ -104,13 +104,13 @@ def write_json(results, path):
 
 
 def run(rows, out):
-    """Judges the rows and answers with what came out, in their order."""
+    """Judges the rows and returns the results in their order."""
     print(
         f"{'group':9} {'row':72} {'expected':>12} {'measured':>12} {'error':>8} {'z':>6}  verdict (|z| at most "
         f"{LIMIT:g})"
     )
     results = []
-    # Most pictures are small: several rows at once keep all processors busy.
+    # Most pictures are small, so several rows run at once to keep all processors busy.
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
         for judged in pool.map(measure, rows, [Path(folder) / key(row) for row in rows]):
             results.append(judged)
@@ -128,7 +128,7 @@ def summary(results):
 
 
 def chosen(rows, words):
-    """The row of that name, or all whose name has the words."""
+    """Returns the row of that name, or all rows whose name contains the words."""
     exact = [row for row in rows if words in (key(row), row.name)]
     found = exact or [row for row in rows if words.lower() in key(row).lower() or words.lower() in row.name.lower()]
     if not found:
@@ -137,7 +137,7 @@ def chosen(rows, words):
 
 
 def describe(row, folder):
-    """Everything that a user of another renderer needs to render the row's scene."""
+    """Prints everything that a user of another renderer needs to render the row's scene."""
     print(f"# {row.name}: {row.words}")
     print(f"# expected {numbers(row.expected)} by {row.formula}; guards against {row.guards_against}")
     print(toml_file(row.scene), end="")
@@ -192,7 +192,7 @@ def main(words=None):
 
 
 def foreign(row, exr):
-    """Judges a picture that another renderer made."""
+    """Judges a picture from another renderer."""
     if not exr.is_file():
         raise SystemExit(f"{exr} does not exist")
     try:

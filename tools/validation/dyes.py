@@ -1,9 +1,11 @@
-"""Dyes: light that comes back at other wavelengths, against sums over their matrices, nm by nm from 300 to 830.
+"""Dyes: light re-emitted at other wavelengths, against sums over their matrices, nm by nm from 300 to 830.
 
-A dye shines Q a(i) e(o) i / o at the wavelength o of what comes at i, in power: of a photon that is absorbed, with a, one
-leaves with the chance Q, and e is its emission in photons. Beside it paper reflects 0.92 - a.
+A dye turns power at the wavelength i into power Q a(i) e(o) i / o at the wavelength o. It absorbs a photon with the
+share a, and emits one with the probability Q; e is its emission spectrum in photons. The paper beneath it reflects
+0.92 - a.
 
-Both are exact but for rounding: 32 lanes read what paper reflects so that it has its color under each light.
+Dye and paper are exact except for rounding: 32 lanes read the paper's reflectance so that its color is right under each
+light.
 """
 
 from typing import NamedTuple
@@ -18,16 +20,16 @@ from .row import LIMIT, Row
 from .scenes import sphere, view
 
 NM = np.arange(300.0, 831.0)
-# The eye sees none of what lies below 360 nm.
+# The eye sees no light below 360 nm.
 OBSERVER = np.stack([np.interp(NM, colors.WAVELENGTHS, axis, left=0) for axis in colors.OBSERVER.values.T])
 LANES = {"bands": 32}
 POWER = "a quantum yield of power, and not of photons"
-# Of a color's largest number.
+# Relative to the largest number of a color.
 EXACT = 1e-5
 
 
 class Dye(NamedTuple):
-    """Bells of what is absorbed, 0.9 at most, and of the photons that shine: their middle and deviation in nm."""
+    """Gaussian bells of absorption, 0.9 at most, and of emission in photons: their middle and deviation in nm."""
 
     name: str
     absorbs: tuple[float, float]
@@ -40,28 +42,30 @@ class Dye(NamedTuple):
 
     @property
     def glow(self):
-        """Power per nm of 1 in all."""
+        """Emitted power per nm, with a total of 1."""
         power = bell(*self.shines) / NM
         return power / power.sum()
 
     @property
     def excited(self):
-        """Power that shines of a power of 1 at each wavelength."""
+        """Emitted power for a power of 1 at each wavelength."""
         photons = bell(*self.shines)
         return self.quantum_yield * self.absorbed * NM * (photons / NM).sum() / photons.sum()
 
     @property
     def in_power(self):
-        """The same by mistake."""
+        """Emitted power, if the quantum yield were mistaken for a yield of power."""
         return self.quantum_yield * self.absorbed
 
     @property
     def paper(self):
-        """What is reflected."""
+        """Reflectance of the paper."""
         return 0.92 - self.absorbed
 
     def material(self, paper=None, absorbed=None, covers=1.0):
-        """On paper, or on what reflects otherwise; for a wall that covers a part of its place, as if it covered all."""
+        """Returns the dye on paper, or on another reflectance.
+
+        For a wall that covers only a share `covers` of its area, both are scaled as if it covered all."""
         paper = self.paper if paper is None else paper
         absorbed = self.absorbed if absorbed is None else absorbed
         curve = lambda values: {"samples": samples(values)}  # noqa: E731
@@ -90,14 +94,14 @@ DYES = (
 
 
 def illuminant(name):
-    """Power per nm with Y = 1, with its ultraviolet light."""
+    """Returns the power per nm with Y = 1, including ultraviolet light."""
     table = colors.colour.SDS_ILLUMINANTS[name]
     power = np.interp(NM, table.wavelengths, table.values, left=0, right=0)
     return power / (OBSERVER[1] @ power)
 
 
 def room(dye, excited, opacity, outside):
-    """Radiance in a closed room that the dye covers by an opacity, into which light comes."""
+    """Returns XYZ inside a closed room that the dye covers with an opacity, into which light comes from outside."""
     left = 1 - opacity * dye.paper
     brightness = (excited * outside / left).sum() / (1 - opacity * (excited * dye.glow / left).sum())
     return OBSERVER @ ((outside + opacity * brightness * dye.glow) / left)
@@ -118,7 +122,7 @@ def rows(quick):
 
 
 def row(name, formula, scene, expected, mistaken, words, seeds=1, guards=POWER, told=8 * EXACT):
-    """What the mistake changes by less than a share of the largest number is not told by it."""
+    """Returns a row that ignores what the mistake changes by less than `told` of the largest number."""
     largest = np.abs(expected).max()
     mistaken = np.where(np.abs(mistaken - expected) > told * largest, mistaken, expected)
     return Row(
@@ -137,7 +141,7 @@ def row(name, formula, scene, expected, mistaken, words, seeds=1, guards=POWER, 
 
 
 def under(material, light):
-    """A patch under an even sky."""
+    """Returns a patch under a uniform sky."""
     scene = colors.patches_scene([0], light, LANES, XYZ)
     scene["material"] = {"m0": material}
     scene["render"]["samples"] = 1
@@ -182,7 +186,7 @@ def paper(dye, name):
 
 
 def glowing(dye, name):
-    """The dye on black: no lane stands for what it reflects."""
+    """Returns a row for the dye on black: no lane stands for what it reflects."""
     light = illuminant(name)
     expected, mistaken = ((excited @ light) * (OBSERVER @ dye.glow) for excited in (dye.excited, dye.in_power))
     return row(
@@ -212,7 +216,7 @@ def lit_by_lines(dye):
 
 
 def sharper(dye, least):
-    """A dye that only longer waves excite."""
+    """Returns a row for a dye that only longer waves excite."""
     light = illuminant("D65")
     absorbed = np.where(NM < least, 0, dye.absorbed)
     expected, mistaken = (
@@ -231,7 +235,7 @@ def sharper(dye, least):
 
 
 def within(material, opacity, size, samples, scale=1.0):
-    """A camera in a ball with holes in its wall, under an even sky of D65."""
+    """Returns a scene with the camera inside a ball with holes in its wall, under a uniform sky of D65."""
     return view(
         {"dyed": material, "wall": {"mask": {"material": "dyed", "opacity": opacity}}},
         [("wall", sphere())],
@@ -258,17 +262,19 @@ def ball(dye, quick, opacity=0.8):
     return row(f"ball of {dye.name} with holes", formula, scene, expected, mistaken, words, 2, told=0.0024)
 
 
-# Of a closed room's wall so much is a hole, by which its light comes.
+# The share of a closed room's wall that is holes, through which its light comes.
 HOLES = 0.05
 
 
 def few(quick):
-    """Pixels along a side and samples: light goes to and fro often there."""
+    """Returns pixels along a side and samples; paths in closed rooms are long."""
     return (16, 12) if quick else (16, 64)
 
 
 def closed(dye, quick):
-    """As if the wall shone by itself and had no holes: what covers the rest reflects and absorbs so much more."""
+    """Returns a row for a room that acts as if it had no holes and its wall emitted light.
+
+    The wall is scaled up in reflectance and absorption to make up for its holes."""
     expected, mistaken = (room(dye, excited, 1, illuminant("D65")) for excited in (dye.excited, dye.in_power))
     return row(
         f"closed room of {dye.name}",

@@ -1,4 +1,4 @@
-"""Energy: light neither appears nor is lost."""
+"""Energy: light is neither created nor lost."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def furnace(
     size=None,
     **settings,
 ):
-    """A body under a sky of 1, seen whole; what it shows is known whatever its shape."""
+    """Returns a row for a body under a sky of 1, seen as a whole; its radiance is known for any shape."""
     shape, fov = BODIES[body] if isinstance(body, str) else body
     materials = {"body": material} | (more or {})
     chance = {} if samples is None else {"samples": max(samples // 4, 16) if quick else samples}
@@ -45,7 +45,7 @@ def furnace(
 
 
 def lossless(quick):
-    """Clear bodies cannot be seen in an even sky, whatever their index."""
+    """Yields clear bodies, which are invisible under a uniform sky, whatever their index."""
     lost = "a refraction that forgets the factor 1/n^2 on the way out, or loses a hundredth of the light"
     for index in (1.1, 1.333, 1.5, 1.7847, 2.5, SPREAD, (1.3, 1.31, 1.8)):
         many = isinstance(index, tuple)
@@ -81,7 +81,7 @@ def lossless(quick):
 
 
 def heroes(quick):
-    """Dispersive glass whose wavelengths part: fixed lanes and drawn ones share no path, and together they see all."""
+    """Yields dispersive glass whose wavelengths part: fixed and hero lanes share no path, and together see all."""
     for name, body in (("N-SF11", "sphere"), ("diamond", "sphere"), ("N-BK7", "cube")):
         yield furnace(
             f"clear {body} of {name}, drawn wavelengths",
@@ -98,7 +98,7 @@ def heroes(quick):
 
 
 def inside_glass(quick):
-    """The radiance inside a body is n^2 times that outside."""
+    """Yields the radiance inside a body, which is n^2 times that outside."""
     for index in (1.333, 1.5, 2.42):
         scene = view(
             {"glass": glass(index)}, [("glass", sphere())], [SKY], eye=(0.3, 0.2, 0.1), target=(1, 2, 3), fov=60, size=8

@@ -1,8 +1,8 @@
-"""Films in which light interferes, against the matrices of Abeles (1950), at single wavelengths and in daylight.
+"""Films with interference, against the matrices of Abeles (1950), at single wavelengths and in daylight.
 
 A layer of n - i k and thickness D has M = [[cos d, i sin d / y], [i y sin d, cos d]], d = 2 pi q D / wavelength, with
-q = n cos and the admittances y = q of s, n^2 / q of p; (B, C) = M (1, y of the body) reflects the amplitude
-(y B - C) / (y B + C), of p with the other sign.
+q = n cos and the admittances y = q of s, n^2 / q of p. With (B, C) = M (1, y of the body), the reflected amplitude is
+(y B - C) / (y B + C), for p with the other sign.
 """
 
 import numpy as np
@@ -23,19 +23,21 @@ LINES = (450.0, 550.0, 650.0)
 UNCOATED = "the surface without its layers"
 PANE = "a pane in which light does not interfere"
 QUARTER = 550 / 4
-# How far single wavelengths may be off, in standard errors of rounding.
+# The largest error allowed for single wavelengths, in standard errors of rounding.
 EXACT = 1e-5 / LIMIT
 
 
 def amplitudes(layers, body, degrees, nm, around=1.0):
-    """What is reflected and what crosses of s and of p, at each wavelength, from a medium by layers (index n - i k,
-    thickness in nm, from the outside inward) into a body. The squares of what crosses are fluxes."""
+    """Returns the reflected and the transmitted amplitude of s and of p, at each wavelength.
+
+    Light goes from a medium through layers (index n - i k, thickness in nm, from the outside inward) into a body. The
+    squares of the transmitted amplitudes are fluxes."""
     along = (around * np.sin(np.radians(degrees))) ** 2
     found = []
     for p in (False, True):
 
         def root(index):
-            # Waves fade out in the direction in which light goes.
+            # Waves decay in the direction of propagation.
             q = np.sqrt(np.asarray(index, complex) ** 2 - along)
             return np.where(q.imag > 0, -q, q)
 
@@ -54,7 +56,7 @@ def amplitudes(layers, body, degrees, nm, around=1.0):
 
 
 def shares(layers, body, degrees, nm):
-    """Of unpolarized light, what is reflected and what crosses, from air."""
+    """Returns the reflectance and the transmittance for unpolarized light from air."""
     return np.mean(np.abs(amplitudes(layers, body, degrees, nm)) ** 2, axis=0)
 
 
@@ -66,13 +68,14 @@ def coating(layers):
 
 
 def exactly(amplified):
-    """Bound of what rounding does to the share of a line."""
+    """Returns a bound on the effect of rounding on the share of a line."""
     return min(ROUNDING * amplified, EXACT)
 
 
 def seen(name, material, degrees, expected, guards, mistake, words, *, behind=False, lines=LINES, body=None):
-    """A flat surface in the light of lines before it or behind it, and the share of each; with the index of a `body`
-    below, lamps on both sides."""
+    """Returns a row for a flat surface with a lamp of spectral lines in front or behind, and the share of each line.
+
+    With the index of a `body` below, there are lamps on both sides."""
     powers, amplified = line_powers(lines)
     light = {"lines": [[nm, 1] for nm in lines]}
     surface = plane((0, 0, 0), (0, 1, 0))
@@ -80,7 +83,7 @@ def seen(name, material, degrees, expected, guards, mistake, words, *, behind=Fa
         surface = {"quad": {"center": [0.0, 0.0, 0.0], "u": [90.0, 0.0, 0.0], "v": [0.0, 0.0, -90.0]}}
     materials, objects = {"surface": material, "glow": glow(light)}, [("surface", surface), ("glow", LAMPS["T" if behind else "R"])]
     if body:
-        # Radiance goes by the square of the index.
+        # Radiance scales with the square of the index.
         materials["below"] = glow({"lines": [[nm, body**2] for nm in lines]})
         objects.append(("below", LAMPS["T"]))
     scene = view(materials, objects, eye=looking_down(degrees), up=(0, 0, 1), model="auto", space=XYZ)
@@ -92,8 +95,10 @@ def seen(name, material, degrees, expected, guards, mistake, words, *, behind=Fa
 
 
 def polarized(name, material, degrees, both, guards, mistake, words, *, way="R", index=1.0, surface=None):
-    """The same in light at 45 degrees to s and p, S0 to S3 of each line. `both` and `mistake` are amplitudes of s and
-    p. The camera is on the lamp's side, or behind in a body of an index; `index` around both is a glass of its own."""
+    """Returns a row for a surface in light at 45 degrees to s and p, S0 to S3 of each line.
+
+    `both` and `mistake` are amplitudes of s and p. The camera is on the lamp's side, behind the surface, or behind it
+    in a body with an index. Otherwise, `index` is that of a glass around both."""
     powers, amplified = line_powers(LINES)
     around = index if way != "body" else 1.0
     below = float(np.degrees(np.arcsin(np.sin(np.radians(degrees)) / index)))
@@ -113,7 +118,7 @@ def polarized(name, material, degrees, both, guards, mistake, words, *, way="R",
     materials = stage.materials | {"surface": material}
     if around != 1.0:
         materials["glass"] = glass(around)
-        # Aslant, so that nothing that its wall reflects comes back.
+        # Off center, so that no light that its wall reflects comes back.
         objects.append(("glass", sphere((0, 40, 0), 100)))
     expected, wrong = np.round(stokes(both), 12), np.round(stokes(mistake), 12)
     scene = view(materials, objects, eye=stage.eye, model="auto", space=XYZ, polarization="on")
@@ -135,7 +140,7 @@ def polarized(name, material, degrees, both, guards, mistake, words, *, way="R",
 
 
 def coated(name, layers, body, index, angles, words):
-    """Of an index at the lines."""
+    """Yields rows for a coated body; `index` is the body's at the lines."""
     nm = np.array(LINES)
     ((kind, keys),) = body.items()
     for degrees in angles:
@@ -197,7 +202,7 @@ def stacks(quick):
 
 
 def lens(quick):
-    """Crown glass bare, and darkened at one wavelength, at others."""
+    """Yields crown glass, bare and with a coating for one wavelength, at other wavelengths."""
     for nm in (400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0):
         index = formulas.index("N-BK7", nm)
         bare, dark = (shares(stack, index, 0, np.array([nm]))[0] for stack in ([], MAGNESIUM_FLUORIDE))
@@ -210,7 +215,7 @@ def lens(quick):
 
 
 def both_ways(quick):
-    """What crosses layers, and that clear ones lose nothing."""
+    """Yields transmission through layers, and the balance of clear layers, which lose nothing."""
     nm = np.array(LINES)
     for degrees in (0, 30, 60):
         crossing, bare = (amplitudes(stack, 1.5, degrees, nm)[:, 1] for stack in (ABSORBING, []))
@@ -241,7 +246,7 @@ def both_ways(quick):
 
 
 def gaps(quick):
-    """No film at all, and air between glass beyond the critical angle (frustrated total reflection: Newton 1704)."""
+    """Yields no film, and air in glass beyond the critical angle (frustrated total reflection: Newton 1704)."""
     nm = np.array(LINES)
     for degrees in (0, 45):
         for which, behind, expected in (("R", False, 0.0), ("T", True, 1.0)):
@@ -276,7 +281,7 @@ def gaps(quick):
 
 
 def fringe(quick):
-    """The mean over thicknesses that are evenly spread over one fringe is that of a pane (Born and Wolf 7.6.1)."""
+    """Returns a row: the mean over thicknesses spread evenly over a fringe is that of a pane (Born and Wolf 7.6.1)."""
     nm, index, count = 550.0, 1.33, 16
     objects, materials = [], {"glow": glow({"lines": [[nm, 1]]})}
     for number in range(count):
@@ -306,7 +311,7 @@ def fringe(quick):
 
 
 def soap(quick):
-    """Films that stand free, reflected and seen through; and their colors."""
+    """Yields free-standing films, in reflection and in transmission."""
     nm = np.array(LINES)
     for thickness in (100, 200, 400, 1000):
         material = {"thin": {"index": 1.33, "thickness_nm": thickness}}
@@ -325,14 +330,14 @@ def lab(xyz, white):
 
 
 def under_d65(layers, body, degrees):
-    """CIE XYZ of what layers on a body reflect, of white, and of the gray that reflects as much at every wavelength."""
+    """Returns CIE XYZ of layers on a body, of white, and of the gray with the mean reflectance at every wavelength."""
     light = colors.illuminant("D65")
     reflected = shares(layers, body(light.nm), degrees, light.nm)[0]
     return [(light.power * share) @ colors.OBSERVER.values for share in (reflected, 1, reflected.mean())]
 
 
 def daylight(name, material, layers, body, degrees, words):
-    """The color of a film under D65 in the lanes that the plan chooses: at most 0.5 dE2000 away."""
+    """Returns a row for a film's color under D65, in the lanes that the plan chooses: at most 0.5 dE2000 off."""
     expected, white, gray = under_d65(layers, body, degrees)
     scene = view(
         {"film": material, "glow": glow({"illuminant": "D65"})},

@@ -1,4 +1,4 @@
-"""Closed-form optics and transport, from first principles: what the rendered numbers are held against.
+"""Closed-form optics and transport, from first principles: the references for the rendered numbers.
 
 from validation.formulas import fresnel, slab
 fresnel(1.5, 45)                 # 0.0502..., unpolarized
@@ -9,12 +9,12 @@ import numpy as np
 
 
 def refracted_cosine(index, degrees):
-    """Snell's law, from air into a medium of `index`."""
+    """Returns the cosine of refraction by Snell's law, from air into a medium of `index`."""
     return np.sqrt(1 - (np.sin(np.radians(degrees)) / index) ** 2)
 
 
 def fresnel(index, degrees):
-    """Unpolarized reflectance of the boundary between air and `index`, which is complex for a metal (n + ik).
+    """Returns unpolarized reflectance from air to `index`, which is complex for a metal (n + ik).
 
     Born and Wolf, Principles of Optics, 1.5.2 (20), 1.5.3 (30) and 14.2.
     """
@@ -22,7 +22,7 @@ def fresnel(index, degrees):
 
 
 def both_polarizations(index, degrees):
-    """Reflectances of s and p."""
+    """Returns the reflectances of s and p."""
     cosine, cosine_t = np.cos(np.radians(degrees)), refracted_cosine(index, degrees)
     s = (cosine - index * cosine_t) / (cosine + index * cosine_t)
     p = (index * cosine - cosine_t) / (index * cosine + cosine_t)
@@ -30,10 +30,10 @@ def both_polarizations(index, degrees):
 
 
 def inner_diffuse_reflectance(index):
-    """Share of diffuse light inside `index` that its boundary to air reflects: 1 - T / index^2, where T of the diffuse
-    light outside gets in. Places of the sum are cosines v^3, dense near grazing angles.
+    """Returns the share of diffuse light inside `index` that its boundary to air reflects.
 
-    Duntley 1942, The Optical Properties of Diffusing Materials.
+    It is 1 - T / index^2, where T is the share of diffuse light outside that gets in. The cosines of the sum are v^3,
+    dense near grazing angles. Duntley 1942, The Optical Properties of Diffusing Materials.
     """
     v = (np.arange(20000) + 0.5) / 20000
     cosine = v**3
@@ -45,7 +45,7 @@ def inner_diffuse_reflectance(index):
 
 
 def slab(index, degrees, optical_depth=0):
-    """Reflectance and transmittance of a plate in air, all orders summed: the geometric series of Stokes (1862).
+    """Returns R and T of a plate in air, all orders summed: the geometric series of Stokes (1862).
 
     Unpolarized light has the mean of both polarizations, each with a series of its own. `optical_depth` is absorption
     times thickness.
@@ -57,7 +57,7 @@ def slab(index, degrees, optical_depth=0):
 
 
 def slab_of_averages(index, degrees, optical_depth=0):
-    """The same where each surface is met by unpolarized light: the mistake that rows guard against."""
+    """Returns the values of `slab` for light that is unpolarized at each surface: the mistake that rows detect."""
     r = fresnel(index, degrees)
     a = np.exp(-optical_depth / refracted_cosine(index, degrees))
     transmittance = (1 - r) ** 2 * a / (1 - (r * a) ** 2)
@@ -65,23 +65,23 @@ def slab_of_averages(index, degrees, optical_depth=0):
 
 
 def irradiance_under_disc(radius, height):
-    """Of a point on the axis of a parallel disc of radiance 1. Howell, Menguc, Daun, Siegel, configuration B-12."""
+    """Returns the irradiance on the axis of a parallel disc of radiance 1 (B-12 in Howell, Menguc, Daun, Siegel)."""
     return np.pi * radius**2 / (radius**2 + height**2)
 
 
 def irradiance_under_square(half_side, height):
-    """Of a point under the center of a parallel square of radiance 1: four corners of configuration B-3 (Howell)."""
+    """Returns the irradiance under the center of a parallel square of radiance 1: four corners of B-3 (Howell)."""
     x = half_side / np.hypot(half_side, height)
     return 4 * x * np.arctan(x)
 
 
 def irradiance_under_sphere(radius, distance):
-    """Of a plane that faces the center of a sphere of radiance 1, whole above the horizon."""
+    """Returns the irradiance of a plane facing the center of a sphere of radiance 1 that is all above the horizon."""
     return np.pi * (radius / distance) ** 2
 
 
 def irradiance_in_box(power, area, reflectance):
-    """Mean over the walls of a closed Lambertian box, from the balance E S = power + reflectance E S."""
+    """Returns the mean over the walls of a closed Lambertian box, from the balance E S = power + reflectance E S."""
     return power / (area * (1 - reflectance))
 
 
@@ -128,80 +128,80 @@ TITANIUM = np.transpose(
     ]
 )
 F_LINE, D_LINE, C_LINE = 486.13, 587.56, 656.27  # nm
-# The wavelengths of red, green and blue where an index is measured and lanes are three: C, e and F.
+# The wavelengths of red, green and blue in rows that measure an index in three lanes: C, e and F.
 RED_GREEN_BLUE = (656.27, 546.07, 486.13)
 
 
 def index(name, nm):
-    """Refractive index at a wavelength in nm."""
+    """Returns the refractive index at a wavelength in nm."""
     strengths, places = SELLMEIER[name]
     squared = (np.asarray(nm, float) / 1000) ** 2
     return np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(strengths, places, strict=True)))
 
 
 def titanium(nm):
-    """n - i k, linearly between what was measured."""
+    """Returns n - i k, linear between the measured wavelengths."""
     wavelengths, n, k = TITANIUM
     return np.interp(nm, wavelengths, n) - 1j * np.interp(nm, wavelengths, k)
 
 
 def inside_fresnel(index, degrees):
-    """Unpolarized reflectance of the same boundary from inside; 1 beyond the critical angle."""
+    """Returns the unpolarized reflectance from inside `index` to air; 1 beyond the critical angle."""
     sine = index * np.sin(np.radians(degrees))
     return fresnel(index, np.degrees(np.arcsin(sine))) if sine < 1 else 1.0
 
 
 def schlick(index, degrees):
-    """What Schlick's approximation (1994) makes of it: the mistake that many rows guard against."""
+    """Returns the reflectance by Schlick's approximation (1994): the mistake that many rows guard against."""
     normal = np.abs((index - 1) / (index + 1)) ** 2
     return normal + (1 - normal) * (1 - np.cos(np.radians(degrees))) ** 5
 
 
 def pile(index, degrees, plates):
-    """Transmittance of so many plates, of both polarizations (Stokes 1862): the mean of (1 - r) / (1 + (2 m - 1) r)."""
+    """Returns transmittance of m plates (Stokes 1862): the mean of (1 - r) / (1 + (2 m - 1) r) over s and p."""
     return sum((1 - r) / (1 + (2 * plates - 1) * r) for r in both_polarizations(index, degrees)) / 2
 
 
 def least_incidence(index, apex):
-    """Incidence of least deviation, in degrees: the ray runs through the prism symmetrically."""
+    """Returns the incidence of minimum deviation, in degrees: the ray runs through the prism symmetrically."""
     return np.degrees(np.arcsin(index * np.sin(np.radians(apex) / 2)))
 
 
 def prism_deviation(index, apex, incidence):
-    """Snell's law at both faces (Born and Wolf 4.7.2), all in degrees."""
+    """Returns the deviation by Snell's law at both faces (Born and Wolf 4.7.2), all in degrees."""
     inside = np.arcsin(np.sin(np.radians(incidence)) / index)
     leaving = np.arcsin(index * np.sin(np.radians(apex) - inside))
     return incidence + np.degrees(leaving) - apex
 
 
 def bow_incidence(index, reflections):
-    """Incidence of the rainbow ray after k inner reflections: cos^2 i = (n^2 - 1) / (k (k + 2)) (Descartes 1637)."""
+    """Returns the incidence of the rainbow after k reflections: cos^2 i = (n^2 - 1) / (k (k + 2)) (Descartes 1637)."""
     return np.degrees(np.arccos(np.sqrt((index**2 - 1) / (reflections * (reflections + 2)))))
 
 
 def drop_deviation(index, incidence, reflections):
-    """2 (i - r) + k (180 - 2 r), in degrees."""
+    """Returns 2 (i - r) + k (180 - 2 r), in degrees."""
     inside = np.degrees(np.arcsin(np.sin(np.radians(incidence)) / index))
     return 2 * (incidence - inside) + reflections * (180 - 2 * inside)
 
 
 def slab_shift(index, degrees, thickness):
-    """d sin t (1 - cos t / sqrt(n^2 - sin^2 t))."""
+    """Returns d sin t (1 - cos t / sqrt(n^2 - sin^2 t))."""
     angle = np.radians(degrees)
     return thickness * np.sin(angle) * (1 - np.cos(angle) / np.sqrt(index**2 - np.sin(angle) ** 2))
 
 
 def ball_focus(index, height):
-    """Where a ray parallel to the axis of a ball of radius 1 crosses the axis, from the center; n / (2 (n - 1)) near
-    it.
+    """Returns where a ray parallel to the axis of a ball of radius 1 crosses it, from the center.
 
-    By symmetry the ray leaves as far from the center as it came, turned by 2 (i - r)."""
+    By symmetry the ray leaves as far from the center as it arrived, deviated by 2 (i - r). Near the axis it is n / (2
+    (n - 1))."""
     turned = np.radians(drop_deviation(index, np.degrees(np.arcsin(height)), 0))
     return height / np.sin(turned)
 
 
 def parallel_squares(side, distance):
-    """View factor of two opposite squares: configuration C-11 of Howell's catalog, as written by Hottel (1931)."""
+    """Returns the view factor of two opposite squares: C-11 of Howell's catalog, as written by Hottel (1931)."""
     x = side / distance
     root = np.sqrt(1 + x * x)
     return (
@@ -212,8 +212,7 @@ def parallel_squares(side, distance):
 
 
 def perpendicular_rectangles(width, length, height):
-    """From a rectangle width x length to one width x height that shares its width: configuration C-14 of Howell's
-    catalog."""
+    """Returns the view factor from width x length to width x height across a common edge: C-14 of Howell."""
     h, w = height / width, length / width
     a, b, c = 1 + w * w, 1 + h * h, 1 + w * w + h * h
     s = h * h + w * w
@@ -223,26 +222,25 @@ def perpendicular_rectangles(width, length, height):
 
 
 def coaxial_discs(first, second, distance):
-    """From the first of two parallel discs to the second: configuration C-41 of Howell's catalog."""
+    """Returns the view factor from the first of two parallel discs to the second: C-41 of Howell's catalog."""
     a, b = first / distance, second / distance
     x = 1 + (1 + b * b) / (a * a)
     return (x - np.sqrt(x * x - 4 * (b / a) ** 2)) / 2
 
 
 def point_beside_rectangle(width, distance, height):
-    """From a point to a rectangle that stands on its plane at a distance, the point before its middle: twice B-4 of
-    Howell."""
+    """Returns the view factor from a point to a rectangle on its plane, opposite its middle: twice B-4 of Howell."""
     half, far = width / 2, np.hypot(height, distance)
     return (np.arctan(half / distance) - distance / far * np.arctan(half / far)) / np.pi
 
 
 def through_ball(index, center, light, half_side, count=400_000, averaged=False):
-    """Mean irradiance of a square of the floor under a clear ball of radius 1 whose center is `center` above it, from
-    a point light of intensity 1 on the same axis at height `light`; the ball shades the square.
+    """Returns the mean irradiance of a square of the floor under a clear ball of radius 1, which shades it.
 
-    A sum over the directions of the light within the cone of the ball: Snell and Fresnel, up to 8 reflections inside;
-    a ring on the floor counts by the part of it that lies in the square. `averaged` takes light for unpolarized at every
-    surface, as the literature does."""
+    The center of the ball is `center` above the floor, and a point light of intensity 1 is at height `light` on its
+    axis. Sums over the directions of the light within the cone of the ball: Snell and Fresnel, up to 8 reflections
+    inside. A ring on the floor counts by the part of it inside the square. `averaged` takes light for unpolarized at
+    every surface, as the literature does."""
     sine = (np.arange(count) + 0.5) / count / (light - center)  # of the angle to the axis, evenly spaced
     step = 1 / count / (light - center)
     incidence = np.arcsin(sine * (light - center))
@@ -251,10 +249,10 @@ def through_ball(index, center, light, half_side, count=400_000, averaged=False)
     each = [sum(each) / 2] * 2 if averaged else each
     angle, total = np.arcsin(sine), 0.0
     for reflections in range(9):
-        # Directions turn toward the axis: from angle outward to angle - turned.
+        # Rays turn toward the axis: from an outward direction `angle` to angle - turned.
         turned = 2 * (incidence - inside) + reflections * (np.pi - 2 * inside)
         leaving = angle - turned
-        # Where it leaves the ball: the first point, and a chord further for each passage.
+        # The point where light leaves the ball: the first point, and one chord further for each passage.
         at = np.pi / 2 - (incidence - angle) - (reflections + 1) * (np.pi - 2 * inside)
         x, y = np.cos(at), np.sin(at)
         down = np.cos(leaving) > 1e-9

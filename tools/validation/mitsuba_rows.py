@@ -1,20 +1,20 @@
-"""Cross-checks with Mitsuba 3 where it models the same thing: every pixel of both pictures, each with its own noise.
+"""Cross-checks with Mitsuba 3 where both model the same physics: every pixel of both pictures, with its own noise.
 
     python tools/validate.py --with-mitsuba       # pip install mitsuba==3.9.1
 
-Both render the same scene from eight seeds. A pixel's z is the difference of the two means by the standard errors of
-both, from the spread of the seeds: Student's t with 14 degrees of freedom, of which one in twenty is beyond 2.145. A
-scene passes if its mean agrees in every channel within 4 standard errors, and if of the pixels that have noise no
-more than 8 % are beyond 2.145; pixels without noise must agree to rounding. Counted separately, and not part of the
-tests.
+Both render the same scene from eight seeds. A pixel's z is the difference of the two means over their joint standard
+error, from the spread of the seeds. It follows Student's t with 14 degrees of freedom, of which one in twenty is beyond
+2.145. A scene passes if its mean agrees in every channel within 4 standard errors, and if at most 8 % of the pixels
+with noise are beyond 2.145; pixels without noise must agree to rounding. These scenes are counted separately, and are
+not part of the tests.
 
-Rough glass is nearly smooth here: Mitsuba gives up what meets a second facet, 3 % of the light at a roughness of 0.3,
-which Abbe gives back, as its furnaces show. What Mitsuba 3.9.1 does another way than its own formulas have it is left
-out: a mix of a mirror and something rough is not the sum of its parts there, the two colors of a checker change places
-as an opacity, a ball that shines by an image is aimed at wrongly, and a lamp is seen through what is just before it.
+Rough glass is nearly smooth here: Mitsuba drops light that meets a second facet, 3 % at a roughness of 0.3, while Abbe
+gives it back, as its furnaces show. Scenes in which Mitsuba 3.9.1 deviates from its own formulas are left out: a mix of
+a mirror and something rough is not the sum of its parts there, the two colors of a checker are swapped as an opacity, a
+ball that emits by an image is sampled wrongly, and a lamp is seen through what is just in front of it.
 
-Caustics are compared with Mitsuba's particle tracer, for which many directional lights stand for the sun. It shows only
-what the camera sees straight, so the glass stands outside of the picture. Means of 16 x 16 blocks are compared.
+Caustics are compared with Mitsuba's particle tracer, where many directional lights stand for the sun. It shows only
+what the camera sees directly, so the glass is outside of the picture. Means of 16 x 16 blocks are compared.
 """
 
 import tempfile
@@ -28,14 +28,14 @@ from .scenes import SKY, cube, diffuse, glass, glow, quad, rgb, sphere, toml_fil
 
 SEEDS, BEYOND, MOST = 8, 2.145, 0.08
 SUN = {"toward": [-0.8, 0.6, 0.1], "angular_diameter": 1.0, "irradiance": rgb((3.0, 2.8, 2.5))}
-DIRECTIONS = 200  # of the sun in Mitsuba
-PARTICLES = 4096  # for a pixel
+DIRECTIONS = 200  # directional lights that stand for the sun in Mitsuba
+PARTICLES = 4096  # per pixel
 PLASTIC = {"plastic": {"reflectance": rgb((0.6, 0.3, 0.1)), "index": 1.5}}
 EYE = {"eye": (1.7, 1.3, 3.1), "fov": 38}
 
 
 def scenes(samples, size):
-    """Name and scene; materials and shapes that both know."""
+    """Yields name and scene, with materials and shapes that both renderers have."""
     common = EYE | {"samples": samples, "size": size}
     room = [("white", quad((0, -1, 0), (3, 0, 0), (0, 0, -3))), ("lamp", quad((0, 3, 0), (0.6, 0, 0), (0, 0, 0.6)))]
     whites = {"white": diffuse(0.7), "lamp": glow(10)}
@@ -66,7 +66,7 @@ def scenes(samples, size):
 
 
 def more_scenes(common, room, whites):
-    """The other cameras, lamps and materials that both have."""
+    """Yields the other cameras, lamps and materials that both renderers have."""
     shapes = [("b", cube()), *room]
     yield "plastic ball on a floor", view(whites | {"b": PLASTIC}, [("b", sphere()), *room], caustics="off", **common)
     at_a_point = {"point": {"position": [-1.5, 3.0, 1.0], "intensity": rgb((20, 15, 10))}}
@@ -85,7 +85,7 @@ def more_scenes(common, room, whites):
 
 
 def caustics(samples, size):
-    """Name and scene: the floor where glass gathers the light of the sun."""
+    """Yields name and scene: the floor where glass focuses the light of the sun."""
     common = {"eye": (4.4, 2.8, 2), "target": (2.6, 0, -0.2), "fov": 36, "samples": samples, "size": size}
     floor = ("white", quad((0, 0, 0), (5, 0, 0), (0, 0, -5)))
     for name, body, one in (
@@ -107,7 +107,7 @@ def color(value, kind="rgb"):
 
 
 def material(name, values, materials):
-    """A material of ours as Mitsuba's; alpha is the square of our roughness."""
+    """Converts a material for Mitsuba; alpha is the square of Abbe's roughness."""
     if name == "diffuse":
         return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color(values["reflectance"])}}
     if name == "conductor":
@@ -118,7 +118,7 @@ def material(name, values, materials):
     if name == "mask":
         ((kind, within),) = materials[values["material"]].items()
         return {"type": "mask", "opacity": values["opacity"], "bsdf": material(kind, within, materials)}
-    # Ours of a higher priority lies within the one other glass.
+    # Glass of a higher priority is inside the only other glass.
     around = materials["outer"]["dielectric"]["index"] if "priority" in values else 1.0
     indices = {"int_ior": values["index"], "ext_ior": around}
     if "roughness" in values:
@@ -141,7 +141,7 @@ def shape(mitsuba, entry):
 
 
 def sensor(mitsuba, camera, film):
-    """The camera and the film; a lens that is in focus at a distance from it along the view, as ours."""
+    """Converts camera and film. A lens is in focus at a distance along the view, as in Abbe."""
     transform, picture = mitsuba.ScalarTransform4f, {"width": film["width"], "height": film["height"]}
     look = transform().look_at(camera["position"], camera["look_at"], camera["up"])
     common = {"film": {"type": "hdrfilm", "rfilter": {"type": "box"}, **picture}}
@@ -156,15 +156,14 @@ def sensor(mitsuba, camera, film):
 
 
 def translated(mitsuba, scene):
-    """The scene for mitsuba.load_dict: field of view, film and lights as they are in ours."""
+    """Converts the scene for mitsuba.load_dict, with the same field of view, film and lights."""
     integrator = {"type": "path", "max_depth": -1, "rr_depth": 100}
     result = {"type": "scene", "integrator": integrator, "sensor": sensor(mitsuba, scene["camera"], scene["film"])}
     for number, entry in enumerate(scene["object"]):
         ((kind, values),) = scene["material"][entry["material"]].items()
         one = shape(mitsuba, entry["shape"])
         if kind == "emissive":
-            # Ours shines from both sides; of a lamp at the ceiling only the lower one is seen, toward which its front
-            # turns.
+            # Abbe's lamp emits from both sides. Of one at the ceiling only the lower side is seen, which is its front.
             one |= {"emitter": {"type": "area", "radiance": color(values["radiance"])}}
             one |= {"bsdf": {"type": "diffuse", "reflectance": color(0)}}
         else:
@@ -182,7 +181,7 @@ def translated(mitsuba, scene):
 
 
 def sun_of_directions(toward, angular_diameter, irradiance):
-    """Lights without extent, spread evenly over the disc of the sun by the golden angle."""
+    """Returns directional lights, spread evenly over the disc of the sun by the golden angle."""
     z = np.array(toward) / np.linalg.norm(toward)
     x = np.cross(z, (0, 1, 0)) / np.linalg.norm(np.cross(z, (0, 1, 0)))
     number = np.arange(DIRECTIONS)
@@ -194,20 +193,22 @@ def sun_of_directions(toward, angular_diameter, irradiance):
 
 
 def blocks(pictures, number=16):
-    """The means of `number` x `number` blocks of pixels."""
+    """Returns the means of `number` x `number` blocks of pixels."""
     seeds, height, width, channels = pictures.shape
     shape = (seeds, number, height // number, number, width // number, channels)
     return pictures.reshape(shape).mean(axis=(2, 4))
 
 
 def compare(first, second):
-    """Means of both, their difference in standard errors, the share of noisy pixels beyond 2.145, the worst of the
-    others."""
+    """Compares two sets of pictures.
+
+    Returns both means, their difference in standard errors, the share of noisy pixels beyond 2.145, and the worst z of
+    the others."""
     mean = [np.mean(pictures, axis=0) for pictures in (first, second)]
     variance = sum(np.var(pictures, axis=0, ddof=1) / len(pictures) for pictures in (first, second))
     totals = [np.mean(pictures, axis=(1, 2)) for pictures in (first, second)]
     error = np.sqrt(sum(total.var(axis=0, ddof=1) / len(total) for total in totals))
-    rounding = 32 * 2.0**-24 * np.abs(mean[1])  # of what both store in 32 bits
+    rounding = 32 * 2.0**-24 * np.abs(mean[1])  # of the 32-bit values that both store
     z = (mean[0] - mean[1]) / np.sqrt(variance + rounding**2 + 1e-60)
     noisy = variance > rounding**2
     overall = (totals[0].mean(axis=0) - totals[1].mean(axis=0)) / np.hypot(error, rounding.mean(axis=(0, 1)))

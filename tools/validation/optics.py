@@ -1,8 +1,8 @@
-"""Optics: how much light surfaces reflect and let through. Where it goes is in angles.py.
+"""Optics: how much light surfaces reflect and transmit. Where it goes is in angles.py.
 
-Light that has met one surface at an angle is polarized in part, and a second surface in the same plane takes more or less
-of it: a plate of index 1.5 at 60 degrees lets through 0.8481 of unpolarized light, the mean of both polarizations, where
-the average at each surface would give 0.8362. So the rows of more than one surface ask for polarization.
+Light that has met one surface at an angle is partly polarized, and a second surface in the same plane reflects more or
+less of it. A plate of index 1.5 at 60 degrees transmits 0.8481 of unpolarized light, the mean of both polarizations;
+averages at each surface would give 0.8362. So the rows with more than one surface turn polarization on.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def reflection(name, material, degrees, expected, formula, guards, mistake, what
 
 
 def fresnel(quick):
-    """One surface: the mean of s and p."""
+    """Yields single surfaces: the mean of s and p."""
     indices = np.array(BANDS)
     for degrees in (0, 15, 30, 45, 60, 75, 85, 89):
         expected = formulas.fresnel(indices, degrees)
@@ -87,7 +87,7 @@ def fresnel(quick):
 
 
 def by_wavelength(name, degrees, share):
-    """CIE XYZ of what a share of the light of D65 (of its reflectance at each wavelength) looks like, and of D65."""
+    """Returns CIE XYZ of D65 after `share`, a function of the reflectance at each wavelength, and of D65 itself."""
     light = colors.illuminant("D65")
     both = formulas.both_polarizations(formulas.index(name, light.nm), degrees)
     power = np.stack([light.power * sum(map(share, both)) / 2, light.power])
@@ -95,7 +95,7 @@ def by_wavelength(name, degrees, share):
 
 
 def normal(name):
-    """Where nothing disperses lanes share a direction, and each band reflects what it does under white."""
+    """Returns a row without dispersion: lanes share a direction, and each band reflects its mean under white."""
     space = colors.colour.RGB_COLOURSPACES["ITU-R BT.709"]
     reflected, white = by_wavelength(name, 0, lambda r: r) @ space.matrix_XYZ_to_RGB.T
     at_d = float(formulas.index(name, formulas.D_LINE))
@@ -112,7 +112,7 @@ def normal(name):
 
 
 def daylight(name, degrees, kind):
-    """A plate of glass whose lanes stay together: each wavelength has its own share, whatever its direction."""
+    """Returns a row for a plate of glass whose lanes stay together: each wavelength has its own share."""
     share = (lambda r: (1 - r) / (1 + r)) if kind == "T" else (lambda r: 2 * r / (1 + r))
     expected, _ = by_wavelength(name, degrees, share)
     n = formulas.index(name, formulas.D_LINE)
@@ -144,12 +144,12 @@ def daylight(name, degrees, kind):
     )
 
 
-# What 16 wavelengths leave of a smooth spectrum, measured: relative.
+# The measured relative error of 16 wavelengths for a smooth spectrum.
 BANDS_16 = 4e-5
 
 
 def inside(quick):
-    """From inside: n^2 (1 - R), and nothing beyond the critical angle."""
+    """Yields the surface from inside: n^2 (1 - R), and nothing beyond the critical angle."""
     index = 1.5
     for degrees in (0, 25, 40, 41.8, 42, 60, 85):
         reflected = formulas.inside_fresnel(index, degrees)
@@ -180,7 +180,7 @@ def inside(quick):
 
 
 def critical(name):
-    """Where total reflection begins, in a fan of rays, for three lanes."""
+    """Returns a row for the angle where total reflection begins, in a fan of rays, for three lanes."""
     indices = formulas.index(name, np.array(formulas.RED_GREEN_BLUE))
     expected = np.degrees(np.arcsin(1 / indices))
     middle, count, fov = float(np.round(expected.mean(), 1)), 4001, 4.0
@@ -239,10 +239,10 @@ def metals(quick):
 
 
 def piles(quick):
-    """Plates in a row, all reflections between them."""
+    """Yields plates in a row, with all reflections between them."""
     for plates, degrees in ((1, 45), (2, 45), (4, 45), (4, 0), (3, 60)):
         index = 1.5168
-        # Of more plates the plan follows some ways of light, chosen by chance.
+        # With more plates the plan follows only some paths of light, chosen at random.
         chance = {"size": 32, "samples": 16 if quick else 64} if plates > 2 else {}
         scene = view(
             {"glass": glass(index), "glow": glow()},
@@ -272,7 +272,7 @@ def piles(quick):
 
 
 def panes(quick):
-    """The thin pane has the light of all reflections between its faces, at no thickness."""
+    """Yields the thin pane: it has all reflections between its faces, but no thickness."""
     indices = np.array(BANDS)
     for degrees in (0, 45, 60, 80):
         objects = [("pane", {"quad": {"center": [0.0, 0.0, 0.0], "u": [20.0, 0.0, 0.0], "v": [0.0, 0.0, -20.0]}})]
@@ -296,10 +296,10 @@ def panes(quick):
 
 
 def window(quick):
-    """A floor under a pane: parallel sunlight loses what the pane sends back, once."""
+    """Yields a floor under a pane: parallel sunlight loses what the pane reflects, once."""
     for degrees in (0, 50, 70):
         objects = [("pane", plane((0, 1, 0), (0, -1, 0))), ("floor", plane((0, 0, 0), (0, 1, 0)))]
-        # So dark a floor that what comes back to it from the pane counts for nothing.
+        # The floor is so dark that light which the pane reflects back to it does not matter.
         dark = 1e-5
         materials = {"pane": {"thin": {"index": rgb(BANDS)}}, "floor": {"diffuse": {"reflectance": dark}}}
         lights = [sun(degrees, float(np.pi / dark))]

@@ -7,7 +7,7 @@ from .row import Row
 from .scenes import cube, disc, glass, glow, plane, rgb, view
 
 BANDS = (1.333, 1.52, 2.42)
-# Planes that glow, to see what a surface at the origin reflects and what comes through it.
+# Emissive planes that show what a surface at the origin reflects (R) and transmits (T).
 LAMPS = {"R": plane((0, 30, 0), (0, -1, 0)), "T": plane((0, -5, 0), (0, 1, 0))}
 
 
@@ -17,12 +17,12 @@ def looking_down(degrees):
 
 
 def pile(count):
-    """Plates of glass 0.01 thick and 0.01 apart, the first one below the origin."""
+    """Returns plates of glass 0.01 thick and 0.01 apart, the first one below the origin."""
     return [("glass", cube((0, -0.02 * number - 0.005, 0), [40.0, 0.01, 40.0])) for number in range(count)]
 
 
 def plate(kind, degrees, index, optical_depth=0.0, discs=()):
-    """Rays through a plate 0.01 thick toward a plane that glows, before it (R), behind it (T), or on both sides."""
+    """Returns a row for a plate 0.01 thick, with an emissive plane before it (R), behind it (T), or on both sides."""
     depth = np.broadcast_to(np.asarray(optical_depth, float), 3)
     materials = {"glass": glass(rgb(index), absorption=rgb(depth / 0.01)), "glow": glow()}
     bodies = [("glass", disc) for disc in discs] or pile(1)

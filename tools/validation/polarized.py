@@ -12,7 +12,7 @@ GOLD, SILVER, ALUMINUM = 0.43 - 2.455j, 0.06 - 3.586j, 1.015 - 6.627j
 
 
 def sheets(name, formula, stack, guards, mistake, words, degrees=0.0, **more):
-    """Sheets before an even sky, from the camera on, seen at an angle aslant in the plane of x = y."""
+    """Returns a row for sheets before a uniform sky, from the camera on, seen at an angle in the plane of x = y."""
     aslant = np.radians(degrees)
     eye = np.array([np.sin(aslant) * 0.5**0.5, np.sin(aslant) * 0.5**0.5, np.cos(aslant)])
     materials, objects, light = {}, [], Light.unpolarized(eye)
@@ -33,7 +33,7 @@ def retarder(degrees, retardance):
 
 
 def malus(quick):
-    """Malus 1809, and sheets that leak."""
+    """Yields the law of Malus 1809, also for sheets that leak."""
     for degrees in (0, 15, 30, 45, 60, 75, 90):
         for leak in (0, 1e-4):
             guards, mistake = (AVERAGED, ((1 + leak) / 2) ** 2) if degrees != 45 else ("sheets that are crossed", 0)
@@ -68,7 +68,7 @@ def malus(quick):
 
 
 def plates(quick):
-    """Wave plates, alone behind a polarizer and between two."""
+    """Yields wave plates, behind a polarizer and between two."""
     with_stokes = {"film": {"stokes": True}}
     for axis, retardance, name in (
         (45, 90, "quarter"),
@@ -98,7 +98,7 @@ def plates(quick):
 
 
 def mirrored(name, formula, normals, index, guards, words, *, mistake=None, **more):
-    """Mirrors 1 apart on the camera's ray, which comes from above, and a lamp where it goes at last."""
+    """Returns a row for mirrors 1 apart along the camera's ray, which comes from above, and a lamp at its end."""
     direction, at, objects = DOWN, np.zeros(3), []
     for normal in map(unit, normals):
         objects.append(("mirror", disc(at, normal, 0.3)))
@@ -116,7 +116,7 @@ def mirrored(name, formula, normals, index, guards, words, *, mistake=None, **mo
 
 
 def turning(degrees, *turns):
-    """The normals of mirrors that a ray from above meets at an angle, each plane of incidence turned from the last."""
+    """Returns normals of mirrors that a ray from above meets at an angle, each plane turned by one of `turns`."""
     direction, s, normals = DOWN, np.array([0.0, 1, 0]), []
     angle = np.radians(degrees)
     for turn in (0, *turns):
@@ -172,7 +172,7 @@ def mirrors(quick):
 
 
 def glare(quick):
-    """What a filter on the lens leaves of the light that glass reflects."""
+    """Yields what a filter on the lens leaves of light reflected by glass."""
     for degrees in (45.0, float(np.degrees(np.arctan(1.5))), 65.0):
         angle = np.radians(degrees)
         normal = (np.sin(angle), 0, np.cos(angle))
@@ -202,16 +202,17 @@ def glare(quick):
 
 
 def refracted(direction, normal, index):
-    """Into so many times the index."""
+    """Returns the refracted direction into a medium of `index` relative to this one."""
     normal = -normal if normal @ direction > 0 else normal
     cos = -normal @ direction
     return direction / index + (cos / index - np.sqrt(1 - (1 - cos**2) / index**2)) * normal
 
 
 def through(name, formula, bodies, index, way, directions, words, sheet=None, **more):
-    """A ray from the camera through glass to a lamp. `way` has the place and the normal of each surface and whether
-    light crosses it, `directions` those of the ray before, between and behind them. A sheet before the lamp, across z,
-    has an axis at an angle."""
+    """Returns a row for a ray from the camera through glass to a lamp.
+
+    `way` has the place and the normal of each surface and whether light crosses it; `directions` has the ray before,
+    between and behind them. A sheet in front of the lamp, across z, has an axis at an angle."""
     light = Light.unpolarized(-directions[-1])
     averaged = light = light if sheet is None else light.through_polarizer(in_plane(sheet), DOWN)
     inside = False
@@ -244,13 +245,13 @@ def through(name, formula, bodies, index, way, directions, words, sheet=None, **
     )
 
 
-# A prism of 60 degrees, through which light goes along x: its triangle, and the place and normal of both faces.
+# A prism of 60 degrees that light crosses along x: its triangle, and the place and normal of both faces.
 TRIANGLE = [(-1, -(3**-0.5)), (1, -(3**-0.5)), (0, 2 * 3**-0.5)]
 FACES = [(np.array([side * 2 / 3, 0, 0]), np.array([side * 0.75**0.5, 0, 0.5])) for side in (-1, 1)]
 
 
 def rotation(axis, degrees):
-    """Rodrigues 1840."""
+    """Returns the rotation matrix (Rodrigues 1840)."""
     x, y, z = unit(axis)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     angle = np.radians(degrees)
@@ -258,7 +259,7 @@ def rotation(axis, degrees):
 
 
 def prisms(quick):
-    """At least deviation, one and two in a row."""
+    """Yields prisms at minimum deviation, one and two in a row."""
     for glass_name, index, turns in (
         ("N-BK7", 1.5168, [None]),
         ("N-SF11", 1.78472, [None, 0, 90]),
@@ -273,7 +274,7 @@ def prisms(quick):
             stack, way = list(bodies), [(place, normal, True) for place, normal in FACES]
             directions = [entering, along, leaving]
             if turn is not None:
-                # Rotated from the first prism's entering to its leaving ray, and about that.
+                # Rotated from the first prism's entering ray to its leaving ray, and then about that.
                 turned = rotation(leaving, turn) @ rotation(np.cross(entering, leaving), bend)
                 moved = FACES[1][0] + 3 * leaving - turned @ FACES[0][0]
                 body = extrude(TRIANGLE, 0, 0.4)
@@ -298,7 +299,7 @@ def prisms(quick):
 
 
 def rainbows(quick):
-    """A drop in the direction of its rainbows: Descartes 1637."""
+    """Yields a drop in the directions of its rainbows (Descartes 1637)."""
     index, reach = 1.3334, {1: 3, 2: 8}
     for order, name in ((1, "primary"), (2, "secondary")):
         cos = np.sqrt((index**2 - 1) / reach[order])
@@ -327,7 +328,7 @@ def rainbows(quick):
 
 
 def rhombs(quick):
-    """Fresnel 1823: light polarized at 45 degrees turns after two total reflections."""
+    """Yields Fresnel's rhomb (1823): light polarized at 45 degrees becomes circular after two total reflections."""
     index = 1.51
     for degrees in (48.6243, 54.6, 54.623):
         angle = np.radians(degrees)
@@ -359,7 +360,7 @@ def rhombs(quick):
 
 
 def skies(quick):
-    """Still water under a clear sky: Rayleigh 1871, and the degree that a real sky has a quarter turn from the sun."""
+    """Yields still water under a clear sky (Rayleigh 1871), with a real sky's degree at a right angle to the sun."""
     water, degree = 1.3334, 0.7
     for degrees in (30, 45, float(np.round(np.degrees(np.arctan(water)), 4)), 70):
         angle = np.radians(degrees)
@@ -389,7 +390,7 @@ def skies(quick):
 
 
 def varnish(quick):
-    """What a matte surface scatters below a coat is polarized on its way out."""
+    """Yields plastic: light that its matte base scatters below the coat is polarized on its way out."""
     for degrees in (30, 45, 60, 75, 85):
         s, p = (1 - share for share in formulas.both_polarizations(1.5, degrees))
         found = row(

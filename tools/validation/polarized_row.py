@@ -1,4 +1,4 @@
-"""What rows of polarized light share: pixels of gray light, and what is expected of S0 to S3."""
+"""Code that rows of polarized light share: pixels of gray light, and the expected S0 to S3."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ NOT_TURNED = "frames that are not turned from surface to surface"
 
 
 def components(image):
-    """S0 to S3 of every pixel."""
+    """Returns S0 to S3 of every pixel."""
     polarized = [readers.need(image, f"S{number}.G") for number in (1, 2, 3)]
     return np.stack([image.rgb[..., 1], *polarized], -1).reshape(-1, 4)
 
@@ -35,8 +35,10 @@ def row(
     lights=SKY,
     **settings,
 ):
-    """A pixel of gray light, S0 or with `film` S0 to S3. Rounding counts by the bright light of which dark pixels are
-    left; what the mistake changes by less is not told by it."""
+    """Returns a row for pixels of gray light: S0, or with `film` S0 to S3.
+
+    Rounding is that of bright light, of which dark pixels are the remainder. Components that the mistake changes by
+    less do not count as affected."""
     scene = view(materials, objects, lights, **{"polarization": "on"} | settings)
     scene["film"] |= film or {}
     scene["camera"] |= camera or {}
@@ -48,7 +50,7 @@ def row(
 
 
 def untraced(row, averaged):
-    """The same row without polarization, whose light is what the mean of R_s and R_p leaves at every surface."""
+    """Returns the row without polarization, in which every surface applies the mean of R_s and R_p."""
     scene = row.scene | {"render": row.scene["render"] | {"polarization": "off"}}
     scene["film"] = {key: value for key, value in row.scene["film"].items() if key != "stokes"}
     return row._replace(
@@ -64,7 +66,7 @@ def untraced(row, averaged):
 
 
 def in_plane(degrees):
-    """A direction in the image, counterclockwise from its right."""
+    """Returns a direction in the image, counterclockwise from its right."""
     return [float(np.cos(np.radians(degrees))), float(np.sin(np.radians(degrees))), 0.0]
 
 

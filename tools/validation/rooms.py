@@ -10,11 +10,11 @@ SPREAD = (1.1, 1.5, 2.5)
 
 
 def rows(quick):
-    """Closed rooms, where every bounce counts."""
+    """Yields closed rooms, where every bounce counts."""
     size, samples = (12, 512) if quick else (20, 1024)
     for reflectance in (0.65, 0.8, 0.95):
         fraction = 0.05
-        # A disc across a sphere is seen from every point of the wall as the cap behind it would be.
+        # From every point of the wall, a disc across a sphere has the view factor of the cap behind it.
         depth = 1 - 2 * fraction
         port = disc((0, depth, 0), (0, -1, 0), np.sqrt(1 - depth**2))
         materials = {"wall": diffuse(reflectance), "port": glow()}
@@ -70,7 +70,7 @@ def rows(quick):
 
 
 def box(reflectance, quick):
-    """A diffuse cube around a point light in its middle: all walls are alike, so one is seen, evenly in area."""
+    """Yields a diffuse cube around a point light in its middle. All walls are equal, so one is seen, evenly in area."""
     materials, intensity, edge = {"wall": diffuse(rgb(reflectance))}, 1.0, 2.0
     light = {"point": {"position": (0.0, 0.0, 0.0), "intensity": intensity}}
     size, samples = (24, 256) if quick else (32, 1024)
@@ -98,5 +98,5 @@ def box(reflectance, quick):
         "paths that end after 8 bounces",
         expected * (1 - reflectance**8),
         words,
-        2 if quick else 8,  # light paths, which are followed for larger images, are shared by all pixels of one
+        2 if quick else 8,  # light paths, used for larger images, are shared by all pixels of one
     )

@@ -1,9 +1,9 @@
 """A row of the book, and how the images of its scene are judged.
 
-The standard error is honest: of two seeds' differences pixel by pixel, of the spread of more seeds' means where a
-photon or a light path lights many pixels, of the spread of the pixels where there is one image. To it comes the bound of
-rounding: a stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24. Where a few pixels hold
-nearly all of the noise, its spread says little of its size, and the row fails for that.
+The standard error comes from the differences of two seeds pixel by pixel; from the spread of the means of more seeds,
+if a photon or a light path lights many pixels; or from the spread of the pixels, if there is one image. The bound of
+rounding is added to it: a stored value is a product of up to 32 factors in 32 bits, each off by at most 2^-24. If a few
+pixels hold nearly all of the noise, its spread is no good estimate of its size, and the row fails.
 """
 
 from collections.abc import Callable
@@ -13,17 +13,16 @@ import numpy as np
 
 ROUNDING = 32 * 2.0**-24
 LIMIT = 4.0
-# A standard error tells a value from the one that the mistake would give if it is at most this share of the difference.
+# A standard error can tell a value from that of the mistake if it is at most this share of their difference.
 SHARE = 0.25
-# The most of a row's values, of ten or more, in which the mistake may by accident change less.
+# The largest share of a row's values, of ten or more, that the mistake may happen to change less.
 ALIKE = 0.1
-# The fewest pixels that may carry the noise: of normal noise a third of them do, of a tail that is hardly sampled one. With
-# fewer than four, the estimated variance is itself off by half.
+# The fewest pixels that may carry the noise: a third of all pixels for normal noise, one for a barely sampled tail.
+# With fewer than four, the estimated variance is itself off by half.
 CARRIERS = 4
-# The fewest pixels of which that is asked.
+# The fewest pixels for which this is tested.
 ASKED = 100
-# How far one pixel may be off where all show the same, in standard deviations of the pixels: behind glass they are
-# not alike.
+# The largest error of one pixel if all should be equal, in standard deviations of the pixels, which vary behind glass.
 WORST_PIXEL = 30
 
 
@@ -36,9 +35,9 @@ class Row(NamedTuple):
     expected: object  # a number, or one for each value
     guards_against: str  # a plausible mistake ..
     mistake: object  # .. and what it would measure
-    words: str  # the scene in a sentence, for who builds it elsewhere
-    seeds: int = 1  # 1: nothing is left to chance
-    rounding: object = None  # bound of what rounding does to each value, if it is not ROUNDING of the value
+    words: str  # the scene in a sentence, for building it elsewhere
+    seeds: int = 1  # 1: nothing is random
+    rounding: object = None  # bound on the rounding error of each value, if it is not ROUNDING of the value
     every_pixel: bool = False  # each pixel has the expected value, not only their mean
     explain: Callable | None = None  # (measured, expected) -> why, in words, or none
 
@@ -50,7 +49,7 @@ class Judged(NamedTuple):
     standard_error: np.ndarray
     z: np.ndarray
     effect: np.ndarray
-    estimates: int  # how many measurements of each value an image holds
+    estimates: int  # number of measurements of each value in an image
     reasons: list[str]  # why it fails; empty if it passes
 
     @property
@@ -59,7 +58,7 @@ class Judged(NamedTuple):
 
 
 def statistics(estimates):
-    """Mean, its standard error, and the standard deviation of one estimate, of the estimates of every image."""
+    """Returns mean, standard error, and standard deviation of one estimate, from the estimates of every image."""
     if len(estimates) == 2:
         first, second = estimates
         deviation = np.sqrt(np.mean((first - second) ** 2, axis=0) / 4)
@@ -74,20 +73,20 @@ def statistics(estimates):
 
 
 def carriers(first, second):
-    """How many pixels carry the noise of each value, (sum d^2)^2 / sum d^4 of two images' differences d.
+    """Returns how many pixels carry the noise of each value, (sum d^2)^2 / sum d^4 of two images' differences d.
 
-    An estimated variance is off by about one over the root of it."""
+    The relative error of an estimated variance is about one over the root of that number."""
     squares = (first - second) ** 2
     return squares.sum(axis=0) ** 2 / np.maximum((squares**2).sum(axis=0), 1e-300)
 
 
 def judge(row, images):
-    """What the images say of the row."""
+    """Judges a row by its images."""
     if not all(np.isfinite(image.rgb).all() for image in images):
         return unmeasured(row, "the file has values that are not finite")
-    with np.errstate(all="ignore"):  # what is no number is told as such
+    with np.errstate(all="ignore"):  # NaN is reported as such
         estimates = [np.asarray(row.read(image), float) for image in images]
-    # What is no number in one image is left out in all: pixels that a body does not cover.
+    # Estimates that are NaN in one image are left out in all: pixels that a body does not cover.
     estimates = np.array([one.reshape(len(one), -1) for one in estimates])
     estimates = estimates[:, ~np.isnan(estimates).any(axis=(0, 2))]
     if not estimates.size:
@@ -104,8 +103,8 @@ def judge(row, images):
         reasons.append(
             (row.explain and row.explain(measured, expected)) or why(row, measured, expected, mistake, error)
         )
-    # Where the mistake changes nothing, as the Y of white, there is nothing to tell; among many colors a few come out
-    # alike.
+    # A mistake that changes nothing, as in the Y of white, cannot be detected. Among many colors a few may be
+    # unaffected.
     touched = effect > 1e-12 * np.abs(expected)
     if not touched.any() or (error > SHARE * effect)[touched].mean() > ALIKE:
         reasons.append(
@@ -130,25 +129,25 @@ def judge(row, images):
 
 
 def unmeasured(row, reason):
-    """The row fails, for nothing could be measured."""
+    """Returns a row that fails because nothing could be measured."""
     expected = np.atleast_1d(np.asarray(row.expected, float))
     nothing = np.full(expected.shape, np.nan)
     return Judged(row, expected, nothing, nothing, nothing, nothing, 0, [reason])
 
 
 def most(error, effect):
-    """The standard error of the value in which the mistake is least seen."""
+    """Returns the standard error of the value in which the mistake is hardest to see."""
     return error[np.argmax(error / np.where(effect > 0, effect, np.inf))]
 
 
 def why(row, measured, expected, mistake, error):
-    """What is wrong, and whether it is the mistake that the row guards against."""
+    """Says what is wrong, and whether it looks like the mistake that the row guards against."""
     text = f"{numbers(measured)} was measured; expected {numbers(expected)}"
     nearer = np.linalg.norm((measured - mistake) / error) < 0.5 * np.linalg.norm((measured - expected) / error)
     return f"{text}: as if by {row.guards_against}" if nearer else text
 
 
 def numbers(values):
-    """A few numbers as people read them."""
+    """Formats a few numbers for reading."""
     values = np.unique(np.round(np.atleast_1d(values), 10)) if np.ptp(values) == 0 else np.atleast_1d(values)
     return ", ".join(f"{value:.7g}" for value in values)

@@ -1,4 +1,4 @@
-"""Scenes as dictionaries, and how they become the TOML that the renderer reads.
+"""Scenes as dictionaries, and their conversion to the TOML that the renderer reads.
 
 text = toml_file(view({}, [], [SKY], eye=(0, 0, 1)))
 """
@@ -13,7 +13,7 @@ def toml_file(scene):
 
 
 def toml(value):
-    """An inline TOML value."""
+    """Returns an inline TOML value."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, (list, tuple)):
@@ -46,10 +46,10 @@ def view(
     space=None,
     **settings,
 ):
-    """A scene; `objects` pairs each material's name with a shape. Parallel rays where a `height` is given, else a
-    pinhole.
+    """Returns a scene; `objects` pairs each material's name with a shape.
 
-    No `samples`: one ray through each pixel's center, which leaves nothing to chance where all surfaces are smooth."""
+    The camera is orthographic if a `height` is given, else a pinhole. Without `samples`, one ray goes through each
+    pixel's center, so nothing is random if all surfaces are smooth."""
     size = (size, size) if isinstance(size, int) else size
     camera = {"position": vector(eye), "look_at": vector(target), "up": vector(up), "near": near}
     lens = {"vertical_fov": fov} if height is None else {"projection": "orthographic", "height": height}
@@ -93,7 +93,7 @@ def glow(radiance=1, **more):
 
 
 def sun(degrees, irradiance=1.0, angular_diameter=0):
-    """Light from so far beside straight above, toward +x."""
+    """Returns a sun at an angle from straight above, toward +x."""
     angle = np.radians(degrees)
     toward = [float(np.sin(angle)), float(np.cos(angle)), 0.0]
     return {"sun": {"toward": toward, "angular_diameter": angular_diameter, "irradiance": irradiance}}
@@ -104,7 +104,7 @@ def glass(index, **more):
 
 
 def extrude(polygon, y, half_height):
-    """A mesh over a convex polygon of (x, z), its faces outward."""
+    """Returns a mesh over a convex polygon of (x, z), with its faces outward."""
     low, high = ([[x, y + side * half_height, z] for x, z in polygon] for side in (-1, 1))
     points, n = np.array(low + high, float), len(polygon)
     faces = [[0, i, i + 1] for i in range(1, n - 1)] + [[n, n + i, n + i + 1] for i in range(1, n - 1)]

@@ -18,23 +18,23 @@ S = np.array([0.0, 1, 0])
 
 
 def along(degrees, side):
-    """A direction in the plane y = 0, so far from the normal on one side of z = 0."""
+    """Returns a direction in the plane y = 0, at an angle from the normal on one side of z = 0."""
     angle = np.radians(degrees)
     return np.array([np.sin(angle), 0, side * np.cos(angle)])
 
 
 class Stage(NamedTuple):
-    """A camera and a lamp before or behind z = 0, between them a sheet that polarizes halfway between s and p."""
+    """A camera and a lamp above or below z = 0, and between them a sheet that polarizes halfway between s and p."""
 
     eye: np.ndarray
     onward: np.ndarray  # toward the lamp
-    light: Light  # as it comes
+    light: Light  # behind the sheet, before it meets the surface
     materials: dict
     objects: list
 
     @classmethod
     def of(cls, seen, lit, lamp=None):
-        """`seen` and `lit` have the angle and the side of camera and lamp."""
+        """Returns a stage; `seen` and `lit` have the angle and the side of camera and lamp."""
         onward = along(*lit) * [-1, 1, 1]
         axis = unit(S + np.cross(S, onward))
         light = Light.unpolarized(-onward).through_polarizer(axis, -onward)
@@ -44,12 +44,12 @@ class Stage(NamedTuple):
 
 
 def surface(name, formula, index, seen, lit, guards, wrong, words):
-    """The surface z = 0 of glass that lies below; `wrong` makes of S0 to S3 what the mistake would measure."""
+    """Returns a row for the surface z = 0 of glass below it; `wrong` maps S0 to S3 to the values of the mistake."""
     stage = Stage.of(seen, lit)
     around, beyond = (1, index) if lit[1] > 0 else (index, 1)
     to, returns = complex(beyond / around), seen[1] == lit[1]
     light = stage.light.reflected(UP, to) if returns else stage.light.crossing(UP, to)
-    # Radiance goes by the square of the index.
+    # Radiance scales with the square of the index.
     expected = light.stokes(RIGHT) * (1.0 if returns else to.real**2)
     return row(
         name,
@@ -67,7 +67,7 @@ def surface(name, formula, index, seen, lit, guards, wrong, words):
 
 
 def amplitudes(quick):
-    """Fresnel 1823, from both sides: reflected and refracted."""
+    """Yields the formulas of Fresnel 1823, from both sides: reflected and refracted."""
     index = 1.5
     brewster = float(np.degrees(np.arctan(index)))
     averaged = lambda stokes: stokes * [1, 0, 0, 0]  # noqa: E731
@@ -96,7 +96,7 @@ def amplitudes(quick):
 
 
 def total_reflection(quick):
-    """The phase between s and p of total reflection (Born and Wolf 1.5.4), at its largest among others."""
+    """Yields the phase between s and p in total reflection (Born and Wolf 1.5.4), including its maximum."""
     largest = float(np.degrees(np.arcsin(np.sqrt(2 / (1 + 1.5**2)))))
     for index, degrees in ((1.5, 45.0), (1.5, largest), (1.5, 60.0), (1.5, 75.0), (1.51, 54.6)):
         yield surface(
@@ -113,7 +113,7 @@ def total_reflection(quick):
 
 
 def piles(quick):
-    """Stokes 1862: S0 and S1 of what plates in a row let through."""
+    """Yields S0 and S1 of light through plates in a row (Stokes 1862)."""
     brewster = [float(np.degrees(np.arctan(index))) for index in (1.5, 1.5168)]
     for index, degrees, counts in (
         (1.5, 45.0, (1, 4)),
@@ -128,7 +128,7 @@ def piles(quick):
             s, p = ((1 - r) / (1 + (2 * plates - 1) * r) for r in both)
             mean = sum(both) / 2
             averaged = (1 - mean) / (1 + (2 * plates - 1) * mean)
-            # Of more plates the plan follows some ways of light, chosen by chance.
+            # With more plates the plan follows only some paths of light, chosen at random.
             chance = {"size": 32, "samples": 8 if quick else 64} if plates > 1 else {}
             found = row(
                 f"S0 and S1 through {plates} {'plates' if plates > 1 else 'plate'} of {index} at {degrees:.6g} degrees",
@@ -159,14 +159,14 @@ def piles(quick):
 
 
 def pane(quick):
-    """All reflections between both faces of a pane that absorbs, one after the other."""
+    """Yields a pane that absorbs, with all reflections between its faces, one after the other."""
     index, left, degrees = 1.52, 0.9, 60.0
     for which, side in (("reflected by", 1), ("through", -1)):
         stage = Stage.of((degrees, 1), (degrees, side))
         coming = stage.light
         into, out = complex(index), complex(1 / index)
         inside = coming.crossing(UP, into)
-        # Amplitudes by the root of the share that one way leaves; orders do not interfere.
+        # One way through the pane scales <E E*> by the share `left`. Orders do not interfere.
         way = lambda light: Light(light.direction, left * light.field)  # noqa: E731
         field = coming.reflected(UP, into).field if which != "through" else 0
         for order in range(60):

@@ -12,9 +12,9 @@ ONCE = {"diffuse_bounces": 0}
 
 
 def lit(name, lamp, irradiance, formula, guards, mistake, quick, words, normal=(0, 1, 0), samples=512):
-    """One point of a white diffuse plane at the origin, lit by a lamp of radiance 1: irradiance / pi."""
+    """Returns a row for a point of a white diffuse plane, lit by a lamp of radiance 1: irradiance / pi."""
     materials = {"floor": diffuse(1), "lamp": glow()}
-    # From the side, above the floor and below the lamp.
+    # The camera looks from the side, above the floor and below the lamp.
     eye = np.array([9.0, 1.0, 0.0]) if normal == (0, 1, 0) else 3 * np.array(normal) + np.array([0.5, 0.1, 0.2])
     size = 8 if quick else 24
     scene = view(
@@ -89,7 +89,7 @@ def lamps(quick):
 
 
 def small_lights(quick):
-    """Points, spots and suns: nothing is left to chance."""
+    """Yields points, spots and suns; nothing is random, except for suns with an extent."""
 
     def row(name, light, expected, formula, guards, mistake, words):
         scene = view({"floor": diffuse(1)}, [("floor", FLOOR)], [light], eye=(9, 1, 0), **ONCE)
@@ -171,7 +171,7 @@ def small_lights(quick):
 
 
 def exchange(name, receiver, lamp, factor, formula, guards, mistake, camera, quick, words, round_receiver=False):
-    """The mean over a receiver of reflectance 1 and the picture's size: its view factor to a lamp of radiance 1."""
+    """Returns a row for the mean of a receiver of reflectance 1 that fills the picture: its view factor to the lamp."""
     size, samples = (16, 128) if quick else (32, 512)
     settings = {"size": size, "samples": samples} | ONCE
     scene = view(
@@ -193,7 +193,7 @@ def exchange(name, receiver, lamp, factor, formula, guards, mistake, camera, qui
 
 
 def factors(quick):
-    """View factors: the mean irradiance of one surface by another."""
+    """Yields view factors: the mean irradiance of one surface by another."""
     small = "the factor of its middle point taken for all"
     down = {"up": (0, 0, -1), "target": (0, 0, 0)}
     for side, height in ((2, 2), (2, 0.5), (1, 3)):
@@ -218,7 +218,7 @@ def factors(quick):
             if width == length == height
             else f"perpendicular rectangles {length} and {height}, common edge {width}"
         )
-        # The receiver is seen whole if the picture has its sides.
+        # The receiver fills the picture if both have the same proportions.
         receiver = quad((0, 0, length / 2), (width / 2, 0, 0), (0, 0, -length / 2))
         lamp = quad((0, height / 2, 0), (width / 2, 0, 0), (0, height / 2, 0))
         row = exchange(

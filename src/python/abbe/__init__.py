@@ -36,7 +36,7 @@ __all__ = [
     "render",
 ]
 
-# Where people find them, which is what tracebacks and help say.
+# Tracebacks and help name the module in which users find these names.
 for _name in __all__:
     if hasattr(globals()[_name], "__module__"):
         globals()[_name].__module__ = __name__

@@ -1,4 +1,4 @@
-# What src/python/*.rs holds; the package says what it is for.
+# What src/python/*.rs defines. The docs are in the package.
 import os
 from collections.abc import Callable, Mapping
 from typing import Any, NoReturn, final

@@ -1,4 +1,4 @@
-"""Arguments that are checked before anything is done with them."""
+"""Checks of arguments, made before anything is done with them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Path = Union[str, bytes, "os.PathLike[str]"]
 
 
 def path(name: str, value: Any, wanted: str = "the path of a file or folder") -> str:
-    """The path that `value` is, which is `wanted`."""
+    """Returns `value` as a path. `wanted` describes it in the error."""
     try:
         return os.fsdecode(value)
     except TypeError:
@@ -21,14 +21,14 @@ def path(name: str, value: Any, wanted: str = "the path of a file or folder") ->
 
 
 def text(name: str, value: Any) -> str:
-    """The text that `value` is."""
+    """Returns `value` if it is a text."""
     if not isinstance(value, str):
         raise TypeError(f"{name} is a text, not {_shown(value)}")
     return value
 
 
 def whole(name: str, value: Any) -> int:
-    """The whole number that `value` is; True and False are none, though Python counts with them."""
+    """Returns `value` as a whole number. True and False are rejected, though they are integers to Python."""
     try:
         if not _is_truth(value):
             return operator.index(value)
@@ -38,7 +38,7 @@ def whole(name: str, value: Any) -> int:
 
 
 def number(name: str, value: Any) -> float:
-    """The number that `value` is; neither a truth nor a text is one."""
+    """Returns `value` as a number. Truth values and texts are rejected."""
     try:
         if not _is_truth(value) and not isinstance(value, (str, bytes)):
             return float(value)
@@ -52,21 +52,21 @@ def _is_truth(value: Any) -> bool:
 
 
 def truth(name: str, value: Any) -> bool:
-    """The truth that `value` is, of Python or numpy."""
+    """Returns `value` as a truth value, of Python or numpy."""
     if not _is_truth(value):
         raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) says all arguments")
     return bool(value)
 
 
 def function(name: str, value: Any) -> Callable[..., object]:
-    """The function that `value` is."""
+    """Returns `value` if it can be called."""
     if not callable(value):
         raise OptionsError(f"{name} is a function, not {_shown(value)}", f"such as {name}=print")
     return value
 
 
 def settings(value: Any) -> dict[str, Any]:
-    """The values that replace those of a scene."""
+    """Returns the values that replace those of a scene, as a dict with texts for keys."""
     if not isinstance(value, Mapping):
         raise OptionsError(f"set is a dict, not {_shown(value)}", 'such as set={"film.width": 320}')
     for key in value:

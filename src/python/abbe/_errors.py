@@ -39,11 +39,11 @@ class RenderError(Exception):
 
 
 class OptionsError(RenderError, ValueError):
-    """Something impossible is asked for."""
+    """An argument that asks for something impossible."""
 
 
 class SceneError(RenderError, ValueError):
-    """A scene that means nothing that could be rendered."""
+    """A scene that cannot be rendered because of its mistakes."""
 
     mistakes: list[Mistake]
     """All its mistakes, in the order of the scene."""

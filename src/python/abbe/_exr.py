@@ -1,4 +1,4 @@
-"""Images in files, and how far images are apart."""
+"""Image files, and the difference between two images."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._layers import Layers
 
 
 class ExrImage(Layers):
-    """An OpenEXR file of any program, read whole."""
+    """An OpenEXR file written by any program, read as a whole."""
 
     _core: _abbe.Exr
 
@@ -23,9 +23,10 @@ class ExrImage(Layers):
         self._core = core
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """A layer, or one channel by its full name: float32, or uint32 if the file has that; height x width, and x
-        channels if there are several. Alpha is none of those of a color: it is `"A"`, or `"NAME.A"`. Mattes have
-        four.
+        """Returns a layer by its name, or one channel by its full name.
+
+        The array is float32, or uint32 if the file has that; height x width, and x channels if there are several. Alpha
+        is not part of a color: it is `"A"`, or `"NAME.A"`. Mattes have four channels.
 
         Raises `KeyError` with the nearest name if there is none.
         """
@@ -33,18 +34,18 @@ class ExrImage(Layers):
 
     @property
     def format(self) -> tuple[int, int]:
-        """Columns and rows of the full image, of which the file may hold less or more."""
+        """Columns and rows of the full image. The file may hold a part of it, or more than it."""
         return self._core.format
 
     @property
     def attributes(self) -> dict[str, str]:
-        """What the file says of itself, as words. What parts say otherwise is as the first of them has it."""
+        """The attributes of the file's header, as text. Where its parts differ, the value is that of the first part."""
         return dict(reversed(self._core.attributes))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """How far two images are apart. Pixels with a value that is not finite are left out, but of `torn`."""
+    """The difference between two images. Pixels with a value that is not finite are left out, except from `torn`."""
 
     agrees: bool
     """Whether all values are equal, those of other layers as well; or whether `relative_mse` is within the tolerance;
@@ -85,9 +86,9 @@ Picture = Union[Path, ExrImage, Image]
 
 
 def read_exr(path: Path) -> ExrImage:
-    """Reads an OpenEXR file of any program.
+    """Reads an OpenEXR file written by any program.
 
-    Raises `FileNotFoundError` if there is none, and `RenderError` if it is no complete image.
+    Raises `FileNotFoundError` if there is no such file, and `RenderError` if it is not a complete image.
     """
     return ExrImage(_abbe.Exr.read(_arguments.path("path", path)))
 
@@ -104,12 +105,12 @@ def _file(picture: Picture) -> _abbe.Exr:
 def diff(a: Picture, b: Picture, *, layer: str | None = None, tolerance: float | None = None) -> Difference:
     """Compares two images, or files of images, as the command `render diff` does.
 
-    Images that have a `variance` layer agree as long as chance explains every pixel and the mean of each channel: two
-    renders with other seeds are told apart by mistake in at most about one of a hundred cases. `tolerance` judges by
-    `relative_mse` instead. `layer` compares a layer such as `"albedo"` in place of the image itself. Of a crop
-    beside its image, the pixels that both have are compared.
+    Images with a `variance` layer agree if chance explains the difference of every pixel and of each channel's mean.
+    Two renders of a scene with different seeds fail this test in at most about one of a hundred cases. `tolerance`
+    judges by `relative_mse` instead. `layer` compares a layer such as `"albedo"` instead of the image itself. If one
+    image is a crop of the other, the pixels that both have are compared.
 
-    Raises `OptionsError` if they cannot be compared, as of other sizes.
+    Raises `OptionsError` if they cannot be compared, for example because their sizes differ.
     """
     name = None if layer is None else _arguments.text("layer", layer)
     most = None if tolerance is None else _arguments.number("tolerance", tolerance)

@@ -1,4 +1,4 @@
-"""What rendered images and images in files have in common: layers by name."""
+"""What rendered images and image files have in common: layers, found by name."""
 
 from __future__ import annotations
 
@@ -15,39 +15,39 @@ BEAUTY = "beauty"
 
 
 class Layers:
-    """The layers of an image by their names, as arrays: rows from the top, columns, and channels if it has several.
+    """The layers of an image by their names, as arrays: rows from the top, columns, and channels if there are several.
 
-    numpy takes the whole for its `rgb`.
+    Where numpy expects an array, the image stands for its `rgb`.
     """
 
     _core: Any
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """A layer such as `"albedo"` or `"Z"`, or one channel by its name in the file, such as `"albedo.R"`."""
+        """Returns a layer such as `"albedo"` or `"Z"`, or one channel by its name in the file, such as `"albedo.R"`."""
         raise NotImplementedError
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """The names of all layers; `"beauty"` is the image itself, in a file red, green and blue without a name."""
+        """The names of all layers; `"beauty"` is the image itself: in files, red, green and blue without a name."""
         return tuple(self._core.layers)
 
     @property
     def width(self) -> int:
-        """Pixels per row of what is there: the format, with its overscan, or a part of it."""
+        """Pixels in each row of the arrays: of the format and its overscan, or of a part of it."""
         return self._core.size[0]
 
     @property
     def height(self) -> int:
-        """Rows of what is there."""
+        """Rows of the arrays."""
         return self._core.size[1]
 
     @property
     def corner(self) -> tuple[int, int]:
-        """Column and row of the first pixel, counted from the top left of the format: negative in its overscan."""
+        """Column and row of the first pixel, counted from the top left of the format: negative in the overscan."""
         return self._core.corner
 
     def to_png(self, path: Path, exposure: float = 0.0) -> None:
-        """Writes an 8-bit sRGB picture for looking, brightened by 2^`exposure`, whatever color space the image has."""
+        """Writes an 8-bit sRGB picture for viewing, brightened by 2^`exposure`, whatever color space the image has."""
         self._core.write_png(_arguments.path("path", path), _arguments.number("exposure", exposure))
 
     def _repr_png_(self) -> bytes:
@@ -65,7 +65,7 @@ class Layers:
         return list(self.layers)
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is such a layer, or a channel of this name in the file: what `image[name]` finds."""
+        """Whether `image[name]` finds a layer, or a channel of this name in the file."""
         if not isinstance(name, str):
             return False
         try:
@@ -84,6 +84,6 @@ class Layers:
     def rgb(self) -> npt.NDArray[np.float32]:
         """Linear red, green and blue, float32, height x width x 3: the radiance in the film's color space.
 
-        Raises `KeyError` if a file has no `"beauty"`, but layers with names alone.
+        Raises `KeyError` if a file has no `"beauty"`, only named layers.
         """
         return self[BEAUTY]

@@ -22,7 +22,7 @@ Time = Union[Real, str]
 
 
 class Progress(NamedTuple):
-    """How far a render is."""
+    """How far a render has got."""
 
     done: int
     """Camera samples that were taken, and photons, each of which counts as the samples that take as long."""
@@ -71,13 +71,14 @@ class Plan(NamedTuple):
 
 
 class Scene:
-    """A scene that was read and checked: to render it several times, or to know that it is right.
+    """A scene that was read and checked, to be rendered several times, or only checked.
 
     `source` is the path of a scene file, or a dict with the keys of one. A dict may hold numbers, texts, dicts, lists,
     tuples, paths, numbers and arrays of numpy, and entries of the catalog, which stand for their names. Files that it
-    names are looked for in `folder`; an image is a file, and no array. `set` puts values in the place of the scene's by
-    the paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`; entries of lists go by their
-    name or by their number from 1. One word sets the scene's variable: `{"frame": 7}` is what `--frame 7` is.
+    names are looked up in `folder`. An image has to be a file, not an array. `set` replaces values of the scene by the
+    paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`. Entries of lists are found by
+    their name or by their number, counted from 1. A single word sets a variable of the scene: `{"frame": 7}` does what
+    `--frame 7` does.
 
     Raises `SceneError` with all its mistakes, and `FileNotFoundError` if there is no such file.
     """
@@ -101,12 +102,12 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """What its author should know but need not change."""
+        """What the scene's author should know but need not change."""
         return self._core.warnings
 
 
 def _loads(source: str) -> str | None:
-    """What reads the text of a scene, if that stands where its path should."""
+    """Returns the function that parses `source`, if it is the text of a scene rather than its path."""
     is_json = source.lstrip().startswith("{")
     if (is_json or "\n" in source) and not os.path.lexists(source):
         return "json.loads" if is_json else "tomllib.loads"
@@ -138,9 +139,9 @@ def plan(
     spectral: bool = False,
     threads: Whole | None = None,
 ) -> Plan:
-    """How a scene would be rendered, why, and how long that takes: nothing is rendered.
+    """Plans a render without rendering: how it would be done, why, and how long it would take.
 
-    The arguments are those of `render` that say what the image is, and so is what is raised.
+    The arguments are those of `render` that describe the image. The errors are the same too.
     """
     account, on = _abbe.plan(_scene(scene, set, folder), locals())
     found = json.loads(account)
@@ -170,33 +171,35 @@ def render(
 ) -> Image:
     """Renders a scene: a file, a dict with the keys of one, or a `Scene`.
 
-    The image is the same to the last bit as that of the command, for any number of threads. Other threads of Python run
-    meanwhile, and may render as well.
+    The image is identical to the last bit to that of the command, for any number of threads. Other Python threads keep
+    running meanwhile, and may render as well.
 
-    - `set`, `folder`: as of `Scene`; not beside one, which has its own.
-    - `samples`: camera samples per pixel, 1 or more, instead of the scene's; with `error` or `time`, the most.
-    - `error`: relative error of the image at which it is good enough, 0.000001 to 1. 0.01 is one percent.
+    - `set`, `folder`: as for `Scene`. They cannot be given with a `Scene`, which has its own.
+    - `samples`: camera samples per pixel, 1 or more, instead of the scene's; with `error` or `time`, the maximum.
+    - `error`: relative error of the image at which to stop, 0.000001 to 1. 0.01 is one percent.
     - `time`: how long it may take, in seconds, or with a unit: `"10m"`.
     - `seed`: chooses another set of random numbers.
     - `overscan`: pixels around the format: one number, or those to the left, above, to the right and below.
-    - `crop`: the part of the image that is made: first column, first row, width and height in pixels.
-    - `layers`: names of layers beside the image, or `"all"`; `LAYERS` has them. What `film.stokes` asks for stays beside
-      them, and `"all"` asks for no polarization.
-    - `spectral`: whether spectra are made, for `Image.spectrum`.
-    - `threads`: processor threads; all if absent.
+    - `crop`: the part of the image to render: first column, first row, width and height in pixels.
+    - `layers`: names of layers to make beside the image, or `"all"`; `LAYERS` lists them. The layers of `film.stokes`
+      are kept beside them, and `"all"` does not include polarization.
+    - `spectral`: whether to make spectra, for `Image.spectrum`.
+    - `threads`: processor threads; all of them by default.
     - `stamp`: whether the file says when it was made and how long that took.
-    - `progress`: is called twice a second, and at the end, with a `Progress`. What it raises stops the render.
-    - `checkpoint`: a file that keeps what is done, `every` so many seconds, when it is stopped, and at the end.
-    - `resume`: goes on from the checkpoint, if it is there, to the same image or to more samples.
+    - `progress`: is called twice a second, and at the end, with a `Progress`. An exception that it raises stops the
+      render.
+    - `checkpoint`: a file that keeps the work done so far, written `every` so many seconds, when the render is stopped,
+      and at the end.
+    - `resume`: continues from the checkpoint, if there is one, to the same image or to more samples.
 
-    Ctrl-C stops a render within a second, by `KeyboardInterrupt`, or when its checkpoint is written. Other processes
-    may render as well, also those that are forked while nothing is rendered. Let them return arrays or write files, as
-    an image cannot be pickled.
+    Ctrl-C stops a render within a second, or once its checkpoint is written, by `KeyboardInterrupt`. Other processes
+    may render as well, including those that are forked while nothing is rendered. Let them return arrays or write
+    files, because an image cannot be pickled.
 
-    What its author should know of the scene and of the image is in `Image.stats["warnings"]`, a list of sentences.
+    `Image.stats["warnings"]` lists, in sentences, what the author should know about the scene and the image.
 
     Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
-    `RenderError` if a file fails.
+    `RenderError` if reading or writing a file fails.
     """
     asked = locals()
     tell = None

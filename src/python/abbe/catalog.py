@@ -1,6 +1,6 @@
-"""Glasses, metals, illuminants and reflectances by the names that scenes know them by.
+"""Glasses, metals, illuminants and reflectances, by the names that scenes use for them.
 
-Wavelengths are in nm, single ones or arrays of any shape; what is answered has the same shape, and the same mask.
+Wavelengths are in nm, as single numbers or arrays of any shape. The result has the same shape, and the same mask.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class _Entry:
 
     @property
     def range_nm(self) -> tuple[float, float]:
-        """The wavelengths in nm between which it is known."""
+        """The range of wavelengths in nm that its data covers."""
         return self._core.entry.range_nm
 
     def __eq__(self, other: object) -> bool:
@@ -82,20 +82,20 @@ class Glass(_Entry):
 
     @property
     def n_d(self) -> float:
-        """The index at 587.56 nm."""
+        """The refractive index at 587.56 nm."""
         return self._core.n_d
 
     @property
     def v_d(self) -> float:
-        """The Abbe number (n_d - 1) / (n_F - n_C); not a number if the index is not known at these lines."""
+        """The Abbe number (n_d - 1) / (n_F - n_C); NaN if the index is not known at these lines."""
         return self._core.v_d
 
     def index(self, nm: npt.ArrayLike) -> Any:
-        """The index; beyond the known wavelengths, the value at their end."""
+        """Returns the refractive index; beyond the known wavelengths, its value at the end of their range."""
         return _at(nm, self._core.index)
 
     def extinction(self, nm: npt.ArrayLike) -> Any:
-        """The extinction k; NaN if it is not known."""
+        """Returns the extinction coefficient k; NaN if it is not known."""
         return _at(nm, self._core.extinction)
 
 
@@ -108,7 +108,7 @@ class Metal(_Entry):
         self._core = _abbe.Metal(_arguments.text("the name of a metal", name))
 
     def index(self, nm: npt.ArrayLike) -> Any:
-        """The complex index n + ik; linear between measured wavelengths, the same beyond their ends."""
+        """Returns the complex index n + ik; linear between measured wavelengths, constant beyond their ends."""
         return _at(nm, self._core.n) + 1j * _at(nm, self._core.k)
 
 
@@ -121,7 +121,7 @@ class Illuminant(_Entry):
         self._core = _abbe.Tabulated("illuminant", _arguments.text("the name of an illuminant", name))
 
     def power(self, nm: npt.ArrayLike) -> Any:
-        """Its relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond their ends."""
+        """Returns relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond them."""
         return _at(nm, self._core.at)
 
 
@@ -134,45 +134,45 @@ class Reflectance(_Entry):
         self._core = _abbe.Tabulated("reflectance", _arguments.text("the name of a reflectance", name))
 
     def reflectance(self, nm: npt.ArrayLike) -> Any:
-        """The share of light that it sends back, 0 to 1; linear between wavelengths of the table, flat beyond them."""
+        """Returns the share of light that it reflects, 0 to 1; linear between tabulated wavelengths, flat beyond."""
         return _at(nm, self._core.at)
 
 
 def glass(name: str) -> Glass:
-    """The glass of a name such as `"N-BK7"` or `"schott/N-BK7"`. Raises `KeyError` with the nearest name."""
+    """Returns the glass with a name such as `"N-BK7"` or `"schott/N-BK7"`. Raises `KeyError` with the nearest name."""
     return Glass(name)
 
 
 def metal(name: str) -> Metal:
-    """The metal of a name such as `"Au"` or `"gold"`. Raises `KeyError` with the nearest name."""
+    """Returns the metal with a name such as `"Au"` or `"gold"`. Raises `KeyError` with the nearest name."""
     return Metal(name)
 
 
 def illuminant(name: str) -> Illuminant:
-    """The illuminant of a name such as `"D65"`. Raises `KeyError` with the nearest name."""
+    """Returns the illuminant with a name such as `"D65"`. Raises `KeyError` with the nearest name."""
     return Illuminant(name)
 
 
 def reflectance(name: str) -> Reflectance:
-    """The reflectance of a name such as `"dark skin"`. Raises `KeyError` with the nearest name."""
+    """Returns the reflectance with a name such as `"dark skin"`. Raises `KeyError` with the nearest name."""
     return Reflectance(name)
 
 
 def glasses() -> list[str]:
-    """The full names of all glasses."""
+    """Returns the full names of all glasses."""
     return _abbe.names("glass")
 
 
 def metals() -> list[str]:
-    """The names of all metals."""
+    """Returns the names of all metals."""
     return _abbe.names("metal")
 
 
 def illuminants() -> list[str]:
-    """The names of all illuminants."""
+    """Returns the names of all illuminants."""
     return _abbe.names("illuminant")
 
 
 def reflectances() -> list[str]:
-    """The full names of all reflectances."""
+    """Returns the full names of all reflectances."""
     return _abbe.names("reflectance")
