@@ -34,7 +34,8 @@ impl Random {
         low + (high - low) * self.number()
     }
 
-    /// A copy of a file that is cut off, changed near its beginning or has four bits turned over, by turns.
+    /// Returns a damaged copy of a file. By turns it is truncated, has one byte changed near its beginning, or has four
+    /// bits flipped.
     pub fn damaged(&mut self, whole: &[u8], turn: usize) -> Vec<u8> {
         let mut bytes = whole.to_vec();
         let mut within = |most: usize| (self.number() * most as f64) as usize;
