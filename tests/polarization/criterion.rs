@@ -10,8 +10,8 @@ use abbe::trace::{Method, Polarizing, Transport, most_changed, polarization_erro
 use crate::support::random::Random;
 use crate::support::scenes::{film_of, scene};
 
-/// Error that the plan tolerates without polarization: a third of the error that a scene may have, which is 3 % by
-/// default.
+/// Error that the plan tolerates without polarization: a third of the error that a scene may have by default, see
+/// `plan`.
 const TOLERATED: f64 = 0.01;
 const SCENES: u64 = 80;
 

@@ -33,7 +33,7 @@ fn h7_images_of_one_pixel_one_row_and_one_column_are_whole() {
                 assert!(is_white, "{filter}, pixel {at} of {width} x {height}: {pixel:?}");
             }
             let seen = film.pixels.iter().filter(|pixel| pixel.depth != DEPTH_OF_NOTHING).count();
-            // A wide filter may take its one sample from beside the pixel.
+            // A wide filter may take its only sample from outside of the pixel.
             assert!(seen > 0 || filter == "gaussian", "{filter}, {width} x {height}: the ball is not there");
         }
     }
