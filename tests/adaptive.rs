@@ -1,4 +1,5 @@
-//! More samples where the noise is: when the plan asks for it, what it saves, and that it changes no mean.
+//! Adaptive sampling, which takes more samples where the noise is: when the plan asks for it, what it saves, and that
+//! it changes no mean.
 //!
 //! ```text
 //! cargo test --test all adaptive::

@@ -1,7 +1,7 @@
-//! Every mistake a person can make in a scene file, with the exact text that answers it.
+//! Every mistake that a person can make in a scene file, with the exact text that answers it.
 //!
-//! The files in `tests/messages/` hold the cases. A case is a heading, a patch to `base.toml`, the files a mesh is read
-//! from, and what `render --check scene.toml` then writes to stderr:
+//! The files in `tests/messages/` hold the cases. A case is a heading, a patch to `base.toml`, the files that a mesh is
+//! read from, and what `render --check scene.toml` then writes to stderr:
 //!
 //! ```text
 //! ## a misspelt key of the film
@@ -28,7 +28,7 @@ const BASE: &str = include_str!("messages/base.toml");
 struct Case<'a> {
     title: &'a str,
     scene: String,
-    /// Other files: name and text.
+    /// Names and texts of other files.
     files: Vec<(&'a str, String)>,
     settings: Vec<&'a str>,
     expected: &'a str,

@@ -15,7 +15,7 @@ const SUN_DEGREES: f64 = 0.2;
 /// All paths inside the drop are followed while they carry more than this. The secondary bow carries some thousandths.
 const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6, most: u64::MAX };
 
-/// Light that is reflected inside the drop a number of times before it leaves.
+/// Light that is reflected a number of times inside the drop before it leaves.
 struct Bow {
     reflections: i32,
     /// Range on the drop's disc of radius 1 in which light of this order is looked for.

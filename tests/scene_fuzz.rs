@@ -32,7 +32,7 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Every scene that comes with Abbe, and one that uses every feature.
+/// All scenes that come with Abbe, and one that uses every feature.
 static SCENES: LazyLock<Vec<(PathBuf, String)>> = LazyLock::new(|| {
     let paths = scenes().into_iter().chain(["tests/messages/everything.toml".into()]);
     paths.map(|path| (path.clone(), fs::read_to_string(path).expect("a scene is text"))).collect()

@@ -152,7 +152,7 @@ fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
     // The bound holds for 95 of 100. Fewer than 34 of 40 occur by chance once in 300 times.
     let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
     assert!(kept >= 34, "{kept} of {RENDERS}");
-    // A bound that is far too wide would hold as well.
+    // This rejects a bound that is far too wide, for which the test above would hold as well.
     let mut ratios: Vec<f64> = found.iter().map(|[true_error, _, bound]| (true_error / bound).sqrt()).collect();
     ratios.sort_by(f64::total_cmp);
     assert!(ratios[ratios.len() / 2] > 0.5, "median {:.2}", ratios[ratios.len() / 2]);

@@ -1,4 +1,4 @@
-//! Camera rays against closed forms.
+//! Camera rays compared with closed forms.
 
 use std::f64::consts::{PI, TAU};
 

@@ -44,9 +44,9 @@ fn a_mirror_without_end() {
     agree("mirror", &text, 64);
 }
 
-/// The floor of a sea, lit by a sun without extent that only photons can reach, obeys Fresnel and Beer near and far.
-/// The radiance at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2 times the transmittance of
-/// depth / cos(s') + depth / cos(v') of water.
+/// The floor of a sea, lit by a sun without extent whose light only photons find, is as bright as Fresnel and Beer
+/// predict, near and far. The radiance at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2,
+/// times the transmittance of depth / cos(s') + depth / cos(v') of water.
 #[test]
 fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
     const N: f64 = 1.33;

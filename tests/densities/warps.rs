@@ -48,7 +48,7 @@ fn points_of_the_disk_are_uniform_by_area() {
 
 #[test]
 fn directions_of_the_cosine_hemisphere_follow_the_cosine() {
-    // Integral of cos(theta) / pi between two heights and two azimuths.
+    // The integral of cos(theta) / pi between two heights and two azimuths.
     let probability = |z0: f64, z1: f64, a0: f64, a1: f64| (z1 * z1 - z0 * z0) * (a1 - a0);
     let warp = |u| {
         let d: DVec3 = cosine_hemisphere(u);
@@ -89,7 +89,7 @@ fn directions_of_a_cone_are_uniform() {
 
 #[test]
 fn points_of_a_triangle_are_uniform_by_area() {
-    // The part of a cell below the diagonal of the square, over the triangle's area of 1/2.
+    // The part of a cell below the diagonal of the square, divided by the triangle's area of 1/2.
     let probability = |x0: f64, x1: f64, y0: f64, y1: f64| {
         let whole = (x1 - x0) * (y1 - y0);
         if x1 + y1 <= 1.0 {

@@ -11,7 +11,7 @@ use crate::support::scenes::{film_of, films_of, moments, scene, standard_errors}
 
 /// Pixels along each side of images of an edge.
 const SIDE: usize = 8;
-/// Where the edges of the square cross the film.
+/// Positions of the square's edges on the film.
 const EDGE: [f64; 2] = [3.3, 4.85];
 
 /// Returns the corner of an emissive square with nothing behind it. One unit is a pixel.
@@ -75,7 +75,7 @@ fn an_edge_is_the_integral_of_the_filter_for_few_samples_and_many() {
 fn alpha_is_filtered_as_light_is_and_stays_within_0_and_1() {
     for film in films(&corner("\"mitchell\"", ""), 64, 8) {
         for pixel in &film.pixels {
-            // The square shines with a radiance of 1.
+            // The square has a radiance of 1.
             assert_eq!(pixel.alpha, pixel.rgb[0].clamp(0.0, 1.0));
         }
         let rgb = || film.pixels.iter().map(|pixel| pixel.rgb[0]);

@@ -27,7 +27,7 @@ fn exp_minus_i(a: C) -> C {
     [decay * a[0].cos(), -decay * a[0].sin()]
 }
 
-/// A layer: n - i k, and its thickness in nm.
+/// A layer, given as n - i k and its thickness in nm.
 pub type Layer = (C, f64);
 
 /// Returns the reflected and the transmitted share of unpolarized light at a wavelength in nm, from index `n1` at a

@@ -20,7 +20,7 @@ fn transmitted(indices: &[f64]) -> f64 {
 
 /// Returns the faces of a box, or of a hollow, whose faces point inward.
 fn faces(first: u32, hollow: bool) -> String {
-    // Corner i lies at x, y, z = +-1 by its bits 0, 1 and 2.
+    // Bits 0, 1 and 2 of i give the signs of x, y and z = +-1 of corner i.
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let turn = |[a, b, c]: [u32; 3]| if hollow { [a, c, b] } else { [a, b, c] };
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
@@ -175,7 +175,8 @@ fn m4_a_camera_finds_the_media_around_it() {
 fn overlapping_bodies_of_one_material_are_one_body() {
     let pair = ["cube = { center = [0, 0, 0.5], size = [9, 9, 1] }", "cube = { center = [0, 0, 1], size = [8, 8, 1] }"];
     let bodies = body("glass", "dielectric = { index = 1.5, absorption = 0.5 }", &pair);
-    // A slab of thickness 1.5 with all its reflections: T = (1 - R)^2 a / (1 - R^2 a^2), a = e^(-absorption d).
+    // A slab of thickness 1.5 with all its internal reflections: T = (1 - R)^2 a / (1 - R^2 a^2), a = e^(-absorption
+    // d).
     let (r, a) = (0.04, libm::exp(-0.5 * 1.5));
     let expected = (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a);
     let found = seen_through(&bodies);

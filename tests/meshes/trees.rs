@@ -1,5 +1,5 @@
 //! The tree of a large mesh: no ray slips through it, at any scale and place, and a search for any crossing finds one
-//! wherever there is a nearest one.
+//! exactly where there is a nearest one.
 
 use std::f64::consts::{PI, TAU};
 

@@ -83,8 +83,8 @@ fn the_plan_asks_for_the_same_photons_every_time_and_on_any_number_of_threads() 
     }
 }
 
-/// With 0.25 photons per camera sample, as planned beside the noise of paths alone, this room took twice as long to an
-/// equal error.
+/// With 0.25 photons per camera sample, the number that suits the noise of paths alone, this room took twice as long to
+/// an equal error.
 #[test]
 fn photons_that_light_a_room_are_counted_beside_the_noise_that_all_else_leaves() {
     let text = "camera = { position = [0, 1.5, 2.4], look_at = [0, 1.4, 0], vertical_fov = 60 }\n\

@@ -93,7 +93,7 @@ fn a_prism_out_of_sight_that_lamps_shine_through_is_noticed() {
 
 #[test]
 fn a_drop_out_of_sight_that_throws_a_rainbow_is_noticed() {
-    // The sun shines from behind the screen, whose hole is as wide as the drop.
+    // The sun shines from behind the screen, which has a hole as wide as the drop.
     let screen = |center: &str, half: &str| {
         format!(
             "[[object]]\nshape.quad = {{ center = {center}, u = [{half}, 0, 0], v = [0, 5, 0] }}\nmaterial = \"wall\"\n"

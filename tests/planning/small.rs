@@ -196,7 +196,7 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
 fn glass_that_no_path_comes_through_keeps_lanes_together() {
     let body = |place| placed(place, false, "flint", 30.0);
     let floor = body("in the open") + &object("wall", "plane = { point = [0, -8, 0], normal = [0, 1, 0] }");
-    // Two surfaces of the glass, the wall, and the mirror.
+    // Paths meet two surfaces of the glass, the wall, and the mirror.
     for (things, fewest) in [(body("in the open"), 3), (body("in a flat mirror"), 4), (floor, 3)] {
         for most in [0, 1, fewest - 1, fewest] {
             let mut scene = scene_of(&things, SIDE);
@@ -265,7 +265,7 @@ fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
         object("wall", GROUND)
     );
     let sun = "[[light]]\nsun = { toward = [0, 1, 0.2], irradiance = 3, angular_diameter = 0.53 }\n";
-    // Above the top of the picture.
+    // A place above the top of the picture.
     let place = [0.1, 2.7, -6.0];
     for (material, width) in [("flint", 0.05), ("crown", 0.02), ("diamond", 0.03)] {
         let found = plan(&scene(&(head.clone() + sun + &body(true, material, width, place))));

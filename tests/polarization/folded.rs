@@ -1,4 +1,4 @@
-//! Light that a shading normal folds at the surface keeps a polarization of its own.
+//! Light that a shading normal folds at the surface keeps its own polarization.
 
 use abbe::math::DVec3;
 

@@ -95,7 +95,8 @@ fn bands_of_many_orders_are_left_unpolarized() {
             );
         }
     }
-    // Neighbors are 17 to 28 nm apart. If half the phase spans x within a band, its mean is below 1 / x.
+    // Neighbors are 17 to 28 nm apart. If half the phase changes by x across a band, the mean cosine of the phase is
+    // below 1 / x.
     for (retardation, most) in [(30_000.0, 0.25 / 4.0), (1e6, 0.25 / 100.0)] {
         let found = lanes(&between(&format!("retardation_nm = {retardation:?}"), CROSSED, "1"), &basis, three);
         assert!(found.iter().all(|share| (share - 0.25).abs() < most), "{retardation} nm: {found:?}");

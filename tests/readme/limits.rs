@@ -2,7 +2,7 @@
 
 use super::{BALL, FILM, VIEW, around, mistakes, page, with};
 
-/// A scene with a number in it.
+/// Writes a scene that contains a number.
 type Asking = fn(&str) -> String;
 
 /// The beginning of each row of the first table, and a scene that contains a number there.

@@ -13,7 +13,7 @@ fn view(width: u32, height: u32, fov: f64) -> String {
     )
 }
 
-/// A white ball in a white sky: every pixel is 1, and the ball is there.
+/// A white ball in a white sky: every pixel is 1, and the ball is present.
 #[test]
 fn h7_images_of_one_pixel_one_row_and_one_column_are_whole() {
     let ball = "[material.white]\ndiffuse.reflectance = 1\n[[object]]\nmaterial = \"white\"\n\

@@ -12,7 +12,7 @@ pub const EVENTS: u64 = 200_000;
 /// Number of crossings after which a ray that is trapped by total reflection is abandoned.
 const MOST: u32 = 40;
 
-/// What happened to the rays.
+/// Counts of what happened to the rays.
 #[derive(Clone, Copy, Default, PartialEq, Debug)]
 pub struct Tally {
     pub events: u64,
@@ -95,7 +95,7 @@ pub const ALL: f64 = -2.0;
 /// Size, and coordinate offset in units of size.
 const PLACES: [(f64, f64); 6] = [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 100.0), (1e-6, 0.0), (1.0, 1e4)];
 
-/// The target of a ray: anywhere inside the body, on an edge, or at a corner.
+/// The target of a ray: anywhere on a face or inside the body near it, on an edge, or at a corner.
 #[derive(Clone, Copy, Debug)]
 pub enum Aim {
     Anywhere,

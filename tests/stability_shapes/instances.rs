@@ -179,7 +179,7 @@ fn copies_whose_own_space_is_beyond_32_bits_are_met_as_others_are() {
         let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum();
         sum / film.pixels.len() as f64
     };
-    // Too far away to be seen.
+    // The body is too far away to be seen.
     for [radius, scale, away] in [[1e30, 1e-30, 1e9], [1e25, 1e-25, 1e14], [1e30, 1e-15, 1e24]] {
         let found = seen(radius, scale, away);
         assert!((found - 1.0).abs() < 0.02, "{radius:e} at {scale:e} from {away:e}: {found}");

@@ -16,7 +16,7 @@ use super::larger::larger;
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
 /// The plan's choice where light is sampled randomly.
 pub const SPLITTING: Transport = Transport::Random { split: 0.05, roulette: 0.05 };
-/// The path tracer: one branch at every surface, one light at every vertex.
+/// The path tracer: one branch at every surface and one light at every vertex.
 pub const SINGLE_PATH: Transport = Transport::Random { split: 1.0, roulette: 0.05 };
 /// A polarizer and a wave plate in front of the middle of a room, so that its light has all Stokes components.
 pub const SHEETS: &str = r#"
