@@ -21,7 +21,7 @@ pub fn scenes() -> Vec<(PathBuf, String)> {
     let mut scenes: Vec<_> = paths.into_iter().map(|path| (path.clone(), text(&path))).collect();
     scenes
         .retain(|(_, text)| ![".png", ".jpg", ".exr", ".hdr", ".obj", ".ply", ".gl"].iter().any(|e| text.contains(e)));
-    // The scene with everything comes up as often as all others together.
+    // The scene with everything comes up four times as often as any other.
     for name in ["base", "everything", "everything", "everything", "everything"] {
         let path = Path::new("tests/messages").join(name).with_extension("toml");
         scenes.push((path.clone(), text(&path)));
