@@ -1,5 +1,5 @@
-//! Caustics that are seen in mirrors, through glass or on surfaces that they light indirectly: the photons that land
-//! are gathered. Images with photons are compared with images of camera paths alone.
+//! Caustics that are seen in mirrors, through glass or indirectly, by way of surfaces that they light: the photons that
+//! land are gathered. Images with photons are compared with images of camera paths alone.
 
 use abbe::trace::MapPasses;
 

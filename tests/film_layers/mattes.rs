@@ -203,8 +203,8 @@ fn a_shadow_catcher_seen_through_a_lamp_that_the_camera_does_not_see_shows_the_s
     assert!((shadow(disc) - expected).abs() < 0.005, "{} for {expected}", shadow(disc));
 }
 
-/// Renders `count` sheets, one behind the other, in front of a wall. Each of them covers a share of what reaches it,
-/// regardless of the light that it sends.
+/// Renders `count` sheets, one behind the other, in front of a wall. The coverage of each sheet and of the wall depends
+/// on what reaches it, not on the light that it sends.
 fn sheets_before_a_wall(count: u32, opacity: f64, more: &str) -> Image {
     let sheet = |number: u32| {
         format!(
