@@ -1,13 +1,14 @@
-//! Caustics: processor time to a relative error, by the light pass and by chance, for lamps from large to none at all.
+//! Caustics: processor time to a relative error, with the light pass and with random paths, for lamps from large ones
+//! to a point.
 //!
 //! ```text
 //! cargo bench --bench caustics [-- point]
 //! ```
 //!
-//! A ball of N-SF11, radius 1, its middle 1.5 above a floor, under a lamp of power pi at a height of 7: the floor's
-//! patch of 1.6 by 1.6 in 24 x 24 pixels. It is nearly black, so that nothing but the caustic itself is measured.
-//! relMSE = mean variance over mean square of the pixels, from images of several seeds; time to 1e-3 is time x relMSE /
-//! 1e-3.
+//! A ball of N-SF11 with radius 1 and its center 1.5 above a floor, under a lamp of power pi at a height of 7. The
+//! image shows the floor's patch of 1.6 by 1.6 in 24 x 24 pixels. The floor is nearly black, so that nothing but the
+//! caustic itself is measured. relMSE = mean variance over mean square of the pixels, from images of several seeds;
+//! time to 1e-3 is time x relMSE / 1e-3.
 
 use std::time::Instant;
 
@@ -33,7 +34,7 @@ fn main() {
     };
     let point = ("a point".to_owned(), "[[light]]\npoint = { position = [0, 7, 0], intensity = 0.25 }\n".to_owned());
     for (name, light) in [radius(1.0), radius(0.3), radius(0.03), radius(0.003), point] {
-        // `-- point` measures that lamp alone.
+        // `-- point` measures only that lamp.
         if !std::env::args().skip(1).all(|word| word.starts_with("--") || name.contains(&word)) {
             continue;
         }
@@ -84,7 +85,7 @@ fn measure(name: &str, way: &str, scene: &Scene<Curve>, method: &Method) {
     let (mut seconds, mut images) = (0.0, Vec::new());
     for seed in 0..SEEDS {
         let start = Instant::now();
-        // What is learned before the image belongs to its time.
+        // What is learned before the image counts as part of its time.
         images.push(pool.install(|| render(&prepare(scene, Method { seed, ..method.clone() }), &|_| ())).0);
         seconds += start.elapsed().as_secs_f64() / SEEDS as f64;
     }
@@ -92,7 +93,7 @@ fn measure(name: &str, way: &str, scene: &Scene<Curve>, method: &Method) {
     println!("{name:12} {way:>22} {seconds:10.3} {error:10.2e} {:12.3} {mean:10.3e}", seconds * error / 1e-3);
 }
 
-/// Mean variance over mean square, and the mean of green.
+/// Returns the mean variance over the mean square, and the mean of green.
 fn relative_error(images: &[Film]) -> (f64, f64) {
     let count = images.len() as f64;
     let (mut variance, mut square, mut mean) = (0.0, 0.0, 0.0);

@@ -1,12 +1,13 @@
-//! What dispersion costs: processor time times noise of each way to carry wavelengths, beside glass without dispersion.
+//! The cost of dispersion: processor time times noise of each way to carry wavelengths, compared with glass without
+//! dispersion.
 //!
 //! ```text
 //! cargo bench --bench dispersion
 //! ```
 //!
-//! A glass ball on a checker of tiles under sky and lamp. relMSE = mean variance over mean square, from images of
+//! A glass ball on checkered tiles under a sky and a lamp. relMSE = mean variance over mean square, from images of
 //! several seeds; lower time x relMSE is better. "collapse" is the scheme of pbrt-v4: four random wavelengths, one of
-//! which goes on.
+//! which goes on after dispersion.
 
 use std::time::Instant;
 
@@ -47,7 +48,7 @@ fn main() {
         ];
         let mut first: Option<[f64; 2]> = None;
         for (model, scene, collapses) in methods {
-            // One line of light is no line for a scheme that does not know it.
+            // A scheme that does not know of a spectral line cannot sample it.
             if collapses && light.contains("lines") {
                 continue;
             }
@@ -71,7 +72,7 @@ fn scene(text: String) -> Scene<Curve> {
     source.compile().expect("the scene is valid")
 }
 
-/// Images of several seeds on one thread.
+/// Renders images of several seeds on one thread.
 fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
     let scene = scene(text.to_owned());
     let method = plan(&scene).method;
@@ -90,7 +91,7 @@ fn measure(text: &str, collapses: bool, mask: &[bool]) -> Measured {
     Measured { seconds: times[times.len() / 2], image, glass, mean }
 }
 
-/// Mean variance over mean square, and the mean color, of the chosen pixels.
+/// Returns the mean variance over the mean square, and the mean color, of the chosen pixels.
 fn relative_error(images: &[Film], chosen: impl Fn(usize) -> bool) -> (f64, [f64; 3]) {
     let count = images.len() as f64;
     let (mut variance, mut square, mut mean, mut pixels) = (0.0, 0.0, [0.0; 3], 0.0);
@@ -107,7 +108,7 @@ fn relative_error(images: &[Film], chosen: impl Fn(usize) -> bool) -> (f64, [f64
     (variance / square, mean.map(|x| x / pixels))
 }
 
-/// Where the ball is seen: where the depth changes when it is taken away.
+/// Returns where the ball is seen: where the depth changes when it is taken away.
 fn glass_pixels(index: &str, light: &str) -> Vec<bool> {
     let depths = [true, false].map(|ball| {
         let scene = scene(text(index, light, "\"rgb\"", ball));
@@ -145,7 +146,7 @@ fn text(index: &str, light: &str, model: &str, ball: bool) -> String {
     text
 }
 
-/// The same light, brighter.
+/// Multiplies the brightness of a light by a factor.
 fn scaled(light: &str, factor: f64) -> String {
     match light.strip_suffix('}') {
         None => factor.to_string(),

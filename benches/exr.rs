@@ -1,11 +1,11 @@
-//! Time and memory that it takes to write an image as OpenEXR, beside the library's own writer given the same channels.
+//! Time and memory for writing an image as OpenEXR, compared with the library's own writer for the same channels.
 //!
 //! ```text
 //! MALLOC_MMAP_THRESHOLD_=65536 cargo bench --bench exr
 //! ```
 //!
-//! With that threshold, glibc gives memory back at once, and the peak is that of the writer alone.
-//! Both write to a file, on all threads; what the library is given has been converted before the clock starts.
+//! With that threshold, glibc returns memory at once, and the peak is that of the writer alone. Both write to a file,
+//! on all threads. What the library is given has been converted before the clock starts.
 
 use std::fs;
 use std::path::Path;
@@ -14,10 +14,10 @@ use std::time::Instant;
 use abbe::{Image, Options, Scene};
 use exr::prelude::{FlatImage, ReadChannels, ReadLayers, WritableImage, read};
 
-/// How often each writes; the medians count.
+/// Number of times that each of them writes; the medians count.
 const RUNS: usize = 7;
 
-/// A glass ball and a rough one on a matte floor: noise, smooth numbers and empty places.
+/// A glass ball and a ball of rough gold on a matte floor: noise, smooth numbers and empty places.
 const SCENE: &str = r#"
 camera = { position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }
 material.floor.diffuse.reflectance = { rgb = [0.7, 0.5, 0.3] }
@@ -96,7 +96,8 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// Bytes of memory that writing takes beside the image, where the system tells: the peak is forgotten first.
+/// Returns the bytes of memory that writing takes beside the image, if the system reports them. The peak is reset
+/// first.
 fn peak(image: &Image, path: &Path) -> Option<f64> {
     fs::write("/proc/self/clear_refs", "5").ok()?;
     let before = kilobytes("VmRSS:")?;

@@ -1,4 +1,4 @@
-//! What aiming at lights costs and brings: processor time times noise of rooms with lamps of many kinds and numbers.
+//! Cost and benefit of next-event estimation: processor time times noise of rooms with lamps of many kinds and numbers.
 //!
 //! ```text
 //! cargo bench --bench lights              # all rooms
@@ -45,7 +45,7 @@ fn rooms() -> Vec<(String, String)> {
         single("box lamp", "cube = { center = [0, 3, 0], size = 0.6 }", 10.0),
     ];
     for count in [2, 10, 100, 1000, 10_000, 100_000] {
-        // Lamps of unlike brightness in a hall that grows with their number.
+        // Lamps of different brightness in a hall that grows with their number.
         let side = 4.0 * libm::sqrt(f64::from(count) / 10.0).max(1.0);
         let mut random = 1u64;
         let mut number = || {
@@ -63,7 +63,7 @@ fn rooms() -> Vec<(String, String)> {
                 lamp(&(i % 7).to_string(), &shape, 20.0 * libm::exp2((i % 7) as f64 / 2.0))
             })
             .collect();
-        // Seen from below the lamps, whose edges would otherwise be most of the noise.
+        // Seen from below the lamps, because their edges would otherwise cause most of the noise.
         let hall = room([side, 4.0, side], &lamps).replace("look_at = [0, 1.8, 0]", "look_at = [0, 0, -0.5]");
         let near = hall.find("look_at").expect("a camera");
         let place = format!("[camera]\nposition = [0, 2.4, {}]\n", 0.4 * side.min(16.0));
@@ -72,14 +72,14 @@ fn rooms() -> Vec<(String, String)> {
     rooms
 }
 
-/// A lamp; its material is written once for each kind.
+/// Returns a lamp. Its material, after `#`, is written only once for each kind.
 fn lamp(kind: &str, shape: &str, radiance: f64) -> String {
     format!(
         "[[object]]\nshape.{shape}\nmaterial = \"lamp{kind}\"\n#[material.lamp{kind}]\nemissive = {{ radiance = {radiance} }}\n"
     )
 }
 
-/// A room of white walls with two blocks, seen from its open front.
+/// Returns a room with white walls and two blocks, seen from its open front.
 fn room([x, y, z]: [f64; 3], lamps: &[String]) -> String {
     let (mut objects, mut materials) = (String::new(), Vec::new());
     for lamp in lamps {
@@ -110,7 +110,7 @@ fn room([x, y, z]: [f64; 3], lamps: &[String]) -> String {
         + &objects
 }
 
-/// A ball of triangles under the ceiling.
+/// Returns a ball of triangles under the ceiling.
 fn ball() -> String {
     let (rings, around) = (11, 24);
     let mut points = vec![[0.0, 3.5, 0.0], [0.0, 2.9, 0.0]];
@@ -132,7 +132,7 @@ fn ball() -> String {
     format!("mesh = {{ points = {points:?}, faces = {faces:?} }}")
 }
 
-/// Images of several seeds on one thread.
+/// Renders images of several seeds on one thread and prints their time and noise.
 fn measure(name: &str, text: String) {
     let source = Source { path: "bench.toml".into(), text };
     let scene = source.compile().expect("the scene is valid");
@@ -159,13 +159,13 @@ fn measure(name: &str, text: String) {
     println!("{name:24} {seconds:8.3} {error:11.3e} {:13.4e}   {mean:.5} +- {sigma:.5}", seconds * error);
 }
 
-/// Seconds this thread has run, where the system tells.
+/// Returns the seconds that this thread has run, if the system reports them.
 fn processor_time() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }
 
-/// Mean variance over mean square, and the mean with its standard error.
+/// Returns the mean variance over the mean square, and the mean with its standard error.
 fn relative_error(images: &[Film]) -> (f64, f64, f64) {
     let count = images.len() as f64;
     let (mut variance, mut square, mut sum) = (0.0, 0.0, 0.0);
@@ -180,6 +180,6 @@ fn relative_error(images: &[Film]) -> (f64, f64, f64) {
         }
     }
     let values = 3.0 * pixels as f64;
-    // Bands of a pixel share their random numbers, pixels share none.
+    // The bands of a pixel share their random numbers. Pixels share none.
     (variance / square, sum / values, (3.0 * variance / count).sqrt() / values)
 }

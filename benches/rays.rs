@@ -1,4 +1,4 @@
-//! Rays per second of processor time on a mesh of a million triangles, one thread.
+//! Rays per second of processor time on a mesh of a million triangles, on one thread.
 //!
 //! ```text
 //! cargo bench --bench rays
@@ -6,8 +6,8 @@
 //! ```
 //!
 //! All numbers in the files are little-endian and 32 bits long. `mesh`: the number of vertices and that of triangles,
-//! the vertices as three floats, the triangles as three numbers of vertices. `primary`, `diffuse` and `shadow`: the
-//! number of rays, and for each its origin, direction and largest t.
+//! the vertices as three floats each, the triangles as three vertex indices each. `primary`, `diffuse` and `shadow`:
+//! the number of rays, and the origin, direction and largest t of each.
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -20,7 +20,7 @@ use abbe::shape::{Mesh, Shape, Vertices};
 const SIDE: u32 = 1024;
 /// Pixels along each side of a tile.
 const TILE: u32 = 16;
-/// How often everything is traced; the median counts.
+/// Number of times that everything is traced; the median counts.
 const RUNS: usize = 5;
 
 fn main() {
@@ -66,7 +66,7 @@ fn main() {
     }
 }
 
-/// What a computation gives and the seconds of processor time that this thread took for it.
+/// Returns the result of a computation, and the seconds of processor time that this thread took for it.
 fn timed<T>(compute: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let before = processor_seconds();
@@ -78,7 +78,7 @@ fn timed<T>(compute: impl FnOnce() -> T) -> (T, f64) {
     (result, seconds)
 }
 
-/// Seconds this thread has run, where the system tells.
+/// Returns the seconds that this thread has run, if the system reports them.
 fn processor_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
@@ -96,7 +96,7 @@ impl Random {
     }
 }
 
-/// Hills on the floor, bumpy balls above them, and five walls of two triangles each.
+/// Returns hills on the floor, bumpy balls above them, and five walls of two triangles each.
 fn room() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     let hill = |u: f64, v: f64| {
@@ -126,7 +126,7 @@ fn room() -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     (points, faces)
 }
 
-/// A surface over the unit square, in cells of two triangles.
+/// Appends a surface over the unit square, in cells of two triangles.
 fn grid(points: &mut Vec<[f32; 3]>, faces: &mut Vec<[u32; 3]>, cells: [u32; 2], at: impl Fn(f64, f64) -> DVec3) {
     let first = points.len() as u32;
     for j in 0..=cells[1] {
@@ -143,13 +143,13 @@ fn grid(points: &mut Vec<[f32; 3]>, faces: &mut Vec<[u32; 3]>, cells: [u32; 2], 
     }
 }
 
-/// The ray with its numbers rounded to 32 bits, so that every program traces the same.
+/// Returns a ray with its numbers rounded to 32 bits, so that every program traces the same ray.
 fn rounded(origin: DVec3, direction: DVec3, t_max: f64) -> (Ray, f64) {
     let round = |v: DVec3| v.as_vec3().as_dvec3();
     (Ray { origin: round(origin), direction: round(direction) }, f64::from(t_max as f32))
 }
 
-/// A ray through each pixel, tile by tile.
+/// Returns a ray through each pixel, tile by tile.
 fn primary_rays() -> Vec<(Ray, f64)> {
     let mut rays = Vec::new();
     let eye = DVec3::new(0.3, 3.5, -4.8);
@@ -164,7 +164,8 @@ fn primary_rays() -> Vec<(Ray, f64)> {
     rays
 }
 
-/// The ray that leaves what another meets, along the normal on the side it comes from.
+/// Returns the ray that leaves the point hit by another ray, along the normal on the side that the other one comes
+/// from, and the distance of that point.
 fn seen(mesh: &Shape, ray: &Ray) -> Option<(Ray, f64)> {
     let intersection = mesh.intersect(ray, f64::INFINITY)?;
     let point = mesh.point(ray, &intersection);

@@ -6,11 +6,11 @@
 //! ```
 //!
 //! Time to an error is processor time x mean square difference from a long render with the light pass. Errors are
-//! counted in three ways: as they are, relative to the brightness of each pixel, and the same without the hundredth of
-//! the pixels in which both ways are worst, such as the edge of a lamp. Photons go from and to what the plan sends
-//! them, and are as many, but none are gathered; where it sends none they go from all lights to all that is smooth, one
-//! a camera sample. Where chance misses light for good, no time is enough; where it finds hardly any in a few images,
-//! its error is more than what is seen of it.
+//! counted in three ways: as they are, relative to the brightness of each pixel, and relative without the hundredth of
+//! the pixels in which both ways are worst, such as the edge of a lamp. Photons go from and to what the plan chooses,
+//! and in its number, but none are gathered. Where the plan sends none, they go from all lights to all smooth surfaces,
+//! one for each camera sample. Where random paths can never find the light, no time is enough. Where they find hardly
+//! any in a few images, their error is larger than what is seen of it.
 
 use abbe::film::Film;
 use abbe::plan::plan;
@@ -25,9 +25,9 @@ mod twenty;
 
 const SEEDS: u64 = 4;
 const SAMPLES: u32 = 64;
-/// How many times as many the reference has.
+/// How many times as many samples the reference has.
 const REFERENCE: u32 = 16;
-/// Darker pixels than this share of the squared mean count as if they were as bright.
+/// Pixels darker than this share of the squared mean count as if they were that bright.
 const DARK: f64 = 0.01;
 
 fn main() {
@@ -82,17 +82,17 @@ fn main() {
     }
 }
 
-/// Camera samples of an image.
+/// Returns the number of camera samples of an image.
 fn taken(scene: &Scene<Curve>, samples: u32) -> f64 {
     f64::from(scene.film.width * scene.film.height * samples)
 }
 
-/// Sum of the squares of a pixel's channels.
+/// Returns the sum of the squares of a pixel's channels.
 fn square(rgb: [f64; 3]) -> f64 {
     rgb.iter().map(|x| x * x).sum()
 }
 
-/// Square differences of each pixel from the reference, in the mean of some images.
+/// Returns the squared difference of each pixel from the reference, averaged over some images.
 fn squares(images: &[Film], reference: &Film) -> Vec<f64> {
     let of_pixel = |(pixel, exact): (usize, [f32; 3])| {
         let of_image = |image: &Film| {
@@ -104,8 +104,8 @@ fn squares(images: &[Film], reference: &Film) -> Vec<f64> {
     reference.pixels.iter().map(|pixel| pixel.rgb).enumerate().map(of_pixel).collect()
 }
 
-/// Mean square difference over mean square; the mean of both relative to each pixel; the same without the hundredth of
-/// the pixels in which the better of both ways is worst.
+/// Returns three errors: the mean square difference over the mean square; the mean of the squared differences relative
+/// to each pixel; and the latter without the hundredth of the pixels in which the better of both ways is worst.
 fn errors(of: &[f64], both: [&[f64]; 2], reference: &Film) -> [f64; 3] {
     let bright: Vec<f64> = reference.pixels.iter().map(|pixel| square(pixel.rgb.map(f64::from))).collect();
     let count = bright.len();
@@ -119,7 +119,7 @@ fn errors(of: &[f64], both: [&[f64]; 2], reference: &Film) -> [f64; 3] {
     [of.iter().sum::<f64>() / bright.iter().sum::<f64>(), over(&pixels), over(&pixels[..count - count.div_ceil(100)])]
 }
 
-/// Processor time of all threads so far: other programs do not count.
+/// Returns the processor time of all threads so far. Other programs do not count.
 fn processor_seconds() -> f64 {
     let tasks = std::fs::read_dir("/proc/self/task").expect("this bench reads the times of threads from Linux");
     let spent = |task: std::io::Result<std::fs::DirEntry>| -> Option<f64> {

@@ -1,4 +1,4 @@
-//! A scene built by a program: a spiral of glass balls under an even sky, written as an EXR and a picture.
+//! A scene built by a program: a spiral of glass balls under a uniform sky and a sun, written as an EXR and a picture.
 //!
 //! ```text
 //! cargo run --release --example build_a_scene

@@ -1,4 +1,4 @@
-//! The spectrum that one pixel sees, beside that of another: what a block of flint lets through.
+//! The spectrum that one pixel sees, beside that of another: what a block of flint transmits.
 //!
 //! The left pixel looks through the block, the right one past it.
 //!

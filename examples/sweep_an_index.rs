@@ -1,4 +1,4 @@
-//! How much light a plate of glass lets through, by its index: rendered, beside Fresnel's closed form, as a chart.
+//! The transmittance of a plate of glass by its index: rendered, beside Fresnel's closed form, as a chart.
 //!
 //! ```text
 //! cargo run --release --example sweep_an_index
@@ -18,7 +18,7 @@ fn main() -> abbe::Result<()> {
     Ok(())
 }
 
-/// A plate before a wall of radiance 1, and no other light.
+/// Returns a plate in front of a wall of radiance 1, without other light.
 fn plate(index: f64) -> String {
     format!(
         "

@@ -1,4 +1,5 @@
-//! More samples where the noise is: when the plan asks for it, what it saves, and that it changes no mean.
+//! Adaptive sampling, which takes more samples where the noise is: when the plan asks for it, what it saves, and that
+//! it changes no mean.
 //!
 //! ```text
 //! cargo test --test all adaptive::
@@ -12,7 +13,7 @@ use crate::support::scenes::{
     GROUND, SPLITTING, body, film_of, films_of, method, moments, scene, standard_errors, view,
 };
 
-/// A floor under a point, without noise, and a ball before a lamp, which is noisy.
+/// Returns a scene of a floor below a point light, without noise, and a ball in front of a lamp, which is noisy.
 fn lit(size: [u32; 2], samples: u32, render: &str) -> String {
     large_view(size)
         + &format!("[render]\nmodel = \"rgb\"\nsamples = {samples}\ndiffuse_bounces = 0\n{render}\n")
@@ -35,7 +36,8 @@ fn is_adaptive(text: &str) -> (bool, Plan) {
     (plan.method.density.is_some(), plan)
 }
 
-/// Large images of uneven noise take uneven counts, and say so; small, even and noiseless ones do not.
+/// Large images with uneven noise get uneven sample counts, and the plan says so. Small, even and noiseless images do
+/// not.
 #[test]
 fn the_plan_asks_for_more_samples_where_the_noise_is() {
     let large = [256, 256];
@@ -48,12 +50,12 @@ fn the_plan_asks_for_more_samples_where_the_noise_is() {
         + "[render]\nsamples = 64\n[[light]]\nenvironment = { radiance = 1 }\n"
         + &body("floor", "diffuse = { reflectance = 1 }", &[GROUND]);
     assert!(!is_adaptive(&furnace).0, "a furnace");
-    // As many samples as an image has do not change where they are taken.
+    // The number of samples of an image does not change how they are distributed.
     let of = |samples| plan(&scene(&lit(large, samples, ""))).method.density;
     assert_eq!(of(64), of(256));
 }
 
-/// The light of a lamp on a shadow catcher is noisy, but not seen: only what takes some of it makes noise.
+/// A lamp's light on a shadow catcher is noisy but not seen. Only bodies that block some of it make visible noise.
 #[test]
 fn light_on_shadow_catchers_asks_for_samples_only_where_there_are_shadows() {
     let noisy = |floor: &str, ball: &str| {
@@ -71,7 +73,7 @@ fn light_on_shadow_catchers_asks_for_samples_only_where_there_are_shadows() {
     assert!(noisy("shadow_catcher = true\n", &ball));
 }
 
-/// At most 4096 cells are looked at, and 16 at least.
+/// The look traces at most 4096 cells and at least 16.
 #[test]
 fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
     let cells = |panes: u32| {
@@ -98,7 +100,7 @@ fn fewer_cells_are_looked_at_where_samples_follow_many_rays() {
     assert!(few < 2048 && few > 16, "{few}");
 }
 
-/// Rates all over an image of 12 x 12.
+/// Returns sample rates that vary over an image of 12 x 12.
 fn density() -> SampleDensity {
     let power = |cell: i32| (cell * 7 % 4) as i8 + SampleDensity::LEAST;
     SampleDensity { cells: [5, 4], powers: (0..20).map(power).collect() }
@@ -110,7 +112,7 @@ fn films(text: &str, density: Option<&SampleDensity>, change: impl Fn(Method) ->
     films_of(&scene, &asked, 0..seeds)
 }
 
-/// Every pixel takes the samples of its cell, also where each replicate takes some.
+/// Every pixel takes the number of samples of its cell, also if they are divided among replicates.
 #[test]
 fn every_pixel_takes_the_samples_of_its_cell() {
     let density = density();
@@ -129,8 +131,8 @@ fn every_pixel_takes_the_samples_of_its_cell() {
     }
 }
 
-/// Quarters of images have the same means with samples of any density, in one render and in replicates, with photons,
-/// light vertices and a filter with negative lobes.
+/// Quarters of images have the same means at any sample density, in one render and in replicates, with photons, light
+/// vertices and a filter with negative lobes.
 #[test]
 fn the_density_of_samples_changes_no_mean() {
     const SEEDS: u64 = 24;
@@ -180,14 +182,15 @@ fn the_density_of_samples_changes_no_mean() {
             };
             let [(a, of_a), (b, of_b)] = [of(&even), of(&uneven)];
             let off = (a - b).abs() / (of_a + of_b).sqrt();
-            // Means of 24 films have the tails of Student's t.
+            // Means of 24 films have the heavier tails of Student's t distribution.
             let bound = 1.2 * standard_errors(12 * cases.len());
             assert!(off < bound, "{name}: quarter {quarter}, band {band}: {b} for {a}, off by {off:.1} sigma");
         }
     }
 }
 
-/// Parts of an image take the samples of the whole, beyond the format those of its edge.
+/// Parts of an image take the same samples as the whole. Pixels beyond the format take as many as the nearest pixel on
+/// its edge.
 #[test]
 fn parts_of_an_image_take_the_samples_of_the_whole() {
     let (text, density) = (lit([12, 12], 6, ""), density());
@@ -207,8 +210,8 @@ fn parts_of_an_image_take_the_samples_of_the_whole() {
     }
 }
 
-/// What the plan says that it saves is saved, of the rays: variances of images of many seeds. It may be more, since
-/// samples that are spread evenly gain more by their number than the plan counts on.
+/// The plan saves as many rays as it says, judged by variances over images of many seeds. It may save more: evenly
+/// spread samples gain more from their number than the plan assumes.
 #[test]
 fn what_the_plan_says_of_the_gain_is_so() {
     const SEEDS: u64 = 12;

@@ -1,5 +1,5 @@
-//! All tests but those that need a process of their own: `command`, `fuzz` and `plan_memory`. One program, so that the
-//! renderer is linked once and no processor waits for the last test of a file.
+//! All tests except those that need a process of their own: `command`, `fuzz` and `plan_memory`. They form one program,
+//! so the renderer is linked once and no processor waits for the last test of a file.
 //!
 //! ```text
 //! cargo test --test all              # all of them

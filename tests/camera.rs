@@ -1,5 +1,5 @@
-//! Lens, shift, projections, filters and crop: rays against closed forms, blur against the thin lens, files against
-//! what compositors read.
+//! Lens, shift, projections, filters and crop: rays are compared with closed forms, blur with the thin-lens formula,
+//! and files with what compositors read.
 //!
 //! ```text
 //! cargo test --test all camera::

@@ -1,4 +1,4 @@
-//! `render catalog`: what it lists, what it finds, what it says if it finds nothing.
+//! `render catalog`: what it lists, what it finds, and what it says if it finds nothing.
 
 use std::process::Stdio;
 
@@ -11,7 +11,7 @@ fn catalog(arguments: &[&str]) -> Answer {
     answer
 }
 
-/// The lines found, in silence on stderr.
+/// Returns the lines found and asserts that stderr is empty.
 fn found(arguments: &[&str]) -> Vec<String> {
     let answer = catalog(arguments);
     assert_eq!((answer.code, &*answer.stderr), (Some(0), ""), "{arguments:?}");
@@ -66,7 +66,7 @@ fn what_is_not_found_is_told_with_the_nearest_names() {
     let answer = catalog(&["glass", "N-BK8"]);
     assert!(answer.stderr.starts_with("error: the catalog has no glass that matches \"n-bk8\"\nhelp: "));
     assert!(answer.stderr.contains("N-BK7"), "{}", answer.stderr);
-    // Names that share no letters with what is wanted are not near.
+    // Names that share no letters with the query are not suggested.
     let answer = catalog(&["@@"]);
     assert_eq!(answer.stderr.lines().last(), Some("help: render catalog --help says how to search"));
 }

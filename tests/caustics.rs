@@ -1,4 +1,4 @@
-//! Caustics by photons: the light pass and the camera's rays find the same light, each its own part of it.
+//! Caustics by photons: the light pass and the camera paths each find their own part of the same light.
 //!
 //! ```text
 //! cargo test --release --test all caustics::

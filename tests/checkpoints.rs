@@ -1,4 +1,4 @@
-//! Renders that stop and go on, and images made in parts: the same bytes as of one render.
+//! Renders that stop and resume, and images made in parts: they give the same bytes as one render.
 //!
 //! ```text
 //! cargo test --test all checkpoints::
@@ -19,7 +19,7 @@ use crate::support::scenes::scene;
 mod command;
 mod damage;
 
-/// A glass ball and a mirror on a floor under a small lamp. The film is no multiple of any tile.
+/// A glass ball and a mirror on a floor under a small lamp. The size of the film is not a multiple of any tile size.
 pub const GLASS: &str = r#"
 camera = { position = [0, 1.5, 6], look_at = [0, 0.7, 0], vertical_fov = 35 }
 film = { width = 37, height = 21 }
@@ -43,7 +43,7 @@ shape.sphere = { center = [-1, 2.5, 1], radius = 0.02 }
 material = "lamp"
 "#;
 
-/// What a ball that is not seen throws onto the floor.
+/// The caustic of a ball outside the view.
 pub const CAUSTIC: &str = r#"
 camera = { position = [0, 1.5, 6], look_at = [0, 0, 0], vertical_fov = 12 }
 film = { width = 37, height = 21 }
@@ -106,10 +106,10 @@ shape.sphere = { center = [0, 0, 0], radius = 1 }
 material = "matte"
 "#;
 
-/// A name, a scene, options, and whether a method is the one that is meant.
+/// A name, a scene, options, and whether a method is the intended one.
 pub type Kind = (&'static str, String, Options, fn(&Method) -> bool);
 
-/// Scenes of all ways to find light.
+/// Returns scenes for all ways to find light.
 fn kinds() -> Vec<Kind> {
     let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
     let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
@@ -127,7 +127,7 @@ fn kinds() -> Vec<Kind> {
     let still = GLASS
         .replace("height = 21", "height = 21, filter = \"center\"")
         .replace("floor.diffuse.reflectance = 0.6", "floor.diffuse.reflectance = 0");
-    // Light vertices are worth their while in large images alone.
+    // Light vertices pay off only in large images.
     let large = ROOM.replace("width = 21, height = 18", "width = 420, height = 360");
     let crop = Some(Window { left: 200, top: 150, width: 21, height: 18 });
     let part = Options { crop, ..Options::default() };
@@ -147,7 +147,7 @@ fn kinds() -> Vec<Kind> {
     ]
 }
 
-/// The bytes of the files that an image is written as.
+/// Returns the bytes of the files that an image is written to.
 pub fn bytes(image: &Image, folder: &Path) -> Vec<Vec<u8>> {
     let [exr, spectral] = ["image.exr", "image.spectral.exr"].map(|name| folder.join(name));
     image.write_exr(&exr).expect("an image can be written");
@@ -155,13 +155,12 @@ pub fn bytes(image: &Image, folder: &Path) -> Vec<Vec<u8>> {
     [exr, spectral].iter().filter_map(|path| std::fs::read(path).ok()).collect()
 }
 
-/// Whether two images have the same pixels and say the same of them. How long they were expected to take is another
-/// matter.
+/// Returns whether two images have the same pixels and the same report. Their expected durations may differ.
 fn is_same(a: &Image, b: &Image) -> bool {
     (a.film(), a.report()) == (b.film(), b.report())
 }
 
-/// The same options with a plan from a file, so that renders of one scene need no plan of their own.
+/// Returns the options with a plan from a file, so that renders of one scene need not plan again.
 pub fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
     let (path, mut asked) = (folder.join("image.plan"), scene.clone());
     options.apply(&mut asked).expect("the options fit");
@@ -169,7 +168,7 @@ pub fn planned(scene: &Scene, options: &Options, folder: &Path) -> Options {
     Options { plan: Some(path), ..options.clone() }
 }
 
-/// Options with the plan of one of the [`kinds`] from a file; each plan is made once for all tests.
+/// Returns the options with the plan of one of the [`kinds`] from a file. Each plan is made once for all tests.
 fn planned_once(kind: &'static str, scene: &Scene, options: &Options, folder: &Path) -> Options {
     static PLANS: Mutex<BTreeMap<&str, Vec<u8>>> = Mutex::new(BTreeMap::new());
     let path = folder.join("image.plan");
@@ -186,7 +185,7 @@ pub fn rendering(scene: &Scene, options: &Options, threads: usize) -> Rendering 
     Rendering::new(scene, &Options { threads: Some(threads), ..options.clone() }).expect("it can be rendered")
 }
 
-/// Renders on until it was asked so many times whether it shall stop; answers how many times it was asked.
+/// Renders until the stop condition has been polled `most` times. Returns how often it was polled.
 pub fn advance(rendering: &mut Rendering, most: u64) -> u64 {
     let asked = AtomicU64::new(0);
     let is_due = || asked.fetch_add(1, Ordering::Relaxed) >= most;
@@ -207,7 +206,7 @@ fn a_render_that_stops_anywhere_goes_on_to_the_same_bytes() {
         let (expected, report) = (bytes(&whole.image(), folder.path()), whole.image().report().clone());
         for threads in [1, 7] {
             let mut first = rendering(&scene, &options, threads);
-            // Twice, so that what goes on stops again.
+            // Twice, so that a resumed render stops again.
             for _ in 0..2 {
                 advance(&mut first, (random.number() * 0.6 * asked as f64) as u64);
                 first.save(&path).expect("a checkpoint can be written");
@@ -252,7 +251,7 @@ fn a_render_that_stops_and_goes_on_in_one_run_makes_the_same_image() {
 #[test]
 fn parts_of_an_image_are_together_the_same_bytes_as_the_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    // Of an image of six tiles some of 16 parts have none, but of one of 64 tiles all have some.
+    // An image of six tiles leaves some of 16 parts empty. An image of 64 tiles does not.
     let few: &[(u32, usize)] = &[(3, 7)];
     let many = [few, &[(1, 1), (2, 3), (16, 2)]].concat();
     let all = [&*many, &[(64, 2)]].concat();
@@ -327,7 +326,7 @@ fn a_part_that_follows_a_plan_from_a_file_has_the_same_bytes() {
     }
 }
 
-/// A part is expected to take as long as its pixels do.
+/// The expected duration of a part is proportional to its pixels.
 #[test]
 fn a_part_of_an_image_is_expected_to_take_a_part_of_the_time() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -340,7 +339,7 @@ fn a_part_of_an_image_is_expected_to_take_a_part_of_the_time() {
     assert!((0.2..0.3).contains(&share), "{share}");
 }
 
-/// Renders with some samples to the end and goes on with others.
+/// Renders to the end with some samples and resumes with a different number.
 fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Image, Resumed), Error> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.checkpoint");
@@ -357,7 +356,7 @@ fn raised(text: &str, options: &Options, samples: [u32; 2]) -> Result<(Image, Im
 fn more_samples_are_added_to_those_that_were_taken() {
     let layers =
         Options { layers: Some(vec![Layer::Variance, Layer::Lights, Layer::CryptoObject]), ..Options::default() };
-    // Other photons are shown beside more samples.
+    // More samples splat different photons.
     for (text, samples) in [(CAUSTIC, [16, 64]), (CAUSTIC, [32, 50]), (ROOM, [32, 100])] {
         let (image, whole, resumed) = raised(text, &layers, samples).expect("there is a pass that ends there");
         assert!(is_same(&image, &whole) && resumed == Resumed::Continues, "{samples:?}");
@@ -371,13 +370,13 @@ fn samples_that_cannot_become_those_that_are_asked_for_are_refused() {
         (CAUSTIC, Options::default(), [50, 64], "no pass that ends there"),
         (CAUSTIC, Options::default(), [50, 100], "no pass that ends there"),
         (CAUSTIC, halves, [16, 32], "half_a and half_b are halves of 16 samples"),
-        // The radius within which photons are gathered becomes less with more samples.
+        // The radius of the photon map shrinks with more samples.
         (GLASS, Options::default(), [16, 32], "another plan"),
     ] {
         let refused = raised(text, &options, samples).map(|_| ()).expect_err("it is refused");
         let Error::Arguments { message, help: Some(help) } = refused else { panic!("{refused}") };
         assert!(message.contains(why), "{samples:?}: {message}");
-        // With the samples that are named it goes on.
+        // The render resumes with the number of samples that the message names.
         let named = format!("ask for {} samples per pixel, or delete it to start over", samples[0]);
         assert!(help == named || why == "another plan", "{samples:?}: {help}");
         assert_eq!(raised(text, &options, [samples[0]; 2]).expect("it goes on").2, Resumed::Finished);

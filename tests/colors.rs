@@ -1,5 +1,5 @@
-//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` survives being a
-//! spectrum.
+//! Color spaces are views of the same light, blackbodies have their published colors, and `rgb` colors survive the
+//! conversion to spectra.
 //!
 //! ```text
 //! cargo test --release --test all colors::
@@ -24,11 +24,11 @@ const SPACES: [ColorSpace; 6] = [
 ];
 const MODELS: [&str; 6] =
     ["\"rgb\"", "{ bands = 8 }", "{ bands = 12 }", "{ bands = 16 }", "{ bands = 32 }", "\"hero\""];
-/// No light is chosen by its brightness, which is measured in film colors, so that all films share their random
+/// Lights are not selected by their brightness, which is measured in film colors, so all films share their random
 /// numbers.
 const ALL_LIGHTS: Transport = Transport::Deterministic { cutoff: 1e-4, most: u64::MAX };
 
-/// A scene in a color space, under a model.
+/// Returns a scene in a color space and under a spectral model.
 fn text(body: &str, space: ColorSpace, model: &str, caustics: &str) -> String {
     format!(
         "film = {{ width = 16, height = 12, color_space = \"{}\" }}\n\
@@ -38,8 +38,8 @@ fn text(body: &str, space: ColorSpace, model: &str, caustics: &str) -> String {
     )
 }
 
-/// The films of a scene in some color spaces, under a model. How many photons there are is learned from samples that do
-/// choose lights: it is asked once.
+/// Renders a scene in several color spaces under a model. The number of photons is planned only once, with samples that
+/// do select lights.
 fn films<const S: usize>(body: &str, spaces: [ColorSpace; S], model: &str) -> [Film; S] {
     let caustics = |space| if space == spaces[0] { "auto" } else { "off" };
     let scenes = spaces.map(|space| scene(&text(body, space, model, caustics(space))));
@@ -88,7 +88,8 @@ environment.radiance = { illuminant = "FL11", luminance = 0.2 }
 #[test]
 fn a_measured_scene_is_the_same_xyz_in_every_color_space() {
     for model in MODELS {
-        // Three bands hold surfaces as they look under the one light there is, or else under the film's own white.
+        // In three bands, surfaces have their color under the only light, or under the film's white if there are
+        // several lights.
         let lights = if model == "\"rgb\"" { SAME_LIGHT } else { OTHER_LIGHTS };
         let films = films(&format!("{MEASURED}{lights}"), SPACES, model);
         let mut worst = 0.0_f64;
@@ -109,7 +110,8 @@ fn a_measured_scene_is_the_same_xyz_in_every_color_space() {
     }
 }
 
-/// A bare number and `rgb` are relative to the film's white: not the XYZ stays, but Rec.709 adapted to that white.
+/// A plain number and `rgb` are relative to the film's white. What stays the same is not the XYZ but Rec.709 adapted to
+/// that white.
 #[test]
 fn rgb_lights_and_surfaces_have_their_rec709_color_in_every_color_space_adapted_to_its_white() {
     let color = [0.2, 0.5, 0.7];
@@ -130,7 +132,7 @@ fn rgb_lights_and_surfaces_have_their_rec709_color_in_every_color_space_adapted_
     }
 }
 
-/// What a model may miss of a smooth reflectance: `rgb` and lights nothing but rounding.
+/// Returns the error that a model may have for a smooth reflectance. `rgb` and lights have only rounding errors.
 fn missed(model: &str) -> f64 {
     match model {
         "\"rgb\"" => 1e-7,
@@ -149,16 +151,16 @@ fn xy_of_blackbody(kelvin: f64) -> [f64; 2] {
 
 #[test]
 fn blackbodies_have_their_published_chromaticities() {
-    // CIE 15:2018, illuminant A, a blackbody at 2848 K for c2 = 0.01435, which is 2855.5 K for today's c2.
+    // CIE 15:2018, illuminant A: a blackbody at 2848 K for c2 = 0.01435, which is 2855.5 K for the current c2.
     assert_near(xy_of_blackbody(2855.5), [0.4476, 0.4074], 5e-5, "2855.5 K");
     // Wyszecki & Stiles 1982, *Color Science*, table 1(3.11).
     assert_near(xy_of_blackbody(3000.0), [0.4369, 0.4041], 5e-5, "3000 K");
-    // The infinitely hot body, of radiance wavelength^-4.
+    // An infinitely hot body, with a radiance of wavelength^-4.
     assert_near(xy_of_blackbody(1e9), [0.2399, 0.2340], 5e-5, "1e9 K");
 }
 
-/// For a blackbody of 6504 K, (0.3135, 0.3237) is often printed. It is the sum over steps of 10 nm; steps of 1 nm, on
-/// which color is integrated here, give (0.3135, 0.3236).
+/// For a blackbody at 6504 K, (0.3135, 0.3237) is often published. That is the sum over steps of 10 nm. The renderer
+/// integrates color in steps of 1 nm, which gives (0.3135, 0.3236).
 #[test]
 fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
     assert_near(xy_of_blackbody(6504.0), [0.3135, 0.3236], 5e-5, "6504 K");
@@ -171,8 +173,9 @@ fn the_printed_chromaticity_of_6504_kelvin_is_that_of_coarse_steps() {
     assert_near(xy(xyz), [0.3135, 0.3237], 5e-5, "6504 K in steps of 10 nm");
 }
 
-/// (1.2048, 0.9483, 0.9089) is printed for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709
-/// is (0.3127, 0.3290), 0.0002 more in Z, and over 1 nm the CIE's own functions sum to (1.00008, 1, 1.00033).
+/// (1.2048, 0.9483, 0.9089) is published for XYZ = (1, 1, 1) and a white of (0.95047, 1, 1.08883). The white of Rec.709
+/// is (0.3127, 0.3290), which is 0.0002 more in Z, and the CIE's own functions sum to (1.00008, 1, 1.00033) in steps of
+/// 1 nm.
 #[test]
 fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
     let expected =
@@ -190,7 +193,7 @@ fn the_equal_energy_spectrum_is_pink_in_rec709_however_it_is_written() {
     }
 }
 
-/// What a surface looks like under a light, of one sample that carries all fixed lanes.
+/// Returns the color of a surface under a light, from one sample that carries all fixed lanes.
 fn seen(basis: &Basis, surface: &Curve, light: &Curve) -> [f64; 3] {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let reflectance = draw.read(&basis.tabulate(Quantity::Reflectance, surface));
@@ -198,7 +201,7 @@ fn seen(basis: &Basis, surface: &Curve, light: &Curve) -> [f64; 3] {
     basis.response(light).sensor(&draw, reflectance * emission, false)
 }
 
-/// The color of a spectrum under the film's white, nm by nm.
+/// Returns the color of a spectrum under the film's white, integrated in steps of 1 nm.
 fn integrated(space: ColorSpace, reflectance: impl Fn(f64) -> f64) -> [f64; 3] {
     let white = Emission::new(&1.0.into(), space);
     visible::wavelengths()
@@ -210,8 +213,8 @@ fn largest(found: [f64; 3], expected: [f64; 3]) -> f64 {
     (0..3).fold(0.0, |most: f64, c| larger(most, (found[c] - expected[c]).abs()))
 }
 
-/// Random colors all have a smooth spectrum. That of a nearly pure color is nearly a step, or bends beyond the
-/// last band, which 32 bands miss by some 1e-4.
+/// Every random color gets a smooth spectrum. The spectrum of a nearly pure color is nearly a step or bends beyond the
+/// last band. 32 bands miss it by about 1e-4.
 #[test]
 fn rgb_reflectances_come_back_as_themselves_under_the_films_white() {
     const COLORS: usize = 2048;

@@ -1,4 +1,4 @@
-//! The command line: what it takes, what it answers, what it leaves behind.
+//! The command line: its arguments, its messages, and the files that it leaves behind.
 
 #[allow(dead_code)]
 #[path = "support/pictures.rs"]
@@ -40,19 +40,19 @@ material = "white"
 environment = { radiance = 1 }
 "#;
 
-/// A folder that holds `ball.toml`, a scene of two white balls under an even sky.
+/// Creates a folder with `ball.toml`, a scene of two white balls under a uniform sky.
 fn folder() -> Folder {
     Folder::with("ball.toml", SCENE)
 }
 
-/// Refused with this text, and nothing is left behind.
+/// Asserts that the command is refused with this text and leaves nothing behind.
 fn assert_refuses(arguments: &[&str], code: i32, stderr: &str) {
     let folder = folder();
     render(&folder, arguments).assert_refused(code, stderr);
     assert_eq!(folder.listing(), ["ball.toml"]);
 }
 
-/// Succeeds in silence on stdout, and leaves exactly these files.
+/// Asserts that the command succeeds with nothing on stdout and leaves exactly these files.
 fn assert_leaves(arguments: &[&str], files: &[&str]) {
     let folder = folder();
     let answer = render(&folder, arguments);
@@ -215,7 +215,7 @@ fn an_image_that_cannot_be_written_is_refused_before_anything_is_rendered() {
     assert_eq!(folder.listing(), ["a.exr", "ball.toml"]);
 }
 
-/// No folder can be made there, whoever asks.
+/// Nobody can create a folder there.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_that_cannot_be_made_is_told() {
@@ -329,7 +329,7 @@ fn a_picture_is_8_bit_rgb_of_the_film_s_size() {
     assert_eq!(folder.listing(), ["ball.toml", "look.png"]);
     let picture = read_png(&folder.path_of("look.png"));
     assert_eq!((picture.width, picture.pixels.len()), (6, 6 * 4));
-    // The sky of radiance 1 in the corner is full white.
+    // The sky in the corner has radiance 1 and is full white.
     assert_eq!(picture.pixels[0], [255; 3]);
     let says_srgb = |bytes: &[u8]| bytes.windows(4).any(|name| name == b"sRGB");
     assert!(says_srgb(&folder.read("look.png")), "programs that manage colors need to be told");

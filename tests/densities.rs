@@ -1,5 +1,5 @@
-//! Random directions and points follow the densities that are claimed for them: chi-squared tests, with significance
-//! 1 % over all shapes together and over all maps together.
+//! Random directions and points follow their stated densities: chi-squared tests with a significance of 1 % over all
+//! shapes together and over all maps together.
 //!
 //! ```text
 //! cargo test --test all densities::

@@ -1,4 +1,4 @@
-//! The image depends on the scene and the seed alone: not on the number of threads, nor on the run.
+//! The image depends only on the scene and the seed, not on the number of threads or on the run.
 //!
 //! ```text
 //! cargo test --test all determinism::
@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use crate::support::run::{Folder, render};
 
-/// Chance everywhere: a glass ball, mirror and metal on a diffuse floor under two lamps and a sky. The film is no
-/// multiple of any tile.
+/// Random choices everywhere: a glass ball, a mirror and metal on a diffuse floor under two lamps and a sky. The size
+/// of the film is not a multiple of any tile size.
 const RANDOM: &str = r#"
 camera = { position = [0, 1.5, 6], look_at = [0, 0.7, 0], vertical_fov = 35 }
 film = { width = 75, height = 43 }
@@ -44,7 +44,7 @@ material = "lamp"
 environment.radiance = 0.2
 "#;
 
-/// Renders a scene with the command and answers the bytes of the EXR and the PNG.
+/// Renders a scene with the command and returns the bytes of the EXR and the PNG.
 fn rendered(folder: &Folder, scene: &str, flags: &[&str]) -> (Vec<u8>, Vec<u8>) {
     folder.write("scene.toml", scene);
     let answer = render(folder, &[&["scene.toml", "--exr", "image.exr", "--png", "image.png"], flags].concat());
@@ -107,7 +107,7 @@ fn only_a_stamp_says_when_and_how_an_image_was_made() {
         panic!("no time of rendering")
     };
     assert!(seconds > 0.0 && seconds < 3600.0, "{seconds}");
-    // All else is the same.
+    // Everything else is the same.
     let rest = |header: &LayerAttributes| header.other.len();
     assert_eq!(rest(&plain) + 2, rest(&stamped));
 }

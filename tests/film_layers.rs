@@ -1,4 +1,4 @@
-//! Layers beside the image: what they hold, that they add up to it, and that they change nothing of it.
+//! Layers beside the image: their contents, their sum, and that they change nothing in the image.
 
 mod edges;
 mod files;
@@ -17,8 +17,8 @@ use abbe::{Image, Options, Scene};
 use crate::support::larger::larger;
 use crate::support::scenes::{films_of, moments, rendered_with};
 
-/// Glass that disperses, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot:
-/// photons are shown and gathered, lanes part.
+/// Dispersive glass, a mirror, a pane, rough metal and a coated ball on a floor, lit by a lamp, a sky and a spot.
+/// Photons are splatted and gathered, and lanes part.
 const ROOM: &str = r#"
 camera = { position = [0, 1.6, 6], look_at = [0, 0.7, 0], vertical_fov = 38 }
 film = { width = 40, height = 28 }
@@ -61,7 +61,7 @@ name = "rim"
 spot = { position = [3, 3, -2], look_at = [0.2, 0.8, 0.6], cone_angle = 30, intensity = 8 }
 "#;
 
-/// Two renders of two samples differ in pixels in which both samples of each are the same.
+/// Two renders with two samples differ even in pixels where both samples of each render agree.
 #[test]
 fn too_few_samples_tell_no_variance_and_that_is_said() {
     let told = |layers: &[Layer], samples: u32| {
@@ -80,7 +80,7 @@ fn rendered(text: &str, layers: &[Layer]) -> Image {
     rendered_with(text, &Options { layers: Some(layers.to_vec()), threads: Some(1), ..Options::default() })
 }
 
-/// The channels of a layer of light, pixel by pixel.
+/// Returns the RGB channels of a layer of light, pixel by pixel.
 fn rgb(image: &Image, layer: &str) -> Vec<[f64; 3]> {
     let [red, green, blue] = ["R", "G", "B"].map(|channel| {
         let values = image.layer(&format!("{layer}.{channel}"));
@@ -93,7 +93,7 @@ fn beauty(image: &Image) -> Vec<[f64; 3]> {
     image.rgb().into_iter().map(|rgb| rgb.map(f64::from)).collect()
 }
 
-/// Layers sum to the image as exactly as 32 bits tell, of the largest of them.
+/// Asserts that layers, weighted by `share`, sum to the image within the precision of 32 bits relative to their size.
 fn assert_sum(image: &Image, layers: &[&str], share: f64) {
     let parts: Vec<_> = layers.iter().map(|layer| rgb(image, layer)).collect();
     for (pixel, expected) in beauty(image).into_iter().enumerate() {
@@ -106,7 +106,7 @@ fn assert_sum(image: &Image, layers: &[&str], share: f64) {
     }
 }
 
-/// What the camera does not see takes no light on the way to it, wherever the camera is.
+/// A body hidden from the camera absorbs no light on the way to the camera, wherever the camera is.
 #[test]
 fn a_camera_within_a_hidden_body_sees_as_if_that_were_not_there() {
     let floor = "[camera]\nposition = [0, 9, 0]\nlook_at = [0, 0, 0]\nup = [1, 0, 0]\nvertical_fov = 20\n[film]\nwidth = 4\nheight = 4\n\
@@ -116,7 +116,8 @@ fn a_camera_within_a_hidden_body_sees_as_if_that_were_not_there() {
         shape.sphere = { center = [0, 9, 0], radius = 0.5 }\nvisible_to_camera = false\n";
     let colors = beauty(&rendered(&(floor.to_owned() + body), &[]));
     let shown = colors.iter().map(|color| color[1]).sum::<f64>() / colors.len() as f64;
-    // The body covers at most this part of the light that the floor gets; chance may find it some times more often.
+    // The body blocks at most this fraction of the light that reaches the floor. Random paths may hit it a few times
+    // more often.
     let covered = (0.5 / 8.5_f64).powi(2);
     assert!((0.5 * (1.0 - 4.0 * covered)..=0.5 + 1e-6).contains(&shown), "{shown}");
 }
@@ -132,7 +133,7 @@ fn layers_of_light_add_up_to_the_image() {
     assert_sum(&image, &["light_key_lamp", "light_environment", "light_rim"], 1.0);
     assert_sum(&image, &["half_a", "half_b"], 0.5);
     let total = |layer: &str| rgb(&image, layer).iter().flatten().sum::<f64>();
-    // Nothing here is behind one surface alone.
+    // Nothing here lies behind only one surface.
     for layer in split.into_iter().filter(|layer| *layer != "transmission_direct") {
         assert!(total(layer) > 0.0, "nothing in {layer}");
     }
@@ -176,7 +177,7 @@ fn a_light_of_its_own_layer_is_the_image_that_it_makes_alone() {
     }
 }
 
-/// A coat reflects the same whatever lies below it, and a base scatters the same patch by patch as where it lies alone.
+/// A coat reflects the same whatever lies below it. A base scatters the same in every pixel as it does alone.
 #[test]
 fn lobes_of_one_surface_are_told_apart_to_the_last_digits() {
     let lit = |materials: &str, layer: Layer| {
@@ -243,7 +244,7 @@ fn names_of_lights_that_no_file_can_tell_apart_are_refused() {
     }
 }
 
-/// One ball, all of it in sight.
+/// A single ball that is fully in view.
 const BALL: &str = r#"
 camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }
 film = { width = 33, height = 33, filter = "center" }
@@ -272,7 +273,7 @@ fn surfaces_are_those_that_the_camera_meets() {
             continue;
         }
         met += 1;
-        // On a unit ball about the origin, a point is its own normal.
+        // A point on the unit ball about the origin equals its own normal.
         assert!((0..3).all(|i| (p[i] - n[i]).abs() < 1e-6), "pixel {pixel}: {p:?} and {n:?}");
         assert_eq!(n, at(&flat));
         assert!((p.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-6 && n[2] > 0.0);
@@ -293,7 +294,7 @@ fn albedo_of_metal_and_glass_is_what_they_send_back() {
         let image = rendered(&text, &[Layer::Albedo]);
         rgb(&image, "albedo")[16 * 33 + 16]
     };
-    // All of what meets glass is mirrored or goes on; a mirror sends back its reflectance.
+    // Glass reflects or transmits all light that hits it. A mirror reflects its reflectance.
     for (material, expected) in [
         ("dielectric.index = 1.5", [1.0; 3]),
         ("dielectric.index = \"N-SF11\"", [1.0; 3]),
@@ -303,7 +304,7 @@ fn albedo_of_metal_and_glass_is_what_they_send_back() {
         let albedo = of(material);
         assert!((0..3).all(|i| (albedo[i] - expected[i]).abs() < 2e-3), "{material}: {albedo:?}");
     }
-    // Gold, straight on: n and k of the catalog give 0.9 and 0.3 in red and blue.
+    // Gold at normal incidence: n and k of the catalog give 0.9 in red and 0.3 in blue.
     let gold = of("conductor = { metal = \"Au\", roughness = 0.1 }");
     assert!(gold[0] > 0.85 && gold[2] < 0.5, "{gold:?}");
 }
@@ -322,7 +323,7 @@ fn what_is_seen_in_a_mirror_is_the_first_surface_if_asked_for() {
     assert_eq!(scene.format.first, FirstSurface::Visible);
     let image = abbe::render(&scene, &Options::default()).expect("it renders");
     let middle = 4 * 8 + 4;
-    // The share of the sample that the mirror leaves weighs the normal.
+    // The normal is weighted by the throughput that the mirror leaves.
     let normal = ["N.X", "N.Y", "N.Z"].map(|name| image.layer(name).expect("it was asked for")[middle]);
     assert!((normal[0].abs() - 0.5).abs() < 1e-6 && normal[1] == 0.0 && normal[2] == 0.0, "{normal:?}");
     let albedo = rgb(&image, "albedo")[middle];
@@ -343,7 +344,7 @@ fn a_hidden_sky_lights_the_scene_and_is_not_in_the_image() {
 
 #[test]
 fn a_hidden_object_is_not_in_the_image_but_in_its_light() {
-    // A screen between the camera and the ball, which the sun casts no shadow of onto the visible side.
+    // A screen between the camera and the ball, which blocks some of the environment's light.
     let screen = "\n[[object]]\nvisible_to_camera = false\n\
                   shape.quad = { center = [0, 0, 2], u = [0.4, 0, 0], v = [0, 0.4, 0] }\nmaterial = \"clay\"\n";
     let (without, with) = (rendered(BALL, &[]), rendered(&format!("{BALL}{screen}"), &[]));
@@ -374,7 +375,8 @@ fn a_holdout_cuts_a_hole_and_leaves_the_rest_alone() {
     assert!(holes > 20 && same > 800, "{holes} {same}");
 }
 
-/// Dark bodies on gray ground under a sky and a lamp: what is in a plate, and what is laid over it.
+/// Renders dark bodies on gray ground under a sky and a lamp, either as a plate or as the image that is composited over
+/// it.
 fn ball_on_ground(ball: bool, ground: &str, sky: &str, lamp: &str) -> Image {
     let ball = if ball {
         "[[object]]\nshape.sphere = { center = [0, 0.5, 0], radius = 0.5 }\nmaterial = \"dark\"\n\
@@ -400,7 +402,7 @@ fn an_image_with_shadow_catcher_over_its_plate_is_the_whole_picture() {
     let over = ball_on_ground(true, "shadow_catcher = true\n", "visible_to_camera = false\n", "");
     let (alpha, shadow) = (over.layer("A").expect("every image has it"), rgb(&over, "shadow"));
     let (mut shaded, mut worst) = (0, 0.0_f64);
-    // Blocks of 4 x 4 pixels, whose noise is a fourth of a pixel's.
+    // Blocks of 4 x 4 pixels have a fourth of a pixel's noise.
     for block in 0..8 * 6 {
         let pixels = (0..16).map(|i| (block / 8 * 4 + i / 4) * 32 + block % 8 * 4 + i % 4);
         let (mut laid, mut expected) = ([0.0; 3], [0.0; 3]);
@@ -419,7 +421,8 @@ fn an_image_with_shadow_catcher_over_its_plate_is_the_whole_picture() {
         }
     }
     assert!(shaded > 8, "{shaded} pixels lie in the shadow");
-    // Light that the bodies send to the ground is not in its coverage: a hundredth where they are so dark.
+    // The coverage does not include light that the bodies reflect onto the ground. It is about a hundredth for such
+    // dark bodies.
     assert!(worst < 0.02, "a block is {worst:.4} off");
 }
 
@@ -465,7 +468,7 @@ fn mattes_cover_what_the_image_covers() {
     assert!(found > 5.0, "the stones cover {found} pixels");
 }
 
-/// What the halves and the variance say is what other seeds show.
+/// The variance layer and the two halves agree with the variance over other seeds.
 #[test]
 fn variance_is_no_less_than_images_of_other_seeds_show() {
     let mut scene = Scene::parse(ROOM, "").expect("the scene is valid");
@@ -485,7 +488,7 @@ fn variance_is_no_less_than_images_of_other_seeds_show() {
             }
         }
     }
-    // Samples are spread more evenly than independent ones, so that the variance of the samples is an upper bound.
+    // Samples are distributed more evenly than independent ones, so their variance is an upper bound.
     assert!(told >= 0.9 * seen && told <= 6.0 * seen, "told {told:.3}, seen {seen:.3}");
     assert!((0.5..2.0).contains(&(halves / seen)), "halves {halves:.3}, seen {seen:.3}");
 }

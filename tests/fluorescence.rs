@@ -1,4 +1,4 @@
-//! Dyes: light that comes back at other wavelengths, against sums over their matrices.
+//! Dyes: light that they emit at other wavelengths is compared with sums over their matrices.
 //!
 //! ```text
 //! cargo test --test all fluorescence::
@@ -18,11 +18,11 @@ use abbe::trace::Method;
 use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, assert_near, film_of, method, scene};
 
-/// A dye that absorbs a bell of light and shines another, in photons, over white paper.
+/// A dye over white paper. Its absorption is bell-shaped, and so is its emission in photons.
 #[derive(Clone, Copy)]
 pub struct Bells {
     pub name: &'static str,
-    /// Middle and standard deviation in nm of what it absorbs, 0.9 at most, and of the photons that it shines.
+    /// Mean and standard deviation in nm of the absorption, whose peak is 0.9, and of the emitted photons.
     absorbs: [f64; 2],
     shines: [f64; 2],
     quantum_yield: f64,
@@ -50,21 +50,21 @@ impl Bells {
         0.92 - self.absorbed(nm)
     }
 
-    /// Power that it shines per nm of 1 in all.
+    /// Returns the emitted power per nm, normalized to a total of 1.
     pub fn glow(&self) -> Vec<f64> {
         let power: Vec<f64> = visible::wavelengths().map(|nm| bell(self.shines, nm) / nm).collect();
         let total: f64 = power.iter().sum();
         power.into_iter().map(|x| x / total).collect()
     }
 
-    /// Power that it shines of all that comes at a wavelength.
+    /// Returns the emitted power relative to the power that arrives at a wavelength.
     pub fn excited(&self, nm: f64) -> f64 {
         let [power, photons] =
             [1.0, 0.0].map(|by| visible::wavelengths().map(|nm| bell(self.shines, nm) / nm.powf(by)).sum::<f64>());
         self.quantum_yield * self.absorbed(nm) * nm * power / photons
     }
 
-    /// The material as a scene has it.
+    /// Returns the material as scenes write it.
     pub fn material(&self) -> String {
         let written = |samples: Vec<[f64; 2]>| {
             let mut text = String::from("{ samples = [");
@@ -81,13 +81,13 @@ impl Bells {
     }
 }
 
-/// The power per nm of an illuminant with Y = 1.
+/// Returns the power per nm of an illuminant with Y = 1.
 pub fn light(name: &str) -> Vec<f64> {
     let curve: Curve = CurveKind::illuminant(name).expect("it is in the catalog").into();
     Emission::new(&curve, ColorSpace::Rec709).spectrum().to_vec()
 }
 
-/// Linear Rec.709 of a spectrum.
+/// Converts a spectrum to linear Rec.709.
 pub fn color(spectrum: &[f64]) -> [f64; 3] {
     apply(&ColorSpace::Rec709.of_xyz(), visible::xyz(spectrum))
 }
@@ -96,14 +96,14 @@ pub fn lanes(scene: &Scene<Curve>, basis: Basis) -> Method {
     Method { basis, ..method(scene, EVERY_BRANCH) }
 }
 
-/// The only pixel of an image in 32 lanes from 300 nm on, in which nothing is left to chance.
+/// Renders the only pixel of an image in 32 lanes from 300 nm on, without random choices.
 pub fn pixel(text: &str) -> [f64; 3] {
     let scene = scene(text);
     let method = lanes(&scene, Basis::bands_over(scene.film.color_space, 32, Basis::FROM_ULTRAVIOLET_NM, &[]));
     film_of(&scene, method).pixels[0].rgb.map(f64::from)
 }
 
-/// Each channel within a share of the strongest.
+/// Asserts that each channel is within a fraction of the strongest one.
 pub fn near(found: [f64; 3], expected: [f64; 3], share: f64, what: &str) {
     let strongest = expected.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     let off = (0..3).map(|c| (found[c] - expected[c]).abs() / strongest).fold(0.0, larger);

@@ -1,5 +1,5 @@
-//! No file stops the program that reads it: scenes, meshes, images and spectra, damaged at random, are read or refused
-//! in one sentence, without a panic, in a time and a memory that fit their size.
+//! No file stops the program that reads it. Scenes, meshes, images and spectra, damaged at random, are read or refused
+//! in one sentence, without a panic, in time and memory that suit their size.
 //!
 //! The cases are the same in every run. All of them, a million and more, take some minutes:
 //!
@@ -7,7 +7,7 @@
 //! ABBE_FUZZ_CASES=1000000 cargo test --release --test fuzz -- --nocapture
 //! ```
 //!
-//! `ABBE_FUZZ_KINDS=hdr,csv` takes only the cases of some endings. The cases that did harm once are kept in
+//! `ABBE_FUZZ_KINDS=hdr,csv` runs only the cases of some file extensions. Cases that once did harm are kept in
 //! `fuzz/regressions.rs`.
 
 mod fuzz {

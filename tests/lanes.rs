@@ -1,5 +1,5 @@
-//! Lanes that travel together must end where each would have gone alone, and light that is found in two ways must be
-//! counted once: dispersion, furnaces, nested bodies and direct light against closed forms.
+//! Lanes that travel together must end where each would go alone, and light that is found in two ways must be counted
+//! once. Dispersion, furnaces, nested bodies and direct light are compared with closed forms.
 //!
 //! ```text
 //! cargo test --test all lanes::

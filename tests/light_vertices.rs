@@ -1,5 +1,5 @@
-//! Light that surfaces send each other, looked for at vertices of light paths: against a closed form, and against paths
-//! from the camera alone in rooms of many kinds.
+//! Indirect light found with vertices of light paths: compared with a closed form, and with paths from the camera alone
+//! in rooms of many kinds.
 //!
 //! ```text
 //! cargo test --test all light_vertices::
@@ -22,7 +22,7 @@ use crate::support::scenes::{
 const WHITE: &str = "diffuse = { reflectance = 0.7 }";
 const LAMP: &str = "emissive = { radiance = { rgb = [9, 8, 6] } }";
 
-/// The six walls of a closed box, 4 x 3 x 5, on the floor.
+/// Returns the six walls of a closed box, 4 x 3 x 5, that stands on the floor.
 fn walls() -> [String; 6] {
     [
         quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5]),
@@ -34,7 +34,7 @@ fn walls() -> [String; 6] {
     ]
 }
 
-/// The box seen from inside, with what else stands there.
+/// Returns the box seen from inside, with more objects in it.
 fn room(wall: &str, render: &str, more: &[String]) -> String {
     let walls = walls();
     view([1.3, 1.6, 2.2], [-0.6, 1.0, -1.0], 75.0, 12)
@@ -47,13 +47,13 @@ fn lamp() -> String {
     body("lamp", LAMP, &[&quad([0.3, 2.9, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, 0.4])])
 }
 
-/// A lamp that lights the ceiling alone.
+/// Returns a lamp that lights only the ceiling.
 fn up() -> String {
     let material = "emissive = { radiance = { rgb = [30, 25, 20] }, sides = \"front\" }";
     body("lamp", material, &[&quad([-0.8, 1.8, -0.4], [0.5, 0.0, 0.0], [0.0, 0.0, -0.4])])
 }
 
-/// Most of a wall beside the lamp.
+/// Returns a screen in front of most of a side wall.
 fn screen(material: &str) -> String {
     body("screen", material, &[&quad([-1.9, 1.5, 0.0], [0.0, 0.0, 2.3], [0.0, 1.4, 0.0])])
 }
@@ -62,7 +62,7 @@ fn ball(name: &str, material: &str) -> String {
     body(name, material, &["sphere = { center = [-0.6, 0.9, -0.8], radius = 0.8 }"])
 }
 
-/// Octahedron with normals of a ball.
+/// Returns an octahedron with the normals of a ball.
 fn smooth(material: &str) -> String {
     let points = "[[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]";
     let faces = "[[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]";
@@ -73,7 +73,7 @@ fn smooth(material: &str) -> String {
     )
 }
 
-/// Rooms in which light paths start from all lights.
+/// Returns rooms in which light paths start from all lights.
 fn rooms() -> Vec<(&'static str, String)> {
     let with = |more: &[String]| room(WHITE, "", more);
     let boxes = body(
@@ -273,17 +273,17 @@ fn rooms() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// A world with light vertices, where there is light that can be followed.
+/// Returns a world with light vertices if it has light that can be followed.
 fn looking(world: &World) -> World {
     with_light_vertices(world, &SkyOpenings::default()).unwrap_or_else(|| world.clone())
 }
 
-/// How many times as long an equal error takes without light vertices.
+/// Returns how many times as long the same error takes without light vertices.
 fn gain(world: &World) -> Option<f64> {
     pilot_noise(&looking(world)).gain_over(&pilot_noise(world), &[]).map(Effort::judged)
 }
 
-/// Images by a method that something is changed of, without light vertices or with those that `with` asks for.
+/// Renders images by a method that `change` modifies, either without light vertices or with those that `with` adds.
 fn films(text: &str, change: &dyn Fn(&mut Method), with: Option<&dyn Fn(&World) -> World>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let film = |seed: u64| {
@@ -295,7 +295,8 @@ fn films(text: &str, change: &dyn Fn(&mut Method), with: Option<&dyn Fn(&World) 
     (0..seeds).map(film).collect()
 }
 
-/// The mean of a quarter of an image in a band, and its standard error from seed to seed: pixels share light paths.
+/// Returns the mean of a quarter of an image in a band. Its standard error is taken from seed to seed, because pixels
+/// share light paths.
 fn of_quarter(films: &[Film], quarter: usize, band: usize) -> (f64, f64) {
     let of_film = |film: &Film| {
         let half = film.width as usize / 2;
@@ -309,7 +310,7 @@ fn of_quarter(films: &[Film], quarter: usize, band: usize) -> (f64, f64) {
 
 const SEEDS: u64 = 16;
 
-/// Quarters of images have the same means with light vertices and without, and not the same images.
+/// Asserts that quarters of images have the same means with and without light vertices, and that the images differ.
 fn assert_same(
     what: &str,
     text: &str,
@@ -325,7 +326,7 @@ fn assert_same(
         let error = libm::hypot(of_a, of_b);
         let off = (a - b).abs() / error;
         assert!(
-            // Means of 16 films have the tails of Student's t.
+            // Means of 16 films have the heavier tails of Student's t distribution.
             off < 1.25 * standard_errors(12 * claims),
             "{what}: quarter {quarter}, band {band}: {b} for {a} +- {error:.1e}, off by {off:.1} sigma"
         );
@@ -334,7 +335,7 @@ fn assert_same(
     worst
 }
 
-/// Light whose wavelengths part before a light vertex is dispersed, as that which parts before the camera.
+/// Light whose wavelengths part before a light vertex counts as dispersed, like light that parts before the camera.
 #[test]
 fn light_vertices_know_what_is_dispersed() {
     let glass = body(
@@ -371,7 +372,7 @@ fn light_vertices_change_no_mean() {
     }
 }
 
-/// Twelve bands of measured paint are as right as three numbers.
+/// Twelve bands of measured paint are as accurate as three numbers.
 #[test]
 fn light_vertices_carry_all_bands() {
     let text = room(
@@ -391,8 +392,8 @@ fn light_vertices_carry_all_bands() {
     assert_same("twelve bands", &text, &|method| method.basis = basis.clone(), &looking, 1);
 }
 
-/// Quarters of images show a closed form in the second band, but for noise and a share that is allowed. The noise is
-/// less than another share.
+/// Asserts that quarters of images show a closed form in the second band, within the noise and an allowed fraction of
+/// it. The noise must be less than another fraction.
 fn assert_shows(what: &str, films: &[Film], expected: f64, [allowed, noise]: [f64; 2]) {
     for quarter in 0..4 {
         let (mean, error) = of_quarter(films, quarter, 1);
@@ -402,8 +403,9 @@ fn assert_shows(what: &str, films: &[Film], expected: f64, [allowed, noise]: [f6
     }
 }
 
-/// An integrating sphere of radius r with a point of intensity I in its middle shows (rho / pi) (I / r^2) / (1 - rho)
-/// everywhere: Goebel 1967, *Generalized Integrating-Sphere Theory*, equation 1, for a sphere without ports.
+/// An integrating sphere of radius r with a point light of intensity I at its center has the radiance (rho / pi) (I /
+/// r^2) / (1 - rho) everywhere: Goebel 1967, *Generalized Integrating-Sphere Theory*, equation 1, for a sphere without
+/// ports.
 #[test]
 fn an_integrating_sphere_shows_its_closed_form() {
     for reflectance in [0.3, 0.8, 0.98] {
@@ -420,7 +422,7 @@ fn an_integrating_sphere_shows_its_closed_form() {
     }
 }
 
-/// What light paths cannot find is left to the paths of the camera.
+/// Light that light paths cannot find is left to paths from the camera.
 #[test]
 fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
     let with = |more: &[String]| room(WHITE, "", more);
@@ -439,7 +441,7 @@ fn rooms_with_light_that_light_paths_miss_have_no_light_vertices() {
     }
 }
 
-/// All parts of an image are made alike, by any number of threads and in passes of any size.
+/// Parts of an image equal the whole, with any number of threads and in passes of any size.
 #[test]
 fn parts_of_an_image_are_the_same_as_the_whole() {
     let text = room(WHITE, "", &[lamp(), ball("glass", "dielectric = { index = 1.5 }")]);
@@ -463,7 +465,7 @@ fn parts_of_an_image_are_the_same_as_the_whole() {
     }
 }
 
-/// The plan looks for light at vertices where that pays, and not where all light comes straight from lamps.
+/// The plan uses light vertices where they pay off, and not where all light comes directly from lamps.
 #[test]
 fn the_plan_weighs_light_vertices() {
     let larger = |text: &str| text.replace("width = 12\nheight = 12", "width = 384\nheight = 384");
@@ -478,7 +480,7 @@ fn the_plan_weighs_light_vertices() {
     assert!(!plan(&scene(&room(WHITE, "", &[lamp()]))).method.light_vertices, "too small");
 }
 
-/// Of a faint lamp there would be few vertices, and its layer would be too bright or too dark as a whole.
+/// A faint lamp would have only a few vertices, and its layer would be too bright or too dark as a whole.
 #[test]
 fn layers_of_faint_lamps_have_no_light_vertices() {
     let decided = |times: f64, layers: &str| {
@@ -498,9 +500,9 @@ fn layers_of_faint_lamps_have_no_light_vertices() {
     }
 }
 
-/// One path in twenty starts from the whole of a huge lamp whose tip is seen, and ends far outside of the room. Such
-/// vertices must not take the place of those that are seen: gains of 1.0 to 1.6 were 2.3 to 2.6 without them, by seeds.
-/// Since the rays of gathered photons count on both sides, those are 1.9 to 2.1.
+/// One light path in twenty starts anywhere on a huge lamp, of which only the tip is seen, and ends far outside of the
+/// room. Such vertices must not take the place of visible ones: gains of 1.0 to 1.6 were 2.3 to 2.6 without them,
+/// depending on the seed. Since the rays of gathered photons count on both sides, the gains are 1.9 to 2.1.
 #[test]
 fn vertices_far_outside_of_a_room_are_seldom_tried() {
     let text = std::fs::read_to_string("scenes/smallpt.toml").expect("it comes with Abbe");

@@ -1,4 +1,4 @@
-//! `render info`, `render view` and `render diff`: images that are looked at and compared.
+//! `render info`, `render view` and `render diff`: inspecting, viewing and comparing images.
 //!
 //! ```text
 //! cargo test --test all look::

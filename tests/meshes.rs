@@ -1,5 +1,5 @@
-//! Triangles are read from files as they were written, closed or open, stay in front under transforms, and are found by
-//! their trees as a search through all of them would.
+//! Triangles are read from files as they were written, closed or open. They keep their front under transforms, and
+//! their trees find the same ones as a search through all of them.
 //!
 //! ```text
 //! cargo test --test all meshes::

@@ -1,7 +1,7 @@
-//! Every mistake a person can make in a scene file, with the exact text that answers it.
+//! Every mistake that a person can make in a scene file, with the exact text that answers it.
 //!
-//! The files in `tests/messages/` hold the cases. A case is a heading, a patch to `base.toml`, the files a mesh is read
-//! from, and what `render --check scene.toml` then writes to stderr:
+//! The files in `tests/messages/` hold the cases. A case is a heading, a patch to `base.toml`, the files that a mesh is
+//! read from, and what `render --check scene.toml` then writes to stderr:
 //!
 //! ```text
 //! ## a misspelt key of the film
@@ -28,7 +28,7 @@ const BASE: &str = include_str!("messages/base.toml");
 struct Case<'a> {
     title: &'a str,
     scene: String,
-    /// Other files: name and text.
+    /// Names and texts of other files.
     files: Vec<(&'a str, String)>,
     settings: Vec<&'a str>,
     expected: &'a str,
@@ -55,7 +55,7 @@ impl<'a> Case<'a> {
         Self { title, scene: patched(title, &taken, &put), files, settings, expected: expected.trim_end() }
     }
 
-    /// A folder with the scene and its files.
+    /// Creates a folder with the scene and its files.
     fn folder(&self) -> Folder {
         let folder = Folder::new();
         for (name, text) in &self.files {
@@ -65,7 +65,7 @@ impl<'a> Case<'a> {
         folder
     }
 
-    /// What is wrong with the answer to a scene that is refused, if anything.
+    /// Returns what is wrong with the answer to a scene that must be refused, if anything.
     fn failure(&self) -> Option<String> {
         let folder = self.folder();
         let before = folder.listing();
@@ -85,14 +85,14 @@ impl<'a> Case<'a> {
         None
     }
 
-    /// What is wrong with the answer to a scene that is accepted with warnings, if anything.
+    /// Returns what is wrong with the answer to a scene that must be accepted with warnings, if anything.
     fn unwarned(&self) -> Option<String> {
         let folder = self.folder();
         let answer = render(&folder, &["--check", "scene.toml"]);
         if answer.code != Some(0) || answer.stderr.trim_end() != self.expected {
             return Some(format!("## {}\n\n{}\n(exit code {:?})", self.title, answer.stderr, answer.code));
         }
-        // A render warns with the same words, each once.
+        // A render gives the same warnings, each of them once.
         let warnings = |text: &str| -> Vec<String> {
             text.lines().filter(|line| line.starts_with("warning: ")).map(str::to_owned).collect()
         };
@@ -264,7 +264,7 @@ fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
     for (name, text, what, help) in kinds {
         let answer = render(&Folder::with(name, text), &[name, "--check"]);
         answer.assert_refused(2, &format!("error: {name} is {what}, not a scene in TOML\nhelp: {help}\n"));
-        // A scene may be called anything.
+        // A scene file may have any name.
         assert_eq!(render(&Folder::with(name, BASE), &[name, "--check"]).code, Some(0), "{name}");
     }
 }
@@ -369,7 +369,8 @@ fn of_very_many_materials_a_hundred_are_named() {
     }
 }
 
-/// Twice as many parts with every material, and a chain of thousands: they are told once, and take no time.
+/// The number of parts doubles with every material, and a chain has thousands of them. Each mistake is reported once
+/// and takes no time.
 #[test]
 fn materials_that_are_made_of_too_many_others_are_refused() {
     let made = |count: usize, second: &dyn Fn(usize) -> String| {

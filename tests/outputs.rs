@@ -1,4 +1,5 @@
-//! Streams that nobody reads and places where an image is written: the image is made whatever happens to the words.
+//! Streams that nobody reads, and the places where an image is written: the image is made whatever happens to the
+//! messages.
 
 #![cfg(unix)]
 
@@ -28,7 +29,7 @@ fn folder() -> Folder {
     Folder::with("ball.toml", SCENE)
 }
 
-/// Runs a line of the shell in which `$RENDER` is the command; its exit code, stdout and stderr.
+/// Runs a shell line in which `$RENDER` is the command. Returns its exit code, stdout and stderr.
 fn shell(folder: &Folder, line: &str) -> (Option<i32>, String, String) {
     let mut command = Command::new("sh");
     command.env("RENDER", env!("CARGO_BIN_EXE_render")).current_dir(folder.path()).args(["-c", line]);
@@ -41,7 +42,7 @@ fn is_image(path: &Path) -> bool {
     fs::read(path).expect("the image is there").starts_with(&[0x76, 0x2f, 0x31, 0x01])
 }
 
-/// The limit is one of addresses, below what the film takes.
+/// The limit is one of address space, below the size of the film.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_film_that_does_not_fit_in_memory_is_refused_and_planned_all_the_same() {
@@ -68,7 +69,7 @@ fn an_image_is_made_though_stderr_cannot_be_written() {
         assert_eq!((code, &*out, &*told), (Some(0), "", ""), "{lost}");
         assert_eq!(folder.listing(), ["ball.exr", "ball.toml", "look.png"], "{lost}");
         assert!(is_image(&folder.path_of("ball.exr")), "{lost}");
-        // No message strayed into the picture.
+        // No message ended up in the picture.
         assert_eq!(read_png(&folder.path_of("look.png")).pixels.len(), 6 * 4, "{lost}");
     }
 }
@@ -124,7 +125,7 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
         assert_eq!((code, &*told), (Some(1), reason), "{question}");
         assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full 2>/dev/full")).0, Some(1), "{question}");
     }
-    // An image is made and kept all the same.
+    // The image is made and kept nevertheless.
     for protocol in ["--json", "--progress openjd"] {
         let (code, _, told) = shell(&folder, &format!("$RENDER --exr ball.toml {protocol} >/dev/full"));
         let reason = "error: cannot write all output to stdout: the disk is full\n";
@@ -132,7 +133,7 @@ fn an_answer_that_cannot_be_written_is_a_failure() {
         assert!(is_image(&folder.path_of("ball.exr")), "{protocol}");
         fs::remove_file(folder.path_of("ball.exr")).expect("it is there");
     }
-    // A program that listens there cannot be told why.
+    // A program that reads from there cannot be told why.
     for question in ["--json --plan ball.toml", "--json --check ball.toml"] {
         assert_eq!(shell(&folder, &format!("$RENDER {question} >/dev/full")).0, Some(1), "{question}");
     }
@@ -144,7 +145,7 @@ fn an_output_that_is_a_link_is_written_through() {
         let folder = folder();
         fs::create_dir(folder.path_of("store")).expect("folders can be made");
         before.inspect(|text| folder.write(target, text));
-        // A link to a link, both relative to where they stand.
+        // A link to a link. Each is relative to its own folder.
         symlink("links/second.exr", folder.path_of("first.exr")).expect("links can be made");
         fs::create_dir(folder.path_of("links")).expect("folders can be made");
         symlink(Path::new("..").join(target), folder.path_of("links/second.exr")).expect("links can be made");
@@ -185,7 +186,7 @@ fn a_render_that_is_refused_leaves_no_folders() {
         assert!(matches!(answer.code, Some(1 | 2)), "{}", answer.stderr);
         assert_eq!(folder.listing(), ["ball.toml"]);
     }
-    // Those in which something stands are kept.
+    // Folders that are not empty are kept.
     folder.write("new/notes", "of today");
     assert_eq!(new(&["--png", "ball.toml/a.png"]).code, Some(1));
     assert!(!folder.path_of("new/deep").exists() && folder.path_of("new/notes").exists());
@@ -193,7 +194,7 @@ fn a_render_that_is_refused_leaves_no_folders() {
     assert!(is_image(&folder.path_of("new/deep/a.exr")));
 }
 
-/// Another render that is refused may have removed it.
+/// Another render that is refused may have removed the folder.
 #[test]
 fn a_folder_that_is_gone_when_the_image_is_written_is_made_again() {
     let folder = folder();
@@ -268,7 +269,7 @@ fn a_device_that_takes_no_more_is_a_failure() {
     assert!(answer.stderr.ends_with("error: cannot write full.exr: the disk is full\n"), "{}", answer.stderr);
 }
 
-/// One output that cannot be written keeps no other from being there, nor the checkpoint.
+/// An output that cannot be written does not prevent the other outputs or the checkpoint.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_can_be_written_is_written() {
@@ -286,7 +287,7 @@ fn what_can_be_written_is_written() {
         let written: Vec<&str> = files[3..].iter().copied().filter(|name| folder.path_of(name).is_file()).collect();
         let told: Vec<&str> = answer.stderr.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
         assert_eq!((written.len(), &told), (2, &written), "{}", answer.stderr);
-        // What is missing is all that is left to be done.
+        // Only the missing file is left to be written.
         fs::remove_file(folder.path_of(files[failing])).expect("it is there");
         let resumed = render(&folder, &[&words[..], &["--resume"]].concat());
         assert!(resumed.code == Some(0) && !resumed.stderr.contains("going on from"), "{}", resumed.stderr);
@@ -294,7 +295,7 @@ fn what_can_be_written_is_written() {
     }
 }
 
-/// A scene that includes a file, reads a mesh and an image, and is lit by another one.
+/// Creates a scene that includes a file, reads a mesh and a spectrum, and is lit by an image.
 fn folder_of_a_whole_scene() -> Folder {
     let folder = Folder::with("light.toml", "[[light]]\nenvironment = { radiance = { image = \"sky.hdr\" } }\n");
     folder.write("cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");

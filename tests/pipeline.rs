@@ -20,7 +20,7 @@ fn fed(folder: &Folder, arguments: &[&str], text: &[u8]) -> Output {
     let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = pipes.spawn().expect("the command can be started");
     let (mut stdin, text) = (child.stdin.take().expect("it is piped"), text.to_owned());
-    // A command that refuses its arguments does not read.
+    // A command that refuses its arguments does not read its input.
     let feed = thread::spawn(move || stdin.write_all(&text).unwrap_or_default());
     let output = child.wait_with_output().expect("the command ends");
     feed.join().expect("the text is fed");
@@ -31,7 +31,7 @@ fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).expect("messages are UTF-8")
 }
 
-/// What was said in JSON, all of the kind.
+/// Returns all JSON events of a kind.
 fn told(stdout: &str, kind: &str) -> Vec<Value> {
     let lines =
         stdout.lines().map(|line| serde_json::from_str::<Value>(line).unwrap_or_else(|e| panic!("{line}: {e}")));
@@ -143,7 +143,7 @@ fn with_json_every_line_is_an_object_and_nothing_else_is_said() {
     let planned = render(&folder, &["scene.toml", "--json", "--plan"]);
     let words = render(&folder, &["scene.toml", "--plan"]);
     let because = &told(&planned.stdout, "plan")[0]["because"];
-    // Times are measured, and differ.
+    // Times are measured, so they differ.
     let is_sure = |line: &&str| !line.starts_with("cost: ") && !line.ends_with(" times as long");
     let told_lines = because.as_array().expect("a list").iter().filter_map(Value::as_str);
     assert!(told_lines.filter(is_sure).eq(words.stdout.lines().filter(is_sure)), "{because}");
@@ -175,7 +175,7 @@ fn with_json_mistakes_are_objects_with_their_place() {
     assert_eq!(error["message"], "unexpected argument '--sampels' found");
 }
 
-/// Runs words that are separated by blanks, of which a farm is told.
+/// Runs `render` with arguments that are separated by blanks, and with progress messages for a render farm.
 fn for_farm(folder: &Folder, words: &str, code: i32) -> Answer {
     let answer = render(folder, &words.split(' ').chain(["--progress", "openjd"]).collect::<Vec<_>>());
     assert_eq!(answer.code, Some(code), "{words}: {}", answer.stderr);
@@ -313,7 +313,7 @@ fn a_frame_beyond_what_a_value_may_be_is_told_before_any_is_rendered() {
         assert!(answer.code == Some(2) && answer.stderr.contains(&told), "{}", answer.stderr);
         assert_eq!(folder.listing(), ["zoom.toml"]);
     }
-    // What is wrong with all of them is told of the first.
+    // A mistake in all frames is reported for the first of them.
     let answer = render(&folder, &["zoom.toml", "--frame", "181-190", "--exr", "z.%d.exr"]);
     assert!(answer.code == Some(2) && answer.stderr.starts_with("frame 181, 1 of 10\nerror: "), "{}", answer.stderr);
 }
@@ -334,7 +334,7 @@ fn frames_are_rendered_one_after_another() {
     assert_eq!(told, ["frame 1, 1 of 4", "frame 2, 2 of 4", "frame 3, 3 of 4", "frame 4, 4 of 4"]);
     assert!(bytes("t.2.exr") == bytes("two.exr") && bytes("t.1.exr") != bytes("t.4.exr"));
     assert!(bytes("t.3.json").starts_with(b"{"));
-    // What is done is not done again.
+    // Finished frames are not rendered again.
     let fourth = bytes("t.4.exr");
     fs::remove_file(folder.path_of("t.4.exr")).expect("it was written");
     let done = frames(&[&several[..], &["--resume"]].concat());

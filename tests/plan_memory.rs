@@ -1,4 +1,4 @@
-//! What the plan holds in memory does not grow with pixels or samples, what a merge holds not with parts or rows.
+//! The memory of the plan does not grow with pixels or samples, and that of a merge does not grow with parts or rows.
 
 mod support;
 
@@ -15,10 +15,10 @@ use abbe::{Options, Parts, Rendering};
 use allocator::{Memory, memory_of};
 use support::scenes::scene;
 
-/// Memory is counted of all threads together.
+/// Memory is counted over all threads together.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// A glass ball on a floor under a small lamp.
+/// Returns the memory that the plan takes for a glass ball on a floor under a small lamp.
 fn held(width: u32, height: u32, samples: u32) -> Memory {
     let scene = scene(&format!(
         "[camera]\nposition = [0, 2.2, 5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 40\n\
@@ -35,8 +35,8 @@ fn held(width: u32, height: u32, samples: u32) -> Memory {
     memory
 }
 
-/// Photons are held while it is learned where they land: as many for any image. Threads may hold some more at a time or
-/// less.
+/// The plan holds photons while it learns where they land, the same number for any image. The memory varies with the
+/// threads.
 #[test]
 fn w8_the_plan_holds_as_much_for_any_number_of_pixels_and_samples() {
     const MOST: usize = 200_000_000;
@@ -48,7 +48,7 @@ fn w8_the_plan_holds_as_much_for_any_number_of_pixels_and_samples() {
     assert!(most.peak <= MOST.min(2 * small.peak) && most.largest <= 2 * small.largest, "{small:?} and {most:?}");
 }
 
-/// The parts of an image with all layers, so many of them.
+/// Renders an image with all layers in `count` parts.
 fn parts(folder: &Path, height: u32, count: u32) -> Vec<PathBuf> {
     let scene = scene(&format!(
         "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 40\n\
@@ -68,7 +68,7 @@ fn parts(folder: &Path, height: u32, count: u32) -> Vec<PathBuf> {
     (1..=count).map(part).collect()
 }
 
-/// What a merge holds, with the bytes of the image's numbers and of its largest part.
+/// Returns the memory of a merge, with the bytes of the image's numbers and of its largest part.
 fn merged(height: u32, count: u32) -> (Memory, usize, usize) {
     let folder = tempfile::tempdir().expect("a folder");
     let paths = parts(folder.path(), height, count);
@@ -82,7 +82,7 @@ fn merged(height: u32, count: u32) -> (Memory, usize, usize) {
     (memory, channels * 4 * 160 * height as usize, part)
 }
 
-/// Rows go from the parts to the file as they come. Threads may hold some blocks more at a time or less.
+/// Rows go from the parts to the file as they arrive. The number of blocks in memory varies with the threads.
 #[test]
 fn w10_a_merge_holds_as_much_for_any_number_of_parts_and_rows() {
     let _alone = ALONE.lock();
@@ -93,7 +93,7 @@ fn w10_a_merge_holds_as_much_for_any_number_of_parts_and_rows() {
     assert!(many.peak < few.peak * 3 / 2 && tall.peak < few.peak * 3 / 2, "{few:?}, {many:?} and {tall:?}");
 }
 
-/// What photons show is kept as they are sent, and not for each of the pixels that a filter reaches.
+/// Splatted photons are stored as they are sent, not once for each pixel that a filter reaches.
 #[test]
 fn photons_hold_as_much_under_a_wide_filter() {
     let _alone = ALONE.lock();

@@ -1,4 +1,4 @@
-//! The plan models no more than a scene needs, and what it says of the error of a model holds.
+//! The plan models no more than a scene needs, and its stated errors of a model hold.
 //!
 //! ```text
 //! cargo test --release --test all planning:: -- --nocapture     # prints predicted and true errors

@@ -1,8 +1,8 @@
-//! Polarization against closed forms: rows of Stokes weights through sheets, mirrors, glass and panes.
+//! Polarization compared with closed forms: Stokes vectors behind rows of sheets, mirrors, glass and panes.
 //!
-//! Expected numbers are those of the formulas that the tests name, computed in f64; metals and sheets were compared
-//! with Mitsuba 3.9.1 (`*_polarized`), which agrees to its own 32 bits. A camera at z = 5 looks along -z, up is +y: S1
-//! > 0 is horizontal.
+//! Expected numbers are those of the formulas that the tests name, computed in f64. Metals and sheets were compared
+//! with Mitsuba 3.9.1 (`*_polarized`), which agrees to its own 32 bits. A camera at z = 5 looks along -z, and up is +y:
+//! horizontal light has a positive S1.
 
 mod criterion;
 mod degrees;
@@ -20,7 +20,8 @@ use crate::support::scenes::{assert_near, body, moments, one_pixel, quad, render
 /// Lanes are f32 and are rounded at each of a few surfaces.
 const ROUNDING: f64 = 2e-6;
 
-/// One pixel of a narrow view of some objects and lights, with a key of the camera; S0, S1, S2 and S3.
+/// Renders one pixel of a narrow view of some objects and lights, with more keys of the camera. Returns S0, S1, S2 and
+/// S3.
 fn stokes(camera: &str, rest: &str) -> [f64; 4] {
     in_green(rendered(&(one_pixel(camera, ", stokes = true") + rest)).film())
 }
@@ -29,7 +30,7 @@ fn in_green(film: &Film) -> [f64; 4] {
     stokes_vectors(film).map(|component| component[1])
 }
 
-/// S0, S1, S2 and S3 of the first pixel, each in red, green and blue.
+/// Returns S0, S1, S2 and S3 of the first pixel, each in red, green and blue.
 pub fn stokes_vectors(film: &Film) -> [[f64; 3]; 4] {
     let of = |layer: Layer| {
         let image = film.layers.iter().find(|image| image.layer == layer).expect("the layer is there");
@@ -40,12 +41,13 @@ pub fn stokes_vectors(film: &Film) -> [[f64; 3]; 4] {
 
 const SKY: &str = "[[light]]\nenvironment.radiance = 1\n";
 
-/// Sheets before the sky, the first nearest to the camera, seen straight or turned about y by some degrees.
+/// Returns sheets in front of the sky, the first one nearest to the camera. They are seen straight on or turned about y
+/// by some degrees.
 fn sheets(sheets: &[String], turned: f64) -> String {
     sheets_apart(sheets, turned, 1.0)
 }
 
-/// The same, so far apart.
+/// Returns sheets as [`sheets`] does, at a given distance from each other.
 fn sheets_apart(sheets: &[String], turned: f64, apart: f64) -> String {
     let mut text = SKY.to_owned();
     for (number, sheet) in sheets.iter().enumerate() {
@@ -97,8 +99,8 @@ fn a_filter_before_the_camera_is_a_sheet() {
     }
 }
 
-/// Crossed sheets between whose axes the plane of incidence lies let light through that meets them aslant: the
-/// absorbing axes are no longer at right angles across the ray.
+/// Crossed polarizers transmit light at oblique incidence if the plane of incidence lies between their axes: seen along
+/// the ray, the absorbing axes are no longer at right angles.
 #[test]
 fn crossed_polarizers_leak_aslant() {
     for (degrees, expected) in [(15.0, 0.000600), (30.0, 0.010204), (45.0, 0.055556), (60.0, 0.180000)] {
@@ -127,7 +129,7 @@ fn wave_plates_turn_linear_light() {
     }
 }
 
-/// Mirrors 1 apart on the ray, with the unit normals that it meets.
+/// Returns mirrors at intervals of 1 along a ray, with the normals that the ray meets.
 fn mirrors(material: &str, normals: &[DVec3]) -> String {
     let is_body = material.starts_with("dielectric");
     let mut text = format!("{SKY}[material.mirror]\n{material}\n");
@@ -151,10 +153,10 @@ fn mirrors(material: &str, normals: &[DVec3]) -> String {
     text
 }
 
-/// Glass that lets nothing through again.
+/// Glass that absorbs all light that enters it.
 const BLACK_GLASS: &str = "dielectric = { index = 1.5, absorption = 1e6 }";
 
-/// Metals n - i k; Mitsuba's `scalar_mono_polarized` shows the same ten pixels to 2.4e-7.
+/// Metals of index n - i k. Mitsuba's `scalar_mono_polarized` shows the same ten pixels to 2.4e-7.
 #[test]
 fn metals_mirror_all_four_components() {
     let gold = "conductor = { n = 0.43, k = 2.455 }";
@@ -187,7 +189,7 @@ fn a_mirror_turns_handedness_around() {
         + "[material]\nplate.retarder = { axis = [0, 1, 1], retardance = 90 }\nsheet.polarizer.axis = [0, 1, 0]\n\
            [[object]]\nmaterial = \"plate\"\nshape.quad = { center = [1, 0, 0], u = [0, 0.2, 0], v = [0, 0, 0.2] }\n\
            [[object]]\nmaterial = \"sheet\"\nshape.quad = { center = [2, 0, 0], u = [0, 0.2, 0], v = [0, 0, 0.2] }\n";
-    // Seen toward +x, z is to the right: the plate's axis lies at 45 degrees.
+    // In a view toward +x, z is to the right, so the plate's axis lies at 45 degrees.
     let straight = stokes("", &sheets(&[retarder(45.0, 90.0), polarizer(90.0, 0.0)], 0.0));
     assert_near(straight, [0.5, 0.0, 0.0, straight[3]], ROUNDING, "straight");
     let mirrored = stokes("", &scene);
@@ -195,7 +197,8 @@ fn a_mirror_turns_handedness_around() {
     assert!((straight[3].abs() - 0.5).abs() < ROUNDING, "{straight:?}");
 }
 
-/// Black glass of index 1.5 under a filter: p alone, s alone, and none. At Brewster's angle no p is left.
+/// Black glass of index 1.5 behind a filter that passes only p, behind one that passes only s, and without a filter. At
+/// Brewster's angle, no p is left.
 #[test]
 fn a_filter_takes_the_glare_off_glass() {
     for (degrees, p, s, all) in [
@@ -213,8 +216,8 @@ fn a_filter_takes_the_glare_off_glass() {
     }
 }
 
-/// Light at 45 degrees is mirrored by glass of index 1.5 as c / a of its Mueller matrix has it: below Brewster's angle
-/// it swings the other way.
+/// Glass of index 1.5 reflects light polarized at 45 degrees as c / a of its Mueller matrix states. Below Brewster's
+/// angle, the plane of polarization turns the other way.
 #[test]
 fn glass_turns_the_plane_of_polarization() {
     for (degrees, a, d, c) in [
@@ -235,7 +238,8 @@ fn glass_turns_the_plane_of_polarization() {
     }
 }
 
-/// A second plane of incidence turned against the first: light that one favors the other may not.
+/// A second plane of incidence is turned relative to the first. The second surface may not reflect the light that the
+/// first one favors.
 #[test]
 fn two_reflections_depend_on_how_their_planes_lie() {
     for (degrees, expected) in [
@@ -256,7 +260,7 @@ fn two_reflections_depend_on_how_their_planes_lie() {
     }
 }
 
-/// A pile of panes over a lamp that is behind it alone: what is mirrored is black.
+/// Returns a pile of panes in front of a lamp. There is no other light, so the panes reflect black.
 fn pile(plates: usize, index: f64, degrees: f64) -> String {
     let lamp = "[material.lamp.emissive]\nradiance = 1\n[[object]]\nmaterial = \"lamp\"\n\
                 shape.disc = { center = [0, 0, -20], normal = [0, 0, 1], radius = 0.5 }\n";
@@ -264,18 +268,18 @@ fn pile(plates: usize, index: f64, degrees: f64) -> String {
     sheets_apart(&panes, degrees, 1e-3).replace(SKY, lamp)
 }
 
-/// What goes through it, and S1 where s is vertical: of each polarization (1 - R) / (1 + (2 m - 1) R) (Stokes 1862, *On
-/// the Intensity of the Light Reflected from or Transmitted through a Pile of Plates*).
+/// Returns what the pile transmits, and S1 if s is vertical. Each polarization transmits (1 - R) / (1 + (2 m - 1) R)
+/// (Stokes 1862, *On the Intensity of the Light Reflected from or Transmitted through a Pile of Plates*).
 fn through_pile(plates: usize, index: f64, degrees: f64) -> [f64; 2] {
     let through = |r: f64| (1.0 - r) / (1.0 + (2.0 * plates as f64 - 1.0) * r);
     let [s, p] = reflectances(index, degrees.to_radians().cos()).map(through);
     [0.5 * (s + p), 0.5 * (p - s)]
 }
 
-/// Plates without a phase between them.
+/// A pile of plates without interference between them.
 #[test]
 fn a_pile_of_plates_polarizes() {
-    // Known numbers: the formula is right.
+    // Known numbers, which show that the formula is right.
     let [t, s1] = through_pile(4, 1.5168, 56.603838);
     assert!((t - 0.702374).abs() < 1e-6 && (s1 / t - 0.423743).abs() < 1e-6, "{t}, {s1}");
     for (index, degrees) in [(1.5, 45.0), (1.5168, 56.603838), (1.5168, 75.0)] {
@@ -287,7 +291,7 @@ fn a_pile_of_plates_polarizes() {
     }
 }
 
-/// The same where light has too many ways: by chance, as many pixels of a pile of ten.
+/// A pile with too many light paths to follow them all. They are sampled, so the mean of many pixels is compared.
 #[test]
 fn a_pile_of_many_plates_polarizes_on_average() {
     for plates in [4, 10] {
@@ -312,12 +316,12 @@ fn a_pile_of_many_plates_polarizes_on_average() {
     }
 }
 
-/// A Fresnel rhomb of index 1.51 at 54.6 degrees makes circular light of light at 45 degrees.
+/// A Fresnel rhomb of index 1.51 at 54.6 degrees turns light polarized at 45 degrees into circular light.
 #[test]
 fn total_reflection_shifts_the_phase() {
     let angle = 54.6_f64.to_radians();
     let rhomb = |reflections: usize| {
-        // In glass all around, a slab of air mirrors totally: its face is met at the angle.
+        // Inside glass that is all around, a slab of air reflects totally. Its face is hit at the angle.
         let mut text = format!("{SKY}[material]\nglass.dielectric.index = 1.51\nair.thin.index = 1\n");
         let (mut place, mut direction) = (DVec3::ZERO, DVec3::NEG_Z);
         for number in 0..reflections {
@@ -344,14 +348,14 @@ fn total_reflection_shifts_the_phase() {
     }
 }
 
-/// The base of plastic leaves through its coat: partly polarized in the plane of the normal.
+/// Light from the base of plastic leaves through the coat, which polarizes it partly in the plane of the normal.
 #[test]
 fn a_coat_polarizes_what_comes_from_below() {
     for (degrees, expected) in
         [(30.0, 0.016978), (45.0, 0.043983), (60.0, 0.095941), (75.0, 0.195860), (85.0, 0.308744)]
     {
         let plastic = "plastic = { reflectance = 0.8, index = 1.5 }".to_owned();
-        // A lamp straight above is not mirrored toward the camera.
+        // The camera does not see the reflection of a lamp straight above.
         let (sin, cos) = f64::to_radians(degrees).sin_cos();
         let scene = sheets(&[plastic], degrees).replace(SKY, "")
             + &format!("[[light]]\npoint = {{ position = [{}, 0, {}], intensity = 100 }}\n", 10.0 * sin, 10.0 * cos);
@@ -361,7 +365,7 @@ fn a_coat_polarizes_what_comes_from_below() {
     }
 }
 
-/// Water under a sky of degree 0.7 everywhere the camera looks, polarized at an angle from s.
+/// Water under a sky whose light is polarized to a degree of 0.7 wherever the camera looks, at an angle from s.
 #[test]
 fn a_polarized_sky_changes_what_water_mirrors() {
     for (degrees, expected) in [
@@ -375,7 +379,7 @@ fn a_polarized_sky_changes_what_water_mirrors() {
         let direction = DVec3::NEG_Z - 2.0 * DVec3::NEG_Z.dot(normal) * normal;
         let p = direction.cross(DVec3::Y);
         for (turned, expected) in [0.0_f64, 30.0, 45.0, 90.0].into_iter().zip(expected) {
-            // A quarter turn from the sun light is polarized across both: s is vertical here.
+            // A quarter turn from the sun, skylight is polarized perpendicular to both directions. Here s is vertical.
             let (sin, cos) = turned.to_radians().sin_cos();
             let sun = p * cos + DVec3::Y * sin;
             let scene = mirrors("dielectric = { index = 1.3334, absorption = 1e6 }", &[normal]);
@@ -389,7 +393,7 @@ fn a_polarized_sky_changes_what_water_mirrors() {
     }
 }
 
-/// Facets that hardly differ from the surface polarize as it does.
+/// Facets that hardly differ from the surface polarize like the surface.
 #[test]
 fn nearly_smooth_surfaces_polarize_as_smooth_ones() {
     let slanting = [DVec3::new(1.0, 0.0, 1.0)];
@@ -406,8 +410,8 @@ fn nearly_smooth_surfaces_polarize_as_smooth_ones() {
     }
 }
 
-/// What a room shows of everything that polarizes: the same bits for any threads, and no more polarized light than
-/// light.
+/// A room with everything that polarizes has the same bits with any number of threads, and never more polarized light
+/// than light.
 #[test]
 fn any_threads_find_the_same_stokes_vectors() {
     let text = r#"

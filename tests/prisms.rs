@@ -1,5 +1,5 @@
-//! Every maker's glass as a prism: each spectral line leaves where Snell's law sends it, and as bright as Fresnel lets
-//! it.
+//! Every maker's glass as a prism: each spectral line leaves in the direction of Snell's law, as bright as Fresnel's
+//! equations transmit it.
 //!
 //! ```text
 //! cargo test --release --test all prisms::
@@ -16,13 +16,13 @@ use crate::support::scenes::{EVERY_BRANCH, film_of, method, scene, view};
 
 /// Fraunhofer's lines and their neighbors, h F d C r, in nm.
 const LINES_NM: [f64; 5] = [404.66, 486.13, 587.56, 656.27, 706.52];
-/// Full angle across each sun: its center is missed by 0.01 degrees at most if it is seen.
+/// Angular diameter of each sun. If a sun is seen, its center is missed by at most 0.01 degrees.
 const SUN_DEGREES: f64 = 0.02;
 const CAMERA: f64 = 1e6;
-/// Length of a prism's faces. Prisms stand 1 apart, so that no light that one sends on meets another.
+/// Length of a prism's faces. Prisms are 1 apart, so that no light from one hits another.
 const FACE: f64 = 0.01;
 
-/// A glass as the table holds it, read here on its own.
+/// A glass as stored in the table, which is parsed here independently.
 struct Glass {
     key: &'static str,
     formula: &'static str,
@@ -39,13 +39,15 @@ impl Glass {
         })
     }
 
-    /// The lines at which the index is known. The tables of some glasses end at 706.5 nm, where line r is 706.5188.
+    /// Returns the lines at which the index is known. The tables of some glasses end at 706.5 nm, while line r is at
+    /// 706.5188.
     fn lines(&self) -> impl Iterator<Item = f64> {
         let (low, high) = self.range_nm;
         LINES_NM.into_iter().filter(move |&nm| low <= nm && nm <= high + 0.1)
     }
 
-    /// The formulas of refractiveindex.info, <https://refractiveindex.info/database/doc/Dispersion%20formulas.pdf>.
+    /// Returns the index by the formulas of refractiveindex.info,
+    /// <https://refractiveindex.info/database/doc/Dispersion%20formulas.pdf>.
     fn index(&self, nm: f64) -> f64 {
         let um = nm.min(self.range_nm.1) / 1000.0;
         let pairs = |c: &[f64], term: &dyn Fn(f64, f64) -> f64| -> f64 {
@@ -83,12 +85,12 @@ struct Passage {
     apex: f64,
     incidence: f64,
     deviation: f64,
-    /// Share of the light that crosses both faces.
+    /// Fraction of the light that both faces transmit.
     transmittance: f64,
 }
 
 impl Passage {
-    /// Snell's law at both faces (Born & Wolf 1999, section 4.7.2), angles in radians.
+    /// Applies Snell's law at both faces (Born & Wolf 1999, section 4.7.2). Angles are in radians.
     fn new(nm: f64, index: f64, apex: f64, incidence: f64) -> Self {
         let inside = (incidence.sin() / index).asin();
         let leaving = (index * (apex - inside).sin()).asin();
@@ -97,7 +99,7 @@ impl Passage {
         Self { nm, apex, incidence, deviation: incidence + leaving - apex, transmittance }
     }
 
-    /// The line at minimum deviation, and at a greater incidence.
+    /// Returns the passages of a line at minimum deviation and at a greater incidence.
     fn pair(nm: f64, index: f64) -> [Self; 2] {
         let apex = f64::to_radians(if index < 1.9 { 60.0 } else { 30.0 });
         let least = (index * (apex / 2.0).sin()).asin();
@@ -107,8 +109,8 @@ impl Passage {
         [minimum, Self::new(nm, index, apex, 0.5 * (least + 80_f64.to_radians()))]
     }
 
-    /// Appends the prism, around the ray that meets the plane z = 0 at x and is bent toward `side`, and a sun that is
-    /// `off` degrees beside where the ray goes.
+    /// Appends the prism and a sun. The prism is placed around the ray that meets the plane z = 0 at x, and bends it
+    /// toward `side`. The sun is `off` degrees beside the direction in which the ray leaves.
     fn write(&self, text: &mut String, x: f64, side: f64, off: f64) {
         let forward = DVec3::new(x, 0.0, -CAMERA).normalize();
         let across = DVec3::new(side.cos(), side.sin(), 0.0);
@@ -116,7 +118,7 @@ impl Passage {
         let along = forward.cross(across);
         let turned = |angle: f64| across * angle.cos() - forward * angle.sin();
         let faces = [turned(self.incidence), turned(self.incidence - self.apex)];
-        // The ray meets the middle of the first face.
+        // The ray hits the middle of the first face.
         let edge = DVec3::new(x, 0.0, 0.0) - 0.5 * FACE * faces[0];
         let corners = [edge, edge + FACE * faces[0], edge + FACE * faces[1]];
         let points = [-FACE, FACE].map(|end| corners.map(|corner| corner + end * along));
@@ -145,7 +147,7 @@ impl Passage {
         .expect("a string takes all text");
     }
 
-    /// CIE X of the sun's disc behind the prism.
+    /// Returns CIE X of the sun's disc behind the prism.
     fn expected(&self) -> f64 {
         let half = (0.5 * SUN_DEGREES).to_radians();
         let radiance = 1.0 / (std::f64::consts::PI * half.sin().powi(2));
@@ -153,16 +155,16 @@ impl Passage {
     }
 }
 
-/// What is wrong with a glass whose index is expected to be `more` than its formula says, and how many passages were
-/// judged.
+/// Returns the mistakes of a glass whose index is expected to be `more` above its formula, and the number of passages
+/// that were judged.
 fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
-    // Each sun and its two controls, and each pixel's own direction to the side, so that no other sun is near.
+    // Each sun has two controls, and each pixel its own direction to the side, so that no other sun is near.
     let passages: Vec<Passage> = glass.lines().flat_map(|nm| Passage::pair(nm, glass.index(nm) + more)).collect();
     let views: Vec<(&Passage, f64)> =
         passages.iter().flat_map(|passage| [0.0, SUN_DEGREES, -SUN_DEGREES].map(|off| (passage, off))).collect();
     let count = views.len();
     let vertical_fov = 2.0 * (0.5 / CAMERA).atan().to_degrees();
-    // Light that is reflected inside would find its way out to the same side, at a thousandth of the brightness.
+    // Light that is reflected inside would leave to the same side, at a thousandth of the brightness.
     let mut text = format!(
         "[camera]\nposition = [0, 0, {CAMERA:?}]\nlook_at = [0, 0, 0]\nvertical_fov = {vertical_fov:?}\n\
          [film]\nwidth = {count}\nheight = 1\nfilter = \"center\"\ncolor_space = \"lin_ciexyzd65_scene\"\n\
@@ -180,7 +182,7 @@ fn judge(glass: &Glass, more: f64) -> (Vec<String>, usize) {
     let wrong = views.iter().zip(&film.pixels).filter_map(|((passage, off), pixel)| {
         let found = f64::from(pixel.rgb[0]);
         let expected = if *off == 0.0 { passage.expected() } else { 0.0 };
-        // The lanes, the light and the film are f32: each of 8 products or sums is rounded.
+        // Lanes, light and film are f32: each of 8 products or sums is rounded.
         let right = (found - expected).abs() <= 8.0 * f64::from(f32::EPSILON) * expected;
         let [incidence, deviation] = [passage.incidence, passage.deviation].map(f64::to_degrees);
         (!right).then(|| {
@@ -224,7 +226,7 @@ fn an_index_that_is_off_by_four_in_the_fourth_decimal_is_noticed_at_every_line()
     }
 }
 
-/// The index of a dielectric whose index is written so, at a wavelength in nm.
+/// Returns the index at a wavelength in nm of a dielectric whose index is written in a scene.
 fn written(index: &str) -> impl Fn(f64) -> f64 + use<> {
     let scene = scene(&format!(
         "{}[material.glass]\ndielectric = {{ index = {index} }}\n[[object]]\nmaterial = \"glass\"\n\
@@ -235,8 +237,8 @@ fn written(index: &str) -> impl Fn(f64) -> f64 + use<> {
     move |nm| curve.values(Quantity::Index)(nm)
 }
 
-/// Sellmeier's formula of N-BK7 with Schott's numbers, against the indices that Schott's data sheet lists beside them;
-/// and what n_d and V_d say, against what defines them.
+/// Sellmeier's formula of N-BK7 with Schott's numbers, compared with the indices that Schott's data sheet lists beside
+/// them. n_d and V_d are compared with their definitions.
 #[test]
 fn an_index_that_a_scene_writes_as_a_formula_is_that_of_the_glass() {
     let bk7 = written(
@@ -260,7 +262,7 @@ fn an_index_that_a_scene_writes_as_a_formula_is_that_of_the_glass() {
         let [f, d, c] = [486.13, 587.56, 656.27].map(&index);
         assert!((d - nd).abs() < 1e-12, "n_d = {d}, not {nd}");
         assert!(((d - 1.0) / (f - c) - vd).abs() < 1e-9 * vd, "V_d = {}, not {vd}", (d - 1.0) / (f - c));
-        // Cauchy's curve is straight over 1 / w^2.
+        // Cauchy's curve is linear in 1 / w^2.
         let over = |nm: f64| 1e6 / (nm * nm);
         let slope = |a: f64, b: f64| (index(a) - index(b)) / (over(a) - over(b));
         assert!((slope(400.0, 500.0) / slope(600.0, 700.0) - 1.0).abs() < 1e-9);

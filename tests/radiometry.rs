@@ -1,4 +1,4 @@
-//! Absolute light: what the film holds, times the luminance of its white, is luminance in cd/m^2.
+//! Absolute light: a value of the film times the luminance of its white is a luminance in cd/m^2.
 //!
 //! ```text
 //! cargo test --test all radiometry::
@@ -12,7 +12,7 @@ use abbe::{Options, Scene};
 /// Luminous efficacy at the peak, in lm/W (CIE 018:2019).
 const EFFICACY: f64 = 683.002;
 
-/// A pixel that sees a matte floor from right above, or what is there in its place.
+/// Returns a view of a matte floor from straight above, or of what is there in its place.
 fn scene(film: &str, model: &str, rest: &str) -> String {
     format!(
         "camera = {{ position = [0, 1, 0], look_at = [0, 0, 0], vertical_fov = 0.01 }}\n\
@@ -24,7 +24,7 @@ fn scene(film: &str, model: &str, rest: &str) -> String {
 const FLOOR: &str = "material.gray.diffuse.reflectance = 0.5\n\
     object = [{ shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }, material = \"gray\" }]\n";
 
-/// Luminance of the image: white times Y of its mean, in the film's own color space.
+/// Returns the luminance of an image: the white luminance times Y of its mean, in the film's own color space.
 fn luminance(text: &str) -> f64 {
     let scene = Scene::parse(text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
     let white = scene.format.white_luminance.unwrap_or(1.0);
@@ -69,7 +69,8 @@ fn a_lamp_is_as_bright_as_its_units_say_in_every_model_and_space() {
 #[test]
 fn floors_are_lit_as_photometry_says() {
     let film = ", radiometry = \"absolute\", white_luminance = 100";
-    // 2 meters above the floor, in a scene of decimeters; the lamp is a square of 1 dm, nearly a point.
+    // The lights are 2 meters above the floor, in a scene with decimeters as units. The lamp is a square of 1 dm,
+    // nearly a point.
     let lamp = "{ center = [0, 20, 0], u = [0, 0, 0.5], v = [0.5, 0, 0] }";
     let square = format!(
         "material.gray.diffuse.reflectance = 0.5\nmaterial.lamp.emissive.radiance = 3000\n\

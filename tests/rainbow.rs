@@ -1,4 +1,4 @@
-//! The rainbow: a drop of water turns parallel sunlight back most strongly where Descartes found it.
+//! The rainbow: a drop of water returns parallel sunlight most strongly at the angles that Descartes found.
 //!
 //! ```text
 //! cargo test --release --test all rainbow::
@@ -12,15 +12,15 @@ use crate::support::scenes::{film_of, method, scene};
 
 const CAMERA: f64 = 1e6;
 const SUN_DEGREES: f64 = 0.2;
-/// All ways inside the drop are followed while they carry more than this: the secondary bow carries some thousandths.
+/// All paths inside the drop are followed while they carry more than this. The secondary bow carries some thousandths.
 const FAINT: Transport = Transport::Deterministic { cutoff: 1e-6, most: u64::MAX };
 
-/// Light that is reflected inside the drop a number of times before it leaves.
+/// Light that is reflected a number of times inside the drop before it leaves.
 struct Bow {
     reflections: i32,
-    /// Where on the drop's disc, of radius 1, light of this order is looked for.
+    /// Range on the drop's disc of radius 1 in which light of this order is looked for.
     impact: [f64; 2],
-    /// Deviations in degrees, of which no light of this order has the first and some has the second.
+    /// Deviations in degrees. At the first there is no light of this order, at the second there is some.
     dark_and_lit: [f64; 2],
 }
 
@@ -28,7 +28,7 @@ const PRIMARY: Bow = Bow { reflections: 1, impact: [0.74, 0.94], dark_and_lit: [
 const SECONDARY: Bow = Bow { reflections: 2, impact: [0.90, 0.99], dark_and_lit: [226.0, 234.5] };
 
 impl Bow {
-    /// Descartes's ray, the one that is least deviated: its incidence and deviation in radians.
+    /// Returns the incidence and the deviation in radians of Descartes's ray, the one with the least deviation.
     fn descartes(&self, index: f64) -> [f64; 2] {
         let k = f64::from(self.reflections);
         let incidence = ((index * index - 1.0) / (k * (k + 2.0))).sqrt().acos();
@@ -36,12 +36,12 @@ impl Bow {
         [incidence, k * std::f64::consts::PI + 2.0 * incidence - 2.0 * (k + 1.0) * refraction]
     }
 
-    /// The angle from the point opposite to the sun, in degrees.
+    /// Returns the angle from the antisolar point in degrees.
     fn angle(deviation: f64) -> f64 {
         (deviation - 180.0).abs()
     }
 
-    /// Share of the light that is left after two crossings and the reflections between.
+    /// Returns the fraction of light that is left after two refractions and the reflections between them.
     fn share(&self, index: f64) -> f64 {
         let [incidence, _] = self.descartes(index);
         let refraction = (incidence.sin() / index).asin();
@@ -49,14 +49,14 @@ impl Bow {
         (1.0 - reflectance).powi(2) * reflectance.powi(self.reflections)
     }
 
-    /// Whether light of this order reaches the camera from a sun at a deviation, in degrees.
+    /// Returns whether light of this order reaches the camera from a sun at a deviation in degrees.
     fn is_lit(&self, nm: f64, index: f64, deviation: f64) -> bool {
         const PIXELS: u32 = 600;
         let [low, high] = self.impact;
         let pixel = (high - low) / f64::from(PIXELS);
         let fov = 2.0 * (0.5 * pixel / CAMERA).atan().to_degrees();
         let (sin, cos) = deviation.to_radians().sin_cos();
-        // The drop bends rays that meet it on the right to the left.
+        // The drop bends rays that hit it on the right to the left.
         let text = format!(
             "[camera]\nposition = [{x:?}, 0, {CAMERA:?}]\nlook_at = [{x:?}, 0, 0]\nvertical_fov = {fov:?}\n\
              [film]\nwidth = {PIXELS}\nheight = 1\nfilter = \"center\"\ncolor_space = \"lin_ciexyzd65_scene\"\n\
@@ -73,11 +73,11 @@ impl Bow {
         let film = film_of(&scene, Method { basis, ..method(&scene, FAINT) });
         let half = (0.5 * SUN_DEGREES).to_radians();
         let disc = visible::color_matching(nm)[0] / visible::luminous() / (std::f64::consts::PI * half.sin().powi(2));
-        // Higher orders that pass here are fainter by a hundred times and more.
+        // Light of higher orders that passes here is fainter by a factor of a hundred or more.
         film.pixels.iter().any(|pixel| f64::from(pixel.rgb[0]) > 0.2 * disc * self.share(index))
     }
 
-    /// The least deviation in degrees: where the edge of a sun that comes nearer begins to reach the camera.
+    /// Returns the least deviation in degrees, at which the edge of an approaching sun begins to reach the camera.
     fn least_deviation(&self, nm: f64, index: f64) -> f64 {
         let [mut dark, mut lit] = self.dark_and_lit;
         assert!(!self.is_lit(nm, index, dark) && self.is_lit(nm, index, lit), "{dark} is not dark or {lit} not lit");

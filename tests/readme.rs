@@ -1,4 +1,4 @@
-//! Every piece of TOML that the pages show is TOML, and means what they say; every link leads somewhere.
+//! Every piece of TOML in the pages is valid and means what they say. Every link leads somewhere.
 
 mod limits;
 
@@ -12,7 +12,7 @@ use crate::support::texts::texts;
 
 /// The pages that show pieces of scenes.
 const PAGES: [&str; 2] = ["README.md", "scenes/REFERENCE.md"];
-/// What begins the tables whose pieces are TOML.
+/// The beginnings of the tables whose pieces are TOML.
 const HEADS: [&str; 10] = [
     "in an `[[object]]`",
     "in a `[material.NAME]`",
@@ -38,7 +38,7 @@ fn page(name: &str) -> String {
     fs::read_to_string(name).expect("there is such a page")
 }
 
-/// What is wrong with a scene, but for files that it names and that are not there.
+/// Returns what is wrong with a scene, apart from missing files that it names.
 fn mistakes(text: &str) -> Vec<String> {
     let source = Source { path: PathBuf::from("readme.toml"), text: text.to_owned() };
     match source.compile() {
@@ -51,7 +51,8 @@ fn mistakes(text: &str) -> Vec<String> {
     }
 }
 
-/// The rows of the tables of all that a scene can hold: the head of each table, and the pieces of TOML in the row.
+/// Returns the rows of the tables of everything that a scene can hold: the head of the table, and the pieces of TOML in
+/// the row.
 fn rows(page: &str) -> Vec<(&str, Vec<&str>)> {
     let lines: Vec<&str> = page.lines().collect();
     let (mut rows, mut head) = (Vec::new(), "");
@@ -65,22 +66,22 @@ fn rows(page: &str) -> Vec<(&str, Vec<&str>)> {
     rows
 }
 
-/// A scene around a part of it.
+/// Returns a scene around a part of it.
 fn around(view: &str, film: &str, render: &str, rest: &str) -> String {
     format!("camera = {{ {view} }}\nfilm = {{ {film} }}\nrender = {{ {render} }}\n{MATERIALS}{rest}")
 }
 
-/// The same where only the rest matters.
+/// Returns a scene in which only `rest` matters.
 fn with(rest: &str) -> String {
     around(&format!("{VIEW}, vertical_fov = 30"), FILM, "meters_per_unit = 1", rest)
 }
 
-/// The scene in which a piece of a row stands, if it is one that can be put into a scene by itself.
+/// Returns a scene that contains a piece of a row, or none if the piece cannot be put into a scene by itself.
 fn scene(head: &str, piece: &str) -> Option<String> {
     let on = |material: &str| with(&format!("[material.it]\n{material}\n{BALL}material = \"it\"\n"));
     let (key, _) = piece.split_once(" = ").unwrap_or_default();
     let is_value = piece.starts_with(['{', '"']);
-    // A value in place of another, or a part of something.
+    // Neither a value in place of another nor a part of something.
     let is_alone = !key.is_empty() && !is_value;
     Some(match head {
         "in an `[[object]]`" if key.starts_with("shape.") => with(&format!("[[object]]\nmaterial = \"a\"\n{piece}\n")),
@@ -114,7 +115,7 @@ fn scene(head: &str, piece: &str) -> Option<String> {
     })
 }
 
-/// Keys and values with a piece in place of the one of its key.
+/// Returns keys and values, with a piece in place of the one with its key.
 fn without(others: &str, key: &str, piece: &str) -> String {
     let mut table: toml::Table = toml::from_str(&format!("it = {{ {others} }}")).expect("TOML");
     let it = table.get_mut("it").and_then(toml::Value::as_table_mut).expect("a table");
@@ -160,7 +161,7 @@ fn every_block_of_toml_on_the_pages_is_a_scene() {
     }
 }
 
-/// Every page of text in the repository.
+/// Returns every page of text in the repository.
 fn pages(folder: &Path) -> Vec<PathBuf> {
     let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let is_ours = |path: &PathBuf| {
@@ -178,7 +179,7 @@ fn pages(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The text of a page without blocks of code.
+/// Returns the text of a page without its code blocks.
 fn prose(path: &Path) -> String {
     let text = fs::read_to_string(path).expect("text");
     let mut is_code = false;
@@ -190,10 +191,10 @@ fn prose(path: &Path) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The anchors of a page's headings, as GitHub and other sites make them.
+/// Returns the anchors of a page's headings, as GitHub and other sites make them.
 fn anchors(path: &Path) -> Vec<String> {
     let anchor = |heading: &str| {
-        // Of a link its text.
+        // A link counts by its text.
         let mut parts = heading.trim_start_matches('#').trim().split("](");
         let first = parts.next().unwrap_or_default().to_owned();
         let words = parts.fold(first, |words, part| words + part.split_once(')').map_or("", |(_, rest)| rest));
@@ -230,7 +231,7 @@ fn every_block_of_toml_in_the_documentation_of_a_type_parses() {
             let lines: Vec<&str> =
                 block.lines().map(|line| line.trim_start().trim_start_matches("///").trim()).collect();
             let parses = |text: &str| text.parse::<toml::Table>().is_ok();
-            // Lines that give one key in several ways stand for one each.
+            // Lines that give one key in several ways are alternatives.
             let is_toml = parses(&lines.join("\n")) || lines.iter().all(|line| parses(line));
             assert!(is_toml, "src/{path}:\n{block}");
             count += 1;

@@ -1,4 +1,5 @@
-//! Images that bend normals: they are what they say, lose and gain no light, and leave everything else alone.
+//! Images that bend normals: the normals are the expected ones, no light is lost or gained, and everything else is left
+//! alone.
 //!
 //! ```text
 //! cargo test --test all relief::
@@ -14,7 +15,7 @@ use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environ
 use abbe::math::{DVec3, Ray};
 use abbe::scene::Source;
 
-/// Writes an OpenEXR image of the colors at the middles of its texels, u to the right and v up.
+/// Writes an OpenEXR image with the colors at the centers of its texels, u to the right and v up.
 fn write_exr(folder: &Path, name: &str, [width, height]: [usize; 2], color: impl Fn(f64, f64) -> [f32; 3] + Sync) {
     let at = |x: usize, y: usize| {
         let [r, g, b] = color((x as f64 + 0.5) / width as f64, 1.0 - (y as f64 + 0.5) / height as f64);
@@ -27,7 +28,7 @@ const MESH: &str = "mesh = { points = [[-2, 1, 0], [-1, 1, 0], [-1, 2, 0.2], [-2
                     normals = [[-0.3, 0, 1], [0.3, 0, 1], [0.3, 0, 1], [-0.3, 0, 1]], \
                     uv = [[0, 0], [1, 0], [1, 1], [0.2, 1]] }";
 
-/// Objects of every kind with coordinates and the same map, under a sky and a point.
+/// Returns objects of every kind with texture coordinates and the same map, under a sky and a point light.
 fn room(material: &str, map: &str) -> String {
     let shapes = [
         "plane = { point = [0, -1, 0], normal = [0, 1, 0] }",
@@ -78,7 +79,7 @@ fn a_flat_map_changes_no_bit() {
     }
 }
 
-/// Strong dents: heights and directions of every texel by chance.
+/// Writes strong dents: a random height and a random direction in every texel.
 fn write_dents(folder: &Path) {
     let mut random = Random::new(11);
     let heights: Vec<u8> = (0..16 * 16).map(|_| (random.number() * 256.0) as u8).collect();
@@ -130,12 +131,12 @@ fn white_surfaces_with_dents_are_as_bright_as_the_sky_around_them() {
     }
 }
 
-/// A white patch under the sun, seen nearly from above; the brightness of its middle.
+/// Returns the brightness in the middle of a white patch in the sun, seen from nearly straight above.
 fn sunlit(folder: &Path, object: &str, toward: DVec3) -> f64 {
     sunlit_from(folder, object, toward, [0.1, 5.0, 0.2]).0
 }
 
-/// The same seen from anywhere, and the layer `N` there.
+/// Returns the brightness in the middle of the patch seen from anywhere, and the layer `N` there.
 fn sunlit_from(folder: &Path, object: &str, toward: DVec3, from: [f64; 3]) -> (f64, [f32; 3]) {
     let view = view(from, [0.0; 3], 1.0, 2).replace("[film]\n", "[film]\nlayers = [\"N\"]\n");
     let text = format!(
@@ -149,7 +150,7 @@ fn sunlit_from(folder: &Path, object: &str, toward: DVec3, from: [f64; 3]) -> (f
     (f64::from(first), film.layers[0].values[..3].try_into().expect("a normal"))
 }
 
-/// What is matte has one brightness and one normal for all viewers, also for those whom the normal is turned away from.
+/// A matte surface has one brightness and one normal for all viewers, also for those whom the normal faces away from.
 #[test]
 fn a_matte_surface_of_bent_normals_looks_the_same_from_everywhere() {
     let folder = tempfile::tempdir().unwrap();
@@ -171,14 +172,14 @@ fn a_matte_surface_of_bent_normals_looks_the_same_from_everywhere() {
     }
 }
 
-/// Lambert's law by the normal of the map, on every kind of surface that faces up, u to +x and v to -z.
+/// Lambert's law holds for the normal of the map, on every kind of surface that faces up, with u to +x and v to -z.
 #[test]
 fn an_even_map_shades_like_a_surface_that_is_tilted_so() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let tilted = DVec3::new(0.3, 0.2, 1.0).normalize();
     write_exr(folder, "tilted.exr", [2, 2], |_, _| tilted.to_array().map(|x| (0.5 + 0.5 * x) as f32));
-    // Rises by 0.5 to the right and 0.25 upward, between the edges.
+    // Rises by 0.5 to the right and by 0.25 upward, from edge to edge.
     write_exr(folder, "slope.exr", [64, 64], |u, v| [(0.5 * u + 0.25 * v) as f32; 3]);
     let upright = "shape.quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 0, -1] }";
     let mesh = |uv: &str| {
@@ -188,7 +189,7 @@ fn an_even_map_shades_like_a_surface_that_is_tilted_so() {
         )
     };
     let plain = mesh("[[0, 0], [1, 0], [1, 1], [0, 1]]");
-    // Each object, and where u and v run on it.
+    // Each object, with the directions of u and v on it.
     let objects = [
         (upright.to_owned(), DVec3::X, -DVec3::Z),
         ("shape.plane = { point = [-0.5, 0, 0.5], normal = [0, 1, 0] }".into(), DVec3::X, -DVec3::Z),
@@ -207,7 +208,7 @@ fn an_even_map_shades_like_a_surface_that_is_tilted_so() {
     ];
     for (object, u, v) in objects {
         let normal = u * tilted.x + v * tilted.y + DVec3::Y * tilted.z;
-        // A length of the image: quads and their like are 2 wide, the triangle 3, planes 1.
+        // Length of the image on the object: 2 for quads and the like, 3 for the triangle, 1 for planes.
         let size = if object.contains("plane") {
             1.0
         } else if object.contains("triangle") {
@@ -235,7 +236,7 @@ fn an_even_map_shades_like_a_surface_that_is_tilted_so() {
     }
 }
 
-/// Small heights give a sphere the normals of one whose points are moved by them.
+/// Small heights give a sphere the normals of a sphere whose points are displaced by them.
 #[test]
 fn normals_under_heights_are_those_of_a_displaced_sphere() {
     let folder = tempfile::tempdir().unwrap();
@@ -267,8 +268,8 @@ fn normals_under_heights_are_those_of_a_displaced_sphere() {
         let up = displaced(u, v + STEP) - displaced(u, v - STEP);
         let expected = along.cross(up).normalize();
         most = larger(most, expected.cross(found.normal).length());
-        // Blinn leaves out the height itself, up to 2.3 % of the radius, and so it misses that much of a tilt up to
-        // 0.03.
+        // Blinn's method leaves out the height itself, up to 2.3 % of the radius. It misses that fraction of a tilt of
+        // up to 0.03.
         assert!((found.shading - expected).length() < 1e-3, "{u} {v}: {} not {expected}", found.shading);
     }
     assert!(most > 0.02, "the waves tilt by {most}");
@@ -336,7 +337,7 @@ fn maps_of_any_numbers_give_unit_normals() {
     }
 }
 
-/// What is wrong with images that the tables of messages cannot hold.
+/// Mistakes with images that the tables of messages cannot hold.
 #[test]
 fn images_that_are_no_relief_are_refused_in_words() {
     let folder = tempfile::tempdir().unwrap();
@@ -366,7 +367,7 @@ fn images_that_are_no_relief_are_refused_in_words() {
         let said = refused(shape, map).unwrap_or_default();
         assert!(said.contains(words), "{map}: {said}");
     }
-    // Heights may lie below 0, and a gray image holds them as well as a color.
+    // Heights may be below 0, and a gray image holds them as well as a color image.
     for map in ["bump_map = { image = \"signed.exr\", depth = 1 }", "bump_map = { image = \"gray.png\", depth = -1 }"] {
         assert_eq!(refused(sphere, map), None);
     }

@@ -1,4 +1,4 @@
-//! Rough glass: directions against their density, what is neither lost nor won, and images of it.
+//! Rough glass: directions compared with their pdf, conservation of energy, and rendered images.
 //!
 //! ```text
 //! cargo test --test all rough_glass::
@@ -11,7 +11,7 @@ mod weights;
 
 use abbe::material::{FacetSides, RoughInterface};
 
-/// Each index from outside and from inside, at each roughness and cosine.
+/// Calls `check` with each index from outside and from inside, at each roughness and cosine.
 fn each(
     roughnesses: &[f64],
     indices: &[f64],

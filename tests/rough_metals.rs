@@ -1,4 +1,4 @@
-//! Rough metals: directions against their density, the rows G4 to G6 of the stability catalog, and images of them.
+//! Rough metals: directions compared with their pdf, the rows G4 to G6 of the stability catalog, and rendered images.
 //!
 //! ```text
 //! cargo test --test all rough_metals::

@@ -32,18 +32,18 @@ fn cases(cases: u32) -> ProptestConfig {
     }
 }
 
-/// Every scene that comes with Abbe, and one that uses every feature.
+/// All scenes that come with Abbe, and one that uses every feature.
 static SCENES: LazyLock<Vec<(PathBuf, String)>> = LazyLock::new(|| {
     let paths = scenes().into_iter().chain(["tests/messages/everything.toml".into()]);
     paths.map(|path| (path.clone(), fs::read_to_string(path).expect("a scene is text"))).collect()
 });
 
-/// The scene, if the text is one; checks that a refusal can be shown.
+/// Returns the scene if the text is one. Otherwise checks that the refusal can be displayed.
 fn read(path: &Path, text: String) -> Option<Scene<Curve>> {
     let source = Source { path: path.to_owned(), text };
     match source.compile() {
         Ok(mut scene) => {
-            // A small part of a small image is rendered: sizes decide nothing but the time it takes.
+            // Only a small part of a small image is rendered, because sizes affect nothing but the time.
             scene.film.width = scene.film.width.min(64);
             scene.film.height = scene.film.height.min(48);
             scene.film.crop = None;

@@ -14,7 +14,7 @@ use abbe::trace::{Transport, prepare, render};
 
 use crate::support::texts::scenes;
 
-/// A scene at its own size, or no wider than `width`.
+/// Compiles a scene at its own size, or at a given width with one sample.
 fn compiled(path: &Path, width: Option<u32>) -> Scene<Curve> {
     let Some(width) = width else { return Scene::read(path).unwrap_or_else(|error| panic!("{error}")) };
     let mut scene: toml::Table = toml::from_str(&fs::read_to_string(path).expect("a scene")).expect("TOML");
@@ -93,7 +93,7 @@ fn the_smallpt_scene_is_planned_as_a_path_tracer_of_three_lanes_that_stay_togeth
     assert_says(&because, "model rgb: 3 lanes");
     assert_says(&because, "in every lane, so lanes stay together");
     assert_says(&because, "light leaves left wall in every direction");
-    // The tip that is seen has 0.14 sr, the whole sphere 2.8.
+    // The visible tip has 0.14 sr, the whole sphere 2.8.
     assert_says(&because, "photons from lamp (solid angle 2.0e-1 sr) toward 2 smooth objects");
     assert!(!because.contains("lanes separate"), "{because}");
 }

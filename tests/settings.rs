@@ -33,14 +33,14 @@ fn with(text: &str, settings: &[&str]) -> Scene {
     source.compile_with(&settings).unwrap_or_else(|error| panic!("{settings:?}: {error}"))
 }
 
-/// All that a scene is but what it is called and made of.
+/// Returns everything in a scene except its hash, its files and its settings.
 fn shown(scene: Scene) -> String {
     let mut scene = scene;
     (scene.hash, scene.files, scene.settings) = Default::default();
     format!("{scene:?}")
 }
 
-/// Checks that settings make the scene that the file makes where `old` is replaced by `new`.
+/// Asserts that settings make the same scene as the file with `old` replaced by `new`.
 fn assert_replaces(settings: &[&str], old: &str, new: &str) {
     assert_eq!(SCENE.matches(old).count(), 1, "{old}");
     let (set, written) = (with(SCENE, settings), with(&SCENE.replace(old, new), &[]));
@@ -94,7 +94,7 @@ fn what_is_not_toml_is_a_text_and_the_last_of_several_settings_counts() {
     }
     assert_eq!(with(SCENE, &["film.width=8", "film.width=10"]).film.width, 10);
     assert_eq!(with(SCENE, &["film={width=8,height=2}", "film.width=10"]).film.height, 2);
-    // A name before a number.
+    // A name takes precedence over a number.
     let text = SCENE.replace("name = \"ball\"", "name = \"2\"");
     let radius = |settings: &[&str]| shown(with(&text, settings));
     let first = text.replace("center = [0, 1, 0], radius = 1", "center = [0, 1, 0], radius = 0.5");
@@ -127,7 +127,7 @@ fn a_variable_stands_for_its_value_wherever_that_is_meant() {
     assert_eq!(shown(with(&text, &["paint={rgb=[0.5, 0.4, 0.3]}"])), shown(with(&written, &[])));
     // A setting may use a variable.
     assert_eq!(with(&text, &["film.width=\"$height\""]).film.width, 3);
-    // The number of a frame is one that no scene has to give.
+    // The number of a frame is a variable that no scene has to define.
     let text = SCENE.replace("vertical_fov = 35", "vertical_fov = \"$frame\"");
     assert_eq!(shown(with(&text, &["frame=45"])), shown(with(&text, &["set.frame=45"])));
     assert_eq!(with(SCENE, &["frame=45"]).warnings, with(SCENE, &[]).warnings);
@@ -166,7 +166,7 @@ fn included_files_stand_in_the_scene_as_if_they_were_written_there() {
         format!("include = [\"parts/all.toml\", \"gold.toml\"]\n{}{}", head.replace(gold, ""), &objects[..second]);
     let folder = folder_with(&[
         ("scene.toml", &scene),
-        // The same file twice, by two ways, is one file.
+        // A file that is included twice, by two paths, is one file.
         ("parts/all.toml", "include = [\"ball.toml\", \"../gold.toml\", \"./ball.toml\"]\n"),
         ("parts/ball.toml", &objects[second..]),
         ("gold.toml", gold),
@@ -182,7 +182,7 @@ fn included_files_stand_in_the_scene_as_if_they_were_written_there() {
     assert_ne!(read(&folder).hash, hash);
 }
 
-/// A text of a program is called `scene.toml`, and is no file: one that has that name is another.
+/// A text from a program is called `scene.toml` but is no file. A file of that name is a different one.
 #[test]
 fn a_text_includes_a_file_called_scene() {
     let gold = "material.gold.conductor.metal = \"Au\"\n";
@@ -213,7 +213,7 @@ fn files_are_named_from_the_folder_of_the_file_that_names_them() {
     assert!(own.contains("0.25") && !own.contains("0.75"), "{own}");
     let other = set(&["object.1.material=other", "object.2.material=other"]);
     assert!(other.contains("0.75") && !other.contains("0.25"), "{other}");
-    // What is set stands where the scene stands.
+    // Paths in a setting are relative to the folder of the scene.
     let set = set(&["material.white.diffuse.reflectance={ file = \"parts/paint.csv\" }"]);
     assert!(set.contains("0.75"), "{set}");
 }
@@ -229,7 +229,7 @@ fn a_scene_that_a_program_has_built_may_include_files_and_tells_where_they_are_w
     assert!(refused.starts_with("camera.vertical_fov: there is no variable `angle`"), "{refused}");
 }
 
-/// What is said of a scene that a program has changed, and of what it asks for.
+/// Returns the message that refuses a scene that a program has changed, or the options for it.
 fn refused(options: Options, change: impl FnOnce(&mut Scene)) -> String {
     let mut scene = with(SCENE, &[]);
     change(&mut scene);

@@ -28,7 +28,7 @@ fn texel(x: usize, y: usize) -> [f32; 3] {
     }
 }
 
-/// What the convention says is seen in a direction, written without a look at the renderer's own reading.
+/// Returns the color in a direction according to the convention, written independently of the renderer's own reader.
 fn color(direction: DVec3) -> [f64; 3] {
     let longitude = direction.x.atan2(direction.z);
     let x = (0.5 - longitude / (2.0 * PI)) * WIDTH as f64 - 0.5;
@@ -54,11 +54,11 @@ fn write_sky(folder: &Path) {
     .unwrap();
 }
 
-/// What is seen of a small white floor that faces the zenith, from above.
+/// Renders a small white floor that faces the zenith, seen from above, and returns its mean.
 fn mean(model: &str, turn: f64) -> Mean {
     let folder = tempfile::tempdir().unwrap();
     write_sky(folder.path());
-    // The view looks straight down, so it needs another up.
+    // The view looks straight down, so it needs another up vector.
     let text = format!(
         "{}[render]\nmodel = {model}\nsamples = 64\n[material.white]\ndiffuse = {{ reflectance = 0.5 }}\n\
          [[object]]\nshape.quad = {{ center = [0, 0, 0], u = [0, 0, 2], v = [2, 0, 0] }}\nmaterial = \"white\"\n\
@@ -70,14 +70,14 @@ fn mean(model: &str, turn: f64) -> Mean {
     Mean::over_seeds(&films_of(&scene, &plan(&scene).method, 0..16))
 }
 
-/// Irradiance over pi of the floor when the image is turned about +x.
+/// Returns the irradiance over pi of the floor if the image is turned about +x.
 fn expected(turn: f64) -> [f64; 3] {
     const STEPS: usize = 1500;
     let (sin, cos) = turn.to_radians().sin_cos();
     let mut sum = [0.0; 3];
     for i in 0..STEPS {
         for j in 0..2 * STEPS {
-            // Uniform in the squared sine, so that each direction counts as a diffuse floor weighs it.
+            // Uniform in the squared sine, so that directions are weighted as a diffuse floor weights them.
             let (u, angle) = ((i as f64 + 0.5) / STEPS as f64, PI * (j as f64 + 0.5) / STEPS as f64);
             let (radius, y) = (u.sqrt(), (1.0 - u).sqrt());
             let (x, z) = (radius * angle.cos(), radius * angle.sin());
@@ -97,7 +97,7 @@ fn an_image_lights_a_floor_as_its_pixels_say() {
             let mean = mean(model, turn);
             let error = mean.worst_error(expected);
             assert!(error < 0.01, "{model}: noise {error}");
-            // Sixteen wavelengths miss an rgb color by half a percent at most.
+            // Sixteen wavelengths have an error of at most half a percent for an rgb color.
             let bias = if model.contains("bands") { 5e-3 } else { 0.0 };
             for (c, &expected) in expected.iter().enumerate() {
                 let off = (mean.value[c] - expected).abs();
@@ -131,16 +131,16 @@ fn an_image_is_seen_where_the_convention_says() {
     }
 }
 
-/// A sky of one color is that color's emission, by itself and in a gray mirror, however bright it is.
+/// A sky of one color has the emission of that color, seen directly and in a gray mirror, however bright it is.
 #[test]
 fn an_even_image_is_the_sky_of_its_color() {
     let folder = tempfile::tempdir().unwrap();
-    // Moderate colors, which sums of fully saturated ones would miss by up to 3 %, and such themselves.
+    // Moderate colors, which sums of fully saturated ones would miss by up to 3 %, and saturated colors themselves.
     for rgb in [[0.5, 0.3, 0.15], [3.0, 4.5, 9.0], [0.2, 0.6, 0.35], [0.8, 0.3, 0.6], [0.0, 40.0, 0.0], [0.7, 0.7, 0.1]]
     {
         let [r, g, b] = rgb.map(|x| x as f32);
         write_rgb_file(folder.path().join("even.exr"), 8, 4, |_, _| (r, g, b)).unwrap();
-        // What wavelengths were measured to miss is 4e-4 of the brightest number.
+        // The measured error of wavelengths is 4e-4 of the brightest number.
         for (model, tolerance) in [("{ bands = 16 }", 1e-3), ("{ bands = 32 }", 1e-3), ("\"rgb\"", 1e-6)] {
             let see = |radiance: &str| {
                 let text = format!(
@@ -152,7 +152,7 @@ fn an_even_image_is_the_sky_of_its_color() {
                 );
                 let scene = scene_in(folder.path(), &text);
                 let film = film_of(&scene, plan(&scene).method);
-                // A corner shows the sky, the middle its mirror image. Colored ones would show that spectra of one
+                // A corner shows the sky, the middle its mirror image. A colored mirror would show that spectra of one
                 // color differ.
                 [film.pixels[0].rgb, film.pixels[36].rgb].map(|rgb| rgb.map(f64::from))
             };
@@ -168,8 +168,8 @@ fn an_even_image_is_the_sky_of_its_color() {
     }
 }
 
-/// Nothing is left to chance where a convex body sees nothing but an even sky, however dark it is: bounces are not
-/// ended because their surface is.
+/// A convex body that sees nothing but a uniform sky has no noise, however dark it is. Bounces are not ended because
+/// their surface is dark.
 #[test]
 fn dark_bodies_under_an_even_sky_have_no_noise() {
     for reflectance in [0.5, 0.03, 0.001] {
@@ -188,7 +188,7 @@ fn dark_bodies_under_an_even_sky_have_no_noise() {
     }
 }
 
-/// Files that were cut off or damaged are refused in words, whatever byte is hit.
+/// Truncated or damaged files are refused with a message, whatever byte is hit.
 #[test]
 fn a_damaged_image_never_stops_the_program() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Meshes that look smoother than they are lose and gain no light: row X8 of the stability catalog.
+//! Meshes that look smoother than they are neither lose nor gain light: row X8 of the stability catalog.
 //!
 //! ```text
 //! cargo test --test all smooth_meshes::
@@ -15,7 +15,7 @@ use crate::support::random::Random;
 use crate::support::run::Folder;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, environment, image, scene, view};
 
-/// A ball of radius 1 cut by `around` meridians and `rings` - 1 circles of latitude.
+/// Returns a ball of radius 1, divided by `around` meridians and `rings` - 1 circles of latitude.
 fn ball(around: u32, rings: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut points = vec![DVec3::Y, -DVec3::Y];
     for ring in 1..rings {
@@ -28,7 +28,7 @@ fn ball(around: u32, rings: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (points, ball_faces(around, rings - 1))
 }
 
-/// An object of the ball of 16 x 8 with the normals of the ball.
+/// Returns an object of the ball of 16 x 8 with the normals of the ball.
 fn object(material: &str) -> String {
     let (points, faces) = ball(16, 8);
     let list = |points: &[DVec3]| points.iter().map(|p| format!("{:?}, ", p.to_array())).collect::<String>();
@@ -40,7 +40,7 @@ fn object(material: &str) -> String {
     )
 }
 
-/// The ball alone in an even sky of radiance 1, filling the view with its middle and its rim.
+/// Returns the ball alone under a uniform sky of radiance 1. It fills the view, with its middle and its rim.
 fn furnace(material: &str, samples: u32) -> String {
     view([1.0, 2.0, 5.0], [0.0; 3], 22.0, 48)
         + &format!("[render]\nsamples = {samples}\n")
@@ -53,7 +53,7 @@ fn x8_a_smooth_white_ball_is_as_bright_as_the_sky_around_it() {
     for (material, tolerance) in [
         ("diffuse.reflectance = 1", 1e-3),
         ("mirror.reflectance = 1", 1e-3),
-        // What a rough metal of this index reflects itself.
+        // The tolerance covers what a rough metal of this index itself reflects.
         ("conductor = { n = 0.0001, k = 100, roughness = 0.5 }", 1e-2),
     ] {
         for transport in [SPLITTING, SINGLE_PATH] {
@@ -70,8 +70,7 @@ fn x8_a_smooth_white_ball_is_as_bright_as_the_sky_around_it() {
 
 #[test]
 fn x8_no_mirror_image_of_a_smooth_ball_shows_its_inside() {
-    // A ray that were sent below a triangle would meet the ball again, from inside, and lose half of its light each
-    // time.
+    // A ray that is sent below a triangle would hit the ball again, from inside, and lose half of its light each time.
     let (film, _) = image(&furnace("mirror.reflectance = 0.5", 16), EVERY_BRANCH);
     let darkest = film.pixels.iter().map(|pixel| pixel.rgb[1]).fold(1.0, f32::min);
     assert!((darkest - 0.5).abs() < 1e-6, "{darkest}");
@@ -84,19 +83,20 @@ fn x8_smooth_glass_loses_no_light() {
     let mean = Mean::of(&film);
     println!("X8: glass {:?} +- {:?}", mean.value, mean.error);
     println!("X8: glass leaves {:?}", report);
-    // Some of the light that bent normals let in meets the inside at angles of total reflection again and again; what
-    // is left of it when chance ends its way comes back so rarely and so bright that a mean is a little low.
+    // Some of the light that bent normals let in hits the inside at angles of total reflection repeatedly. What is left
+    // of it when roulette ends its path returns so rarely and so bright that a mean is a little low.
     assert!(mean.worst_error([1.0; 3]) <= 1e-3, "{mean:?}");
     assert!((mean.value[1] - 1.0).abs() <= 1e-2, "{mean:?}");
 }
 
 #[test]
 fn x8_smooth_surfaces_take_the_same_light_from_lamps_aimed_at_and_met_by_chance() {
-    // The sun is aimed at alone, the sky by both, the lamp by both: the weights add up to 1 if the densities are right.
+    // The sky and the lamp are found both by next-event estimation and by random hits. The weights add up to 1 if the
+    // densities are right.
     let lamp = "[[object]]\nshape.sphere = { center = [2, 3, 1], radius = 1.5 }\nmaterial = \"lamp\"\n\
                 [material.lamp]\nemissive.radiance = RADIANCE\n";
     for material in ["diffuse.reflectance = 0.8", "conductor = { n = 0.2, k = 3.9, roughness = 0.6 }"] {
-        // An even sky that a lamp of its own radiance hides in part is as bright as without the lamp.
+        // A uniform sky that is partly hidden by a lamp of its own radiance is as bright as without the lamp.
         let text = furnace(material, 64) + &lamp.replace("RADIANCE", "1");
         let with = Mean::of(&image(&text, SPLITTING).0);
         let without = Mean::of(&image(&furnace(material, 64), SPLITTING).0);
@@ -106,7 +106,7 @@ fn x8_smooth_surfaces_take_the_same_light_from_lamps_aimed_at_and_met_by_chance(
     }
 }
 
-/// The ball with normals of its own, or of its faces.
+/// Returns the ball with its exact normals, or with normals computed from its faces.
 fn smooth(around: u32, rings: u32, exact: bool) -> Shape {
     let (points, faces) = ball(around, rings);
     let vertices = Vertices::Double(points.clone());
@@ -137,14 +137,14 @@ fn shading_normals_turn_with_the_mesh_whether_it_is_baked_or_an_instance() {
         });
         assert!((a.shading - b.shading).length() < 1e-6, "{} and {}", a.shading, b.shading);
         assert!((a.shading.length() - 1.0).abs() < 1e-12);
-        // On an ellipsoid the normal is that of the unit ball through the map's inverse transpose; half a step of the
-        // ball's triangles, 0.05, bounds how far interpolation strays.
+        // On an ellipsoid, the normal is that of the unit ball under the inverse transpose of the map. Half a step of
+        // the ball's triangles, 0.05, bounds the error of interpolation.
         let expected = map.normal(back.point(a.position).normalize());
         assert!(a.shading.dot(expected) > 0.999 && a.shading.dot(a.normal) > 0.9);
     }
 }
 
-/// As programs write what they have mirrored without turning its faces.
+/// Programs write such meshes when they mirror them without turning their faces.
 #[test]
 fn faces_that_run_the_other_way_around_than_their_normals_are_smooth_all_the_same() {
     let (points, faces) = ball(16, 8);
@@ -159,7 +159,7 @@ fn faces_that_run_the_other_way_around_than_their_normals_are_smooth_all_the_sam
         shape.point(ray, &intersection)
     };
     let (right, turned) = (built(faces.clone(), normals.clone()), built(back, normals.clone()));
-    // Where one corner alone looks away, and far, the normal of the face is as good as any.
+    // If the normal of only one corner points away, and far, the normal of the face is as good as any.
     let torn = built(faces, [&[[0.0, -9.0, 0.0]], &normals[1..]].concat());
     let mut random = Random::new(5);
     let mut flat = 0;
@@ -176,7 +176,7 @@ fn faces_that_run_the_other_way_around_than_their_normals_are_smooth_all_the_sam
 
 #[test]
 fn normals_computed_from_faces_are_those_of_a_ball() {
-    // Weighted by angles they do not depend on how squares are cut into triangles.
+    // Weighted by angles, they do not depend on how squares are divided into triangles.
     let (points, faces) = ball(32, 16);
     let normals = vertex_normals(&Vertices::Double(points.clone()), &faces);
     for (point, normal) in points.iter().zip(normals) {
@@ -220,7 +220,7 @@ fn texture_coordinates_are_interpolated() {
     assert_eq!(bare.coordinates(0, [0.2, 0.3]), None);
 }
 
-/// A triangle in every format, whose second vertex has a normal and texture coordinates.
+/// Returns a triangle in every format. Its second vertex has the given normal and texture coordinates.
 fn files_with(normal: [f32; 3], coordinates: [f32; 2]) -> [(&'static str, Vec<u8>); 3] {
     let ([x, y, z], [u, v]) = (normal, coordinates);
     let names: String =
@@ -277,7 +277,7 @@ fn normals_and_texture_coordinates_that_are_not_finite_are_refused() {
     }
 }
 
-/// What a file's vertices carry, read with and without normals.
+/// Returns the attributes of a file's vertices, read without and with normals.
 fn attributes(name: &str, text: &str) -> [Attributes; 2] {
     let (_folder, path) = file(name, text);
     [false, true]
@@ -307,7 +307,7 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
         assert_eq!(mesh.attributes.normals, vec![[0.0, 0.0, 1.0]; mesh.vertices.count()]);
         Ok::<_, String>((mesh.vertices.count(), places, pairs, mesh.attributes.bare))
     };
-    // Two triangles with a seam between them, of which one end is the same point of the image.
+    // Two triangles with a seam between them. One end of the seam is the same point of the image for both.
     let seam = "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 6 0 0 0.5 1 0.25 1 0\n";
     let places = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 0, 0], [1, 1, 0], [0, 1, 0]];
     let pairs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [0.5, 1.0], [0.25, 1.0]];
@@ -317,12 +317,12 @@ fn faces_of_a_ply_may_have_texture_coordinates_of_their_own() {
     let quad = read("4 0 1 2 3 8 0 0 1 0 1 1 0 1 0\n", false).expect("one face");
     let fan = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     assert_eq!((quad.0, &quad.2[..], quad.3), (4, &fan[..], 0));
-    // A face without them shows those of its vertices.
+    // A face without coordinates of its own shows those of its vertices.
     let mixed = "3 0 1 2 6 0 0 1 0 1 1 0\n3 0 2 3 0 0\n";
     let [bare, own] = [false, true].map(|of_vertices| read(mixed, of_vertices).expect("two faces"));
     assert_eq!((bare.0, bare.3, own.0, own.3), (6, 1, 6, 0));
     assert!(bare.2[3..] == [[0.0, 0.0]; 3] && own.2[3..] == [[7.0, 8.0]; 3] && own.2[..3] == pairs[..3]);
-    // None has them.
+    // No face has coordinates.
     let none = "3 0 1 2 0 0\n3 0 2 3 0 0\n";
     assert_eq!(read(none, true).expect("two faces").2, [[7.0, 8.0]; 6]);
     let (_folder, path) = file("a.ply", ply(none, false));
@@ -346,7 +346,7 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
     };
     let flat = Attributes { normals: Vec::new(), ..expected.clone() };
     let rows = ["0 0 0 0 0 1 0 0.25", "1 0 0 0 0.6 0.8 0.5 0.75", "0 1 0 0 1 0 1 0"];
-    // A name alone is of something else.
+    // A name without its partner means something else.
     for (more, [u, v]) in
         [(None, ["u", "v"]), (None, ["s", "t"]), (None, ["texture_u", "texture_v"]), (Some("s"), ["u", "v"])]
     {
@@ -367,7 +367,7 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
         attributes("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
         [Attributes::default(), Attributes::default()]
     );
-    // Faces without either leave those of others as they are.
+    // Faces without normals or coordinates leave those of the others as they are.
     let mixed = obj.to_owned() + "o bare\nf 3 2 1\nf 1 2 3/1\n";
     let [flat_one, smooth_one] = attributes("a.obj", &mixed);
     assert_eq!(
@@ -376,7 +376,7 @@ fn files_give_normals_where_they_are_wanted_and_texture_coordinates_where_they_a
     );
     assert_eq!((&smooth_one.normals[3..], smooth_one.bare), (&[[0.0; 3]; 4][..], 2));
     assert_eq!(flat_one.coordinates[3..], [[0.0; 2], [0.0; 2], [0.0; 2], [0.0, 0.25]]);
-    // One float after the other: places, normals, coordinates, whose v runs down in glTF.
+    // Floats in sequence: positions, normals and coordinates, whose v runs down in glTF.
     let numbers: Vec<f32> = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
         .into_iter()
         .chain(expected.normals.iter().flatten().copied())

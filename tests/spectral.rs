@@ -1,4 +1,4 @@
-//! Spectra of pixels: that they are those of the lights, and that they make the colors of the image.
+//! Spectra of pixels: they are those of the lights, and they make up the colors of the image.
 
 mod stokes;
 
@@ -11,8 +11,8 @@ use abbe::trace::Method;
 use crate::support::larger::larger;
 use crate::support::scenes::{film_of, moments, rendered, rendered_with, scene};
 
-/// What each pixel's bands of 1 nm, from 360 to 830, make of the image, at worst relative to its brightest channel and
-/// one percent of the image's mean.
+/// Returns the largest difference between the image and the color of each pixel's bands of 1 nm, from 360 to 830. It is
+/// relative to the brightest channel of the pixel, or to one percent of the image's mean if that is more.
 fn worst_color(film: &Film) -> f64 {
     let film_of_xyz = film.color_space.of_xyz();
     let spectral = film.spectral.as_ref().expect("spectra were asked for");
@@ -34,8 +34,8 @@ fn worst_color(film: &Film) -> f64 {
     (0..film.pixels.len()).map(worst).fold(0.0, larger)
 }
 
-/// Glass that disperses, a mirror and gold on a floor under a lamp, a sky and a spot: photons are shown and gathered,
-/// lanes part, images and numbers shine.
+/// Returns a scene of dispersive glass, a mirror and gold on a floor under a lamp, a sky and a spot. Photons are
+/// splatted and gathered, lanes part, and both images and numbers emit light.
 fn room(film: &str, glass: &str) -> String {
     format!(
         r#"
@@ -75,12 +75,12 @@ fn room(film: &str, glass: &str) -> String {
     )
 }
 
-/// All 1 nm of the visible grid.
+/// Every nm of the visible grid.
 const FINE: &str = "spectral = { from = 360, to = 830, step = 1 }";
 
 #[test]
 fn an_even_spectrum_of_one_is_one_in_every_band() {
-    // The last ones reach beyond 830 nm, and beyond 300 nm.
+    // The last two extend above 830 nm, and one of them below 300 nm.
     let bands = [[400.0, 700.0, 10.0], [550.0, 552.0, 0.25], [360.0, 830.0, 5.0], [360.0, 830.0, 470.0]];
     let bands = bands.map(|[from, to, step]| format!("{{ from = {from}, to = {to}, step = {step} }}"));
     for bands in bands.iter().map(String::as_str).chain(["true"]) {
@@ -94,7 +94,7 @@ fn an_even_spectrum_of_one_is_one_in_every_band() {
     }
 }
 
-/// Measured radiance stays what it is, whatever the luminance of white; a luminance is found again by the observer.
+/// Measured radiance stays the same for any luminance of white. A luminance is recovered with the observer's functions.
 #[test]
 fn spectra_of_absolute_light_are_in_watts() {
     let sky = |radiance: &str| {
@@ -115,13 +115,13 @@ fn spectra_of_absolute_light_are_in_watts() {
     }
 }
 
-/// Numbers and `rgb` are the film's white to the digits in which its chromaticity is known: the white light is 4e-5
-/// off it in x and y, which is less than 5e-4 of a channel.
+/// Numbers and `rgb` have the film's white to the digits in which its chromaticity is known. The white light is 4e-5
+/// off in x and y, which is less than 5e-4 of a channel.
 const WHITE: f64 = 5e-4;
 
 #[test]
 fn spectra_make_the_colors_of_the_image() {
-    // What is left of two sums of light, one of which is subtracted, is off by more of itself.
+    // The difference of two sums of light has a larger relative error.
     for (filter, tolerance) in [("box", WHITE), ("mitchell", 2.0 * WHITE)] {
         let image = rendered(&room(&format!("{FINE}, filter = \"{filter}\""), "1.5"));
         assert!(image.because().iter().any(|line| line.starts_with("photon tracing")), "{:?}", image.because());
@@ -131,8 +131,8 @@ fn spectra_make_the_colors_of_the_image() {
     }
 }
 
-/// A wavelength that was drawn counts in its band as in the band's middle: the functions change by a few percent in
-/// half a nm, at most by 0.06 of themselves.
+/// A drawn wavelength counts in its band as if it were at the center of the band. The color matching functions change
+/// by a few percent within half a nm, at most by 0.06 of themselves.
 #[test]
 fn spectra_of_lanes_that_part_make_the_colors_of_the_image() {
     let image = rendered(&room(FINE, "\"N-SF11\""));
@@ -141,7 +141,7 @@ fn spectra_of_lanes_that_part_make_the_colors_of_the_image() {
     assert!(worst <= 0.06, "{worst}");
 }
 
-/// The floor fluoresces: its light is of other wavelengths than the photons and lamps that excite it.
+/// The floor fluoresces: its light has other wavelengths than the photons and lamps that excite it.
 #[test]
 fn spectra_of_dyes_make_the_colors_of_the_image() {
     for (glass, model, tolerance) in [("1.5", "model bands", 1e-3), ("\"N-SF11\"", "model hero", 0.06)] {
@@ -184,7 +184,7 @@ fn light_vertices_leave_spectra_too() {
     assert!(worst <= WHITE, "{worst}");
 }
 
-/// Two ideal lines stay in their bands: power over the width of the band.
+/// Two ideal lines stay in their bands, with their power divided by the width of the band.
 #[test]
 fn ideal_lines_stay_in_their_bands() {
     let image = rendered(
@@ -204,13 +204,13 @@ fn ideal_lines_stay_in_their_bands() {
     }
 }
 
-/// Surfaces are known where the eye sees hardly anything as they are where it does.
+/// Surfaces are known equally well where the eye sees hardly anything and where it sees well.
 #[test]
 fn spectra_know_surfaces_over_all_bands() {
     let all = "{ from = 360, to = 830, step = 5 }";
     let common = "{ from = 400, to = 700, step = 10 }";
     let (even, edge) = ([[360.0, 0.0], [830.0, 1.0]], [[740.0, 0.2], [760.0, 0.8]]);
-    // Paint that is white by titanium dioxide is dark to the ultraviolet.
+    // White paint with titanium dioxide is dark in the ultraviolet.
     let titania = [[380.0, 0.1], [395.0, 0.9]];
     let cases = [
         ("true", even, 0.005),
@@ -233,7 +233,7 @@ fn spectra_know_surfaces_over_all_bands() {
         let spectral = image.film().spectral.as_ref().expect("spectra were asked for");
         let expected = |nm: f64| low + (high - low) * ((nm - first) / (last - first)).clamp(0.0, 1.0);
         for (band, nm) in spectral.bands.centers_nm().enumerate() {
-            // A band that reaches over the edge or beyond 830 nm has the mean of its known part.
+            // A band that extends over the edge or beyond 830 nm has the mean of its known part.
             let parts = (0..100).map(|i| nm + spectral.bands.step_nm() * ((f64::from(i) + 0.5) / 100.0 - 0.5));
             let known: Vec<f64> = parts.filter(|&nm| nm <= 830.0).map(expected).collect();
             let mean = known.iter().sum::<f64>() / known.len() as f64;
@@ -243,7 +243,8 @@ fn spectra_know_surfaces_over_all_bands() {
     }
 }
 
-/// Glass that parts lanes in an even world shows that world, in every band: what a prism's spectra add up to.
+/// Glass that parts lanes in a uniform world shows that world unchanged in every band. The spectra of a prism add up to
+/// it.
 #[test]
 fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {
     let image = rendered(
@@ -260,7 +261,8 @@ fn a_dispersive_ball_in_an_even_world_cannot_be_seen_in_any_band() {
         let (mean, variance) = moments((0..pixels).map(|pixel| f64::from(spectral.pixel(pixel)[band])));
         let z = (mean - 1.0) / (variance / pixels as f64).sqrt();
         assert!(z.abs() <= 4.0, "{mean} at {nm} nm, z = {z}");
-        // Where the eye sees nothing, hardly a sample would find light if it alone said where wavelengths are drawn.
+        // If visibility alone decided where wavelengths are drawn, hardly a sample would find light where the eye sees
+        // nothing.
         assert!(variance.sqrt() <= 1.0, "{nm} nm: a pixel is off by {}", variance.sqrt());
     }
 }
@@ -274,7 +276,7 @@ fn spectra_change_no_bit_of_the_image_by_the_same_lanes() {
     }
 }
 
-/// A part of the image has the spectra that it has in the full image, and so has it with any number of threads.
+/// A part of the image has the same spectra as in the full image, with any number of threads.
 #[test]
 fn spectra_are_the_same_for_any_part_and_any_number_of_threads() {
     let text = room("spectral = true", "1.5");

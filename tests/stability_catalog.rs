@@ -1,4 +1,4 @@
-//! The table of `tests/STABILITY.md` is true: its tests exist, and the tests that are named after a row stand in it.
+//! The table of `tests/STABILITY.md` is true: its tests exist, and it lists the tests that are named after its rows.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::support::texts::texts;
 
-/// The rows that there must be, by letter: how many of each.
+/// Number of rows that there must be for each letter.
 const ROWS: [(&str, u32); 16] = [
     ("S", 7),
     ("P", 4),
@@ -30,7 +30,7 @@ fn home() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// What a row of the table says: what is done, and the tests as `file::name`.
+/// Returns the rows of the table: what is done, and the tests as `file::name`.
 fn table() -> BTreeMap<String, (String, Vec<String>)> {
     let text = fs::read_to_string(home().join("tests/STABILITY.md")).expect("the table");
     let mut rows = BTreeMap::new();
@@ -45,7 +45,7 @@ fn table() -> BTreeMap<String, (String, Vec<String>)> {
     rows
 }
 
-/// The names of the tests in a file.
+/// Returns the names of the tests in a file.
 fn tests_in(text: &str) -> Vec<&str> {
     let mut names = Vec::new();
     let mut is_test = false;
@@ -59,7 +59,7 @@ fn tests_in(text: &str) -> Vec<&str> {
     names
 }
 
-/// The rows that a test is named after: `a3_and_a4_...` after two.
+/// Returns the rows that a test is named after: two for `a3_and_a4_...`.
 fn rows_of(name: &str) -> Vec<String> {
     let is_row = |word: &&str| {
         let digits = word.get(1..).unwrap_or_default();
@@ -108,7 +108,7 @@ fn every_test_that_is_named_after_a_row_stands_in_the_stability_catalog() {
                     let file = test.strip_suffix(&ending).map(|file| home().join("tests").join(file));
                     file.is_some_and(|file| file.canonicalize().ok() == path.canonicalize().ok())
                 });
-                // A test may hold two rows at once: it stands in one that it is not named after, too.
+                // A test may cover two rows at once, so it may be listed in a row that it is not named after.
                 let elsewhere = table.values().flat_map(|(_, tests)| tests).any(|test| test.ends_with(&ending));
                 assert!(is_listed || elsewhere, "{row}: {name} of {} is not in the table", path.display());
                 count += 1;

@@ -1,5 +1,5 @@
-//! The rows of the stability catalog about scenes at the ends of what can be said: sizes, radiances, indices, images
-//! and stacks that nobody would make but by mistake, and somebody does.
+//! The rows of the stability catalog about scenes at the limits of what can be expressed: sizes, radiances, indices,
+//! images and stacks that nobody would make except by mistake, and somebody does.
 //!
 //! ```text
 //! cargo test --release --test all stability_extremes::

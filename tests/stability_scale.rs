@@ -1,5 +1,5 @@
-//! Row S6 of the stability catalog: a scene has no size. Scaled by a power of two, which commutes with every rounding,
-//! it gives the identical image: any length that hides in the code shows here.
+//! Row S6 of the stability catalog: a scene has no inherent size. Scaled by a power of two, which commutes with every
+//! rounding, it gives the identical image. Any length that is hidden in the code shows here.
 //!
 //! ```text
 //! cargo test --test all stability_scale::
@@ -10,7 +10,7 @@ use abbe::trace::Transport;
 
 use crate::support::scenes::{SINGLE_PATH, SPLITTING, image, scene};
 
-/// Every shape, material and light, with all lengths multiplied by a factor.
+/// Returns a scene with every shape, material and light. All lengths are multiplied by a factor.
 fn text(size: f64) -> String {
     let number = |x: f64| format!("{:?}", x * size);
     let vector = |v: [f64; 3]| format!("{:?}", v.map(|x| x * size));

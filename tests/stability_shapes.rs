@@ -1,5 +1,5 @@
-//! The geometry rows of the stability catalog: where methods of intersecting and leaving surfaces fail, and the number
-//! that shows that these do not. Each test is named after its row.
+//! The geometry rows of the stability catalog: cases in which methods of intersecting and leaving surfaces fail, and
+//! the numbers which show that these do not. Each test is named after its row.
 //!
 //! ```text
 //! cargo test --test all stability_shapes::
@@ -14,5 +14,5 @@ mod returning;
 mod spheres;
 mod triangles;
 
-/// Where a body of coordinate offset 1 is put: all three coordinates differ.
+/// The place of a body with a coordinate offset of 1. All three coordinates differ.
 const OFFSET: abbe::math::DVec3 = abbe::math::DVec3::new(1.0, 0.7, -0.3);

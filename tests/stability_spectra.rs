@@ -1,4 +1,4 @@
-//! Where spectral renderers fail: rows D10 to D15 of the stability catalog.
+//! Cases in which spectral renderers fail: rows D10 to D15 of the stability catalog.
 //!
 //! ```text
 //! cargo test --release --test all stability_spectra::
@@ -15,7 +15,7 @@ use crate::support::scenes::{Mean, SPLITTING, film_of, films_of, method, scene, 
 
 const SPACE: ColorSpace = ColorSpace::Rec709;
 
-/// Images of a scene under different seeds.
+/// Renders a scene under different seeds.
 fn films(text: &str, basis: &Basis, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     films_of(&scene, &Method { basis: basis.clone(), ..method(&scene, SPLITTING) }, 0..seeds)
@@ -25,7 +25,7 @@ fn heroes(light: &Curve) -> Basis {
     Basis::bands(SPACE, 12, &[]).with_heroes(4, &[Emission::new(light, SPACE)])
 }
 
-/// A tilted plate of flint before an even sky, wider than the view.
+/// Returns a tilted plate of flint in front of a uniform sky, wider than the view.
 fn plate(index: &str, samples: u32) -> String {
     format!(
         "{}[render]\nsamples = {samples}\n[material.flint]\ndielectric = {{ index = {index} }}\n\
@@ -59,7 +59,7 @@ fn d11_a_dispersive_plate_is_nearly_as_quiet_as_a_plain_one() {
     assert!(deviation <= 0.2, "Y of a camera sample has standard deviation {deviation}");
 }
 
-/// A ball of glass on two tiles under a sky: wavelengths that are asked for although they bend alike.
+/// A glass ball on a floor under a sky. Hero wavelengths are asked for although all of them refract alike.
 #[test]
 fn d11_vanishing_dispersion_is_neither_tinted_nor_noisier_than_none() {
     let text = |index: &str, model: &str| {
@@ -100,8 +100,8 @@ fn d12_a_formula_is_not_followed_beyond_its_range() {
     }
 }
 
-/// What a pixel of one sample each gets of a light's own color by way of the heroes alone: mean and deviation of every
-/// channel.
+/// Returns what a pixel of one sample receives of a light's own color through the heroes alone: mean and deviation of
+/// every channel.
 fn by_heroes(curve: &Curve) -> [(f64, f64); 3] {
     const SAMPLES: u32 = 4096;
     let basis = heroes(curve);
@@ -119,7 +119,7 @@ fn by_heroes(curve: &Curve) -> [(f64, f64); 3] {
     })
 }
 
-/// Light as even as daylight, and a line of the same power, 0.1 nm wide: once an ideal line, once as samples.
+/// Light as even as daylight, and a line of the same power, 0.1 nm wide: once as an ideal line, once as samples.
 #[test]
 fn d13_narrow_lines_are_neither_lost_nor_noisy() {
     let power = visible::luminous();
@@ -145,7 +145,7 @@ fn d13_narrow_lines_are_neither_lost_nor_noisy() {
     let (mean, deviation) = by_heroes(&sampled)[0];
     assert!((mean - exact[0]).abs() < 4.0 * deviation / 64.0, "{mean} for {}", exact[0]);
     assert!(deviation / mean <= 1.1, "standard deviation {deviation} at mean {mean}");
-    // Ideal lines alone leave nothing to chance but which of them is drawn.
+    // With ideal lines alone, only the choice among them is random.
     let sodium = Curve::from(CurveKind::Lines(vec![[589.0, power]]));
     let color = Emission::new(&sodium, SPACE).color();
     for (c, (mean, deviation)) in by_heroes(&sodium).into_iter().enumerate() {
@@ -169,7 +169,7 @@ fn d14_pure_colors_keep_their_negative_numbers_in_the_film_and_make_a_picture() 
     assert!(red == 0 && green > 100, "{:?}", [red, green, blue]);
 }
 
-/// Against the closed form at two wavelengths, whose ratio does not depend on how the light is normalized.
+/// Compared with the closed form at two wavelengths. Their ratio does not depend on how the light is normalized.
 #[test]
 fn d15_a_blackbody_keeps_its_digits_from_embers_to_the_hottest_stars() {
     for kelvin in [100.0_f64, 450.0, 1000.0, 2856.0, 6504.0, 1e6, 1e9] {

@@ -16,7 +16,8 @@ use crate::support::scenes::{
     Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, mean_color, moments, scene, view,
 };
 
-/// Twenty glass balls of radius 0.35 to 0.65 in a box of edge 4 that do not touch, under an even sky with a sun.
+/// Returns twenty glass balls with radii of 0.35 to 0.65 in a box of edge 4. They do not touch, and they are under a
+/// uniform sky with a sun.
 fn glass_balls(side: u32, filter: &str, sun_radius: f64, sun_radiance: f64) -> String {
     let mut random = Random::new(77);
     let mut balls: Vec<(DVec3, f64)> = Vec::new();
@@ -40,10 +41,11 @@ fn glass_balls(side: u32, filter: &str, sun_radius: f64, sun_radiance: f64) -> S
         + &environment(0.5)
 }
 
-/// The sun that sheds as much light as the catalog's lobe, 30 cos^400, in as much of the sky: 2 pi / 401.
+/// Radius of a sun that emits as much light as the catalog's lobe, 30 cos^400, in as much of the sky: 2 pi / 401.
 const SUN_RADIUS: f64 = 7.0;
 
-/// Ten panes of index 1.5 before a shining plane; where `seen` is false, the plane is behind the camera instead.
+/// Returns ten panes of index 1.5 in front of an emissive plane. If `seen` is false, the plane is behind the camera
+/// instead.
 fn panes(seen: bool, side: u32) -> String {
     let panes: Vec<String> =
         (0..10).map(|i| format!("cube = {{ center = [0, 0, {}], size = [200, 200, 0.5] }}", -i)).collect();
@@ -55,10 +57,10 @@ fn panes(seen: bool, side: u32) -> String {
         + &body("lamp", "emissive = { radiance = 1, sides = \"front\" }", &[&plane])
 }
 
-/// What N panes of reflectance r at each surface reflect, all ways counted: 2 N r / (1 + (2 N - 1) r).
+/// Share that N panes with reflectance r at each surface reflect over all paths: 2 N r / (1 + (2 N - 1) r).
 const REFLECTED: f64 = 20.0 * 0.04 / (1.0 + 19.0 * 0.04);
 
-/// The transport that the plan takes by itself, which must leave something to chance.
+/// Returns the transport that the plan chooses by itself, which must be a random one.
 fn planned(text: &str) -> Transport {
     let transport = plan(&scene(text)).method.transport;
     assert!(matches!(transport, Transport::Random { .. }), "{transport:?}");
@@ -86,16 +88,16 @@ fn w2_a_stack_of_ten_panes_loses_no_light() {
 
 #[test]
 fn w3_light_caught_in_a_glass_cube_does_not_run_forever() {
-    // A quarter turn of view shows one face of six that are alike.
+    // A view of a quarter turn shows one of six equal faces.
     let cube = body("glass", "dielectric = { index = 1.5 }", &["cube = { center = [0, 0, 0], size = 2 }"]);
     let text = |side: u32| view([0.0; 3], [0.0, 0.0, -1.0], 90.0, side) + &cube + &environment(1.0);
-    // Of the directions, 3 (1 - cos of the critical angle) lead out.
+    // 3 (1 - cos of the critical angle) of the directions lead out.
     let exact = 3.0 * (1.0 - (1.0 - 1.0 / 2.25f64).sqrt());
     for (transport, side) in
         [(SPLITTING, 142), (SINGLE_PATH, 60), (Transport::Deterministic { cutoff: 1e-9, most: u64::MAX }, 60)]
     {
         let (film, report) = image(&text(side), transport);
-        // Pixels of a plane fill solid angles in proportion to the cube of the cosine.
+        // Pixels of a plane cover solid angles in proportion to the cube of the cosine.
         let solid_angle = |at: usize| {
             let place = |i: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0;
             let (x, y) = (place(at as u32 % side), place(at as u32 / side));
@@ -137,7 +139,7 @@ fn w5_splitting_and_roulette_agree_with_following_every_branch() {
     let [whole, ..] = mean_color(&whole);
     for transport in [SPLITTING, SINGLE_PATH] {
         let mean = Mean::rendered(&text, transport, 100);
-        // Nothing is brighter than the sun, so this much may be missing from the tree.
+        // Nothing is brighter than the sun, so at most this much is missing from the tree.
         let missing = radiance * report.dropped;
         println!("W5: {} +- {:.1e} for {whole}, missing at most {missing:.1e}", mean.value[0], mean.error[0]);
         assert!(missing < 0.2 * mean.error[0], "{missing} missing, {} uncertain", mean.error[0]);
@@ -163,9 +165,9 @@ fn w6_light_in_a_closed_white_box_dies_out_at_the_right_radiance() {
     const REFLECTANCE: f64 = 0.99;
     let white = format!("diffuse = {{ reflectance = {REFLECTANCE} }}");
     let lit = "[[light]]\npoint = { position = [0, 0, 0], intensity = 1 }\n";
-    // Irradiance of the walls by a point in the middle, all bounces counted: 4 pi I / (S (1 - reflectance)).
+    // The irradiance of the walls by a point light in the middle, with all bounces: 4 pi I / (S (1 - reflectance)).
     let radiance = |area: f64| REFLECTANCE / PI * 4.0 * PI / (area * (1.0 - REFLECTANCE));
-    // A ball looks the same everywhere; of a box, a quarter turn of view shows a face of six that are alike, evenly.
+    // A ball looks the same everywhere. In a box, a view of a quarter turn evenly shows one of six equal faces.
     let rooms = [
         ("sphere = { center = [0, 0, 0], radius = 2 }", radiance(16.0 * PI)),
         ("cube = { center = [0, 0, 0], size = 2 }", radiance(24.0)),
@@ -193,7 +195,7 @@ fn a_surface_that_passes_no_light_on_shows_its_own_and_nothing_else() {
     }
 }
 
-/// Bodies and panes in which light has ever more ways, and how many there are.
+/// Returns bodies and panes in which the number of light paths grows with `count`.
 fn ways(kind: &str, count: i32) -> String {
     let mirror = body("mirror", "mirror = {}", &["quad = { center = [0, 0, -6], u = [9, 1, 0], v = [0, 9, 0] }"]);
     let of = |material: &str, shape: &dyn Fn(i32) -> String| {
@@ -239,7 +241,7 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
                 "W7: {count} {kind}: {rays:.1} rays a sample, {}",
                 if random { "random" } else { "deterministic" }
             );
-            // Light that is not lost wanders: its surfaces grow as the square of their number.
+            // Light that is not lost wanders: the surfaces that it meets grow as the square of their number.
             let most = if random { 32.0 + 8.0 * f64::from(count * count) } else { 4096.0 };
             assert!(rays <= most, "{count} {kind}: {rays} rays");
             assert_eq!(report.by_chance, 0, "{count} {kind}");
@@ -265,8 +267,8 @@ fn w7_a_camera_sample_that_meets_too_many_surfaces_goes_on_by_chance_to_the_same
     assert!(rendered(3).0.pixels == film.pixels, "another number of threads makes other bits");
 }
 
-/// The lamp of smallpt: the tip of a sphere of radius 600 comes 0.27 through the ceiling. From the floor it fills the
-/// cone through its rim, and of the cone in which the whole sphere is seen 1 / 20.
+/// The lamp of smallpt: the tip of a sphere of radius 600 reaches 0.27 through the ceiling. Seen from the floor, it
+/// fills the cone through its rim, which is 1 / 20 of the cone of the whole sphere.
 #[test]
 fn a_lamp_of_which_the_tip_is_seen_costs_no_more_than_the_tip() {
     let (radius, tip, height, samples) = (600.0_f64, 0.27_f64, 81.33, 16);
@@ -285,7 +287,7 @@ fn a_lamp_of_which_the_tip_is_seen_costs_no_more_than_the_tip() {
         + &body("lamp", "emissive = { radiance = 12 }", &[&lamp]);
     let mean = Mean::of(&image(&text, SPLITTING).0);
     mean.assert_near([expected; 3], 1, "floor below the tip");
-    // Aimed at by the whole cone, 19 of 20 samples see nothing: a deviation of 4 times the mean.
+    // With samples over the whole cone, 19 of 20 would see nothing: a deviation of 4 times the mean.
     let deviation = mean.worst_error([expected; 3]) * f64::from(32 * 32 * samples).sqrt();
     assert!(deviation < 0.5, "a sample deviates by {deviation}");
 }

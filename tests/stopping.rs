@@ -1,6 +1,6 @@
-//! Renders that stop when their error is small enough, or their time is over.
+//! Renders that stop when their error is small enough, or when their time is over.
 //!
-//! `tools/stopping.py` holds many renders of larger scenes against references that find their light another way.
+//! `tools/stopping.py` compares many renders of larger scenes with references that find their light in another way.
 //!
 //! ```text
 //! cargo test --test all stopping::
@@ -22,7 +22,7 @@ fn asks(error: f64, most: u32) -> Options {
     Options { error: Some(error), samples: Some(most), ..Options::default() }
 }
 
-/// Scenes of all ways to find light.
+/// Returns scenes for all ways to find light.
 fn kinds() -> [Kind; 3] {
     let shows = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_none());
     let gathers = |method: &Method| method.light_pass.as_ref().is_some_and(|pass| pass.map.is_some());
@@ -82,7 +82,7 @@ fn a_smaller_error_can_be_asked_for_later() {
     let fine = fine.run(&|_| ());
     assert!(fine.report().samples > rough.image().report().samples);
     assert!(fine.film() == whole.run(&|_| ()).film(), "an error that is asked for later makes another film");
-    // And a render that may not take as many is good enough.
+    // A checkpoint with more samples than a render may take is good enough for it.
     let mut few = rendering(&scene, &asks(0.02, 64), 2);
     let mut more = rendering(&scene, &asks(1e-6, 128), 2);
     advance(&mut more, u64::MAX);
@@ -93,7 +93,7 @@ fn a_smaller_error_can_be_asked_for_later() {
     assert!(refused.contains("its stop rule is error or time, not samples alone"), "{refused}");
 }
 
-/// The square of the difference of two images, by the square of the second.
+/// Returns the squared difference of two images relative to the square of the second.
 fn relative_squares(pixels: &[[f32; 3]], truth: &[[f64; 3]]) -> f64 {
     let squares = |x: f64| x * x;
     let pairs = pixels.iter().flatten().zip(truth.iter().flatten());
@@ -101,14 +101,15 @@ fn relative_squares(pixels: &[[f32; 3]], truth: &[[f64; 3]]) -> f64 {
     apart / truth.iter().flatten().map(|&x| squares(x)).sum::<f64>()
 }
 
-/// A room by light vertices, which make noise that pixels share, under a lamp that few of its surfaces see.
+/// Returns a room for light vertices, which make noise that pixels share, under a lamp that few surfaces of the room
+/// see.
 fn small_room() -> Scene {
     let shaded = ROOM.replace("v = [0, 0, 0.4] }", "v = [0, 0, -0.4] }");
     scene(&shaded.replace("width = 21, height = 18", "width = 32, height = 32"))
 }
 
-/// The mean of long renders without replicates and light vertices, which images of so few samples do not have; and the
-/// square of its own noise, relative to its square.
+/// Returns the mean of long renders without replicates and without light vertices, which images with so few samples do
+/// not use. The second result is the square of the mean's own noise, relative to its square.
 fn truth(scene: &Scene) -> (Vec<[f64; 3]>, f64) {
     const RENDERS: u64 = 12;
     let one = |seed: u64| {
@@ -148,16 +149,17 @@ fn the_noise_that_is_told_is_the_noise_that_is_there_and_the_bound_holds() {
     let z = mean / (variance / RENDERS as f64).sqrt();
     let of_mean = found.iter().map(|[_, told, _]| told).sum::<f64>() / RENDERS as f64;
     assert!(z.abs() < 4.0 && mean.abs() < 0.25 * of_mean, "z = {z:.2}, {:.2} of the noise", mean / of_mean);
-    // 95 of 100; fewer than 34 of 40 by chance once in 300 times.
+    // The bound holds for 95 of 100. Fewer than 34 of 40 occur by chance once in 300 times.
     let kept = found.iter().filter(|[true_error, _, bound]| true_error <= bound).count();
     assert!(kept >= 34, "{kept} of {RENDERS}");
-    // A bound that is far too wide would hold as well.
+    // This rejects a bound that is far too wide, for which the test above would hold as well.
     let mut ratios: Vec<f64> = found.iter().map(|[true_error, _, bound]| (true_error / bound).sqrt()).collect();
     ratios.sort_by(f64::total_cmp);
     assert!(ratios[ratios.len() / 2] > 0.5, "median {:.2}", ratios[ratios.len() / 2]);
 }
 
-/// Where the model of color is exact, all of the error is left for noise; else no less than if it missed a third.
+/// If the model of color is exact, all of the error is left for noise. Otherwise, at least as much is left as if the
+/// model missed a third.
 #[test]
 fn what_the_model_of_color_does_not_miss_is_left_for_noise() {
     for (model, is_exact) in [("", true), (", model = { bands = 8 }", false)] {
@@ -170,8 +172,8 @@ fn what_the_model_of_color_does_not_miss_is_left_for_noise() {
     }
 }
 
-/// A lamp of a 256th of the pixel gives half of its light: 64 samples miss it in three of four renders, all replicates
-/// alike.
+/// A lamp that covers a 256th of the pixel gives half of its light. In three of four renders, 64 samples miss it, and
+/// all replicates are alike.
 #[test]
 fn an_image_of_one_pixel_does_not_end_before_a_small_lamp_is_found() {
     const RENDERS: u64 = 20;
@@ -186,13 +188,13 @@ fn an_image_of_one_pixel_does_not_end_before_a_small_lamp_is_found() {
         (f64::from(image.rgb()[0][1]) - 2.0).abs() / 2.0
     };
     let off: Vec<f64> = many(RENDERS, one);
-    // 95 of 100; more than 4 of 20 by chance once in 390 times.
+    // The error holds for 95 of 100. More than 4 of 20 occur by chance once in 390 times.
     assert!(off.iter().filter(|&&off| off > 0.1).count() <= 4, "{off:?}");
 }
 
-/// A shadow alone: the image is black, and all there is to see is alpha. A disc hides b^2 / (b^2 + k^2) of a lamp that
-/// sends a^2 / (a^2 + h^2), for radii and heights of the discs (Howell, Menguc, Daun & Siegel 2020, *Thermal Radiation
-/// Heat Transfer*, configuration factor of an element parallel to a disk).
+/// Nothing but a shadow: the image is black, and only alpha shows anything. A disc blocks b^2 / (b^2 + k^2) of a lamp
+/// that contributes a^2 / (a^2 + h^2), for radii and heights of the discs (Howell, Menguc, Daun & Siegel 2020, *Thermal
+/// Radiation Heat Transfer*, configuration factor of an element parallel to a disk).
 #[test]
 fn the_noise_of_alpha_under_a_shadow_catcher_is_the_noise_that_is_there_and_a_render_ends_by_it() {
     const RENDERS: u64 = 40;
@@ -257,7 +259,7 @@ fn a_file_says_what_is_known_of_its_error() {
 
 #[test]
 fn light_that_one_of_eight_renders_finds_alone_ends_no_render_by_a_smaller_error_and_is_told() {
-    // A glossy ball throws the light of a tiny lamp onto the floor, which is left to chance.
+    // A glossy ball throws the light of a tiny lamp onto the floor, where only random paths find it.
     let text = r#"
 render.caustics = "off"
 camera = { position = [0, 3, 5], look_at = [0, 0, 0], vertical_fov = 30 }
@@ -286,7 +288,7 @@ material = "lamp"
         let (image, error, samples) = asks(0.02);
         error.noise.outlier.map(|outlier| {
             let (noise, share) = (error.noise, outlier.share);
-            // What one replicate found alone may be missing almost five times elsewhere.
+            // Light that only one replicate found may be missing almost five times elsewhere.
             assert!(share > 0.1 && noise.at_most > 4.74 * share.sqrt() * noise.expected, "{error:?}");
             assert!(
                 !error.is_reached() && image.warnings().iter().any(|told| told.contains("no other did")),
@@ -297,7 +299,7 @@ material = "lamp"
             let light = error.rare_light.as_ref().expect("a sample met it");
             assert!(light.name.as_deref() == Some("object 3") && light.bounces > 0, "{light:?}");
             assert_eq!((error.stopped_by, samples), (Some(Stopped::Samples), 128 * 64 * 64));
-            // It is a bright one.
+            // The pixel is a bright one.
             let [x, y] = outlier.pixel.map(|place| place as u32);
             assert!(image.rgb_at(x, y)[0] > 1.3 * image.rgb_at((x + 8) % 64, y)[0], "{error:?}");
         })
@@ -307,7 +309,7 @@ material = "lamp"
     assert!(outliers.len() >= 4, "{} of 12 renders met it", outliers.len());
 }
 
-/// All light that the pixel shows is that of a speck; the catcher behind it, which is as bright, shows none.
+/// A speck gives all light that the pixel shows. The catcher behind it is as bright, but shows none.
 #[test]
 fn rare_light_is_told_beside_shadow_catchers_however_bright_they_are() {
     let scene = scene(
@@ -340,13 +342,13 @@ fn the_first_of_error_time_and_samples_ends_a_render() {
     let in_time = |millis: u64| Options { time: Some(Duration::from_millis(millis)), ..Options::default() };
     assert_eq!(ends(asks(0.9, 4096)), (Some(Stopped::Noise), 64));
     assert_eq!(ends(asks(1e-6, 100)), (Some(Stopped::Samples), 96));
-    // Eight samples there are in any case; of so few the error is not told.
+    // There are at least eight samples. With so few, the error is not reported.
     assert_eq!(ends(in_time(1)), (None, 8));
     let (by, samples) = ends(Options { samples: Some(64), ..in_time(3_600_000) });
     assert_eq!((by, samples), (Some(Stopped::Samples), 64));
     let (by, _) = ends(Options { error: Some(0.9), ..in_time(3_600_000) });
     assert_eq!(by, Some(Stopped::Noise));
-    // Fewer than 64 do not tell an error.
+    // Fewer than 64 samples give no error.
     assert_eq!(ends(asks(0.9, 40)), (None, 40));
 }
 
@@ -402,12 +404,12 @@ fn an_image_without_noise_has_none_and_its_halves_and_variance_are_of_replicates
                 variance += told;
             }
         }
-        // Over all pixels, halves and replicates tell the same.
+        // Over all pixels, halves and replicates give the same variance.
         assert!((apart / variance - 1.0).abs() < 0.35, "{apart} {variance}");
     }
 }
 
-/// The mean of a layer's red, green and blue, or of the image's.
+/// Returns the mean of the red, green and blue of a layer or of the image.
 fn mean(image: &Image, layer: &str) -> f64 {
     let channels = ["R", "G", "B"].map(|name| image.layer(&format!("{layer}{name}")).expect("it was asked for"));
     let values = channels.iter().flatten();
@@ -415,8 +417,8 @@ fn mean(image: &Image, layer: &str) -> f64 {
         / channels.map(|values| values.len()).iter().sum::<usize>() as f64
 }
 
-/// A look at an image in the making shows the light of photons as bright as it will be, also while they are sent, and
-/// while some replicates have more samples than others, or have none.
+/// An unfinished image shows the light of photons as bright as it will be, also while they are being sent, and while
+/// some replicates have more samples than others, or none.
 #[test]
 fn on_the_way_caustics_are_as_bright_as_in_the_end_and_so_are_halves_and_variance() {
     const PIXELS: u64 = 148 * 84;
@@ -485,7 +487,7 @@ fn parts_take_all_samples_and_say_so() {
     assert!(part.plan().because.iter().any(|line| line.starts_with("takes all 128 samples")));
 }
 
-/// Three numbers miss the color of a laser by far; noise is not all that counts.
+/// Three numbers miss the color of paint under a fluorescent lamp by more than the error. Noise is not all that counts.
 #[test]
 fn an_error_that_the_model_of_color_alone_exceeds_is_not_reached() {
     let text = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }\n\

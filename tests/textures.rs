@@ -1,4 +1,5 @@
-//! Images and checkerboards on surfaces: colors in every model, lamps that show them, the kinds of files, damaged ones.
+//! Images and checkerboards on surfaces: colors in every model, lamps that show images, the kinds of files, and damaged
+//! files.
 
 mod files;
 mod lamps;
@@ -20,12 +21,13 @@ use abbe::spectrum::{
     Texture,
 };
 
-/// The scene's image as the plan would make it.
+/// Renders the scene as its plan decides.
 fn film(scene: &Scene<Curve>) -> Film {
     film_of(scene, plan(scene).method)
 }
 
-/// Objects of every kind with coordinates, of a material `even`, under an even sky.
+/// Returns objects of every kind with texture coordinates, made of a material `even`, under a uniform sky and a point
+/// light.
 fn room(material: &str, model: &str) -> String {
     let shapes = [
         "plane = { point = [0, -1, 0], normal = [0, 1, 0] }",
@@ -68,7 +70,7 @@ fn an_even_gray_image_is_the_plain_reflectance_to_the_last_bit() {
     }
 }
 
-/// In the middle of a texel, an image of thicknesses is a film as thick as its gray and its scale say.
+/// In the middle of a texel, an image of thicknesses acts as a film whose thickness is given by its gray and its scale.
 #[test]
 fn a_film_is_as_thick_as_its_image_says() {
     let folder = tempfile::tempdir().unwrap();
@@ -108,7 +110,7 @@ fn a_film_is_as_thick_as_its_image_says() {
     }
 }
 
-/// Every kind of basis.
+/// Returns every kind of basis.
 fn bases() -> Vec<Basis> {
     let space = ColorSpace::Rec709;
     let light = |text: &str| Emission::new(&CurveKind::illuminant(text).unwrap().into(), space);
@@ -134,7 +136,7 @@ fn textured(width: usize, texels: &[[f32; 3]]) -> Curve {
 fn no_texel_makes_a_lane_gain_or_lose_more_light_than_there_is() {
     const COUNT: usize = 4000;
     let mut random = Random::new(7);
-    // Corners and edges of the cube of colors, where rounding could step beyond, and its inside.
+    // Corners and edges of the color cube, where rounding could step outside, and its inside.
     let mut number = || (1.4 * random.number() - 0.2).clamp(0.0, 1.0) as f32;
     let texels: Vec<[f32; 3]> = (0..COUNT).map(|_| [number(), number(), number()]).collect();
     let curve = textured(COUNT, &texels);
@@ -153,7 +155,7 @@ fn a_texel_under_white_light_has_its_own_color() {
     let texels =
         [[0.8, 0.8, 0.8], [0.7, 0.2, 0.1], [0.1, 0.6, 0.3], [0.05, 0.1, 0.9], [0.9, 0.8, 0.1], [0.3, 0.3, 0.0]];
     let curve = textured(texels.len(), &texels);
-    // What 16 and 32 wavelengths were measured to miss, doubled; of sums of fully saturated colors 16 miss 17e-3.
+    // Twice the measured error of 16 and 32 wavelengths. For sums of fully saturated colors, the error of 16 is 17e-3.
     let space = ColorSpace::Rec709;
     for (basis, tolerance) in
         [(Basis::rgb(space), 1e-6), (Basis::bands(space, 16, &[]), 3e-3), (Basis::bands(space, 32, &[]), 5e-4)]
@@ -188,7 +190,7 @@ fn images_are_colors_that_three_lanes_hold_and_a_measured_square_is_none() {
     assert_ne!(model("{ checker = [0.5, \"dark skin\"] }"), "rgb");
 }
 
-/// A square of a checkerboard is its curve, whatever that is: the image of a camera that sees one square alone.
+/// A square of a checkerboard looks like its own curve, of any kind, to a camera that sees only that square.
 #[test]
 fn squares_of_a_checkerboard_are_their_curves() {
     let folder = tempfile::tempdir().unwrap();

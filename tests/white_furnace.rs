@@ -1,5 +1,5 @@
-//! The white furnace: under a sky of 1, whatever reflects or lets through all light shows 1, at every roughness, index
-//! and angle. Prints a table of the least and the most that each material shows.
+//! The white furnace: under a sky of 1, whatever reflects or transmits all light shows 1, at every roughness, index and
+//! angle. Prints a table of the lowest and highest values of each material.
 //!
 //! ```text
 //! cargo test --release --test all white_furnace:: -- --nocapture
@@ -15,10 +15,10 @@ const INDICES: [f64; 5] = [1.1, 1.33, 1.52, 1.9, 2.5];
 const COSINES: [f64; 10] = [0.001, 0.01, 0.04, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 1.0];
 const DRAWS: u32 = 1 << 14;
 
-/// What a surface between two media shows of an even sky, whose radiance over n^2 is 1 everywhere; and, for glass, how
-/// far chance may put it off.
+/// Returns what a surface between two media shows of a uniform sky, where radiance over n^2 is 1 everywhere. The second
+/// result is, for glass, how far noise may move it.
 ///
-/// A rough boundary is drawn by more than the two numbers that are spread evenly: what is left to chance is told by its
+/// A rough boundary is sampled with more than the two evenly spread numbers. The noise of the others is judged by its
 /// spread.
 fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] {
     let draw = Draw::<4>::fixed(3);
@@ -27,7 +27,7 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], cos: f64) -> [f64; 2] 
     [shown, if material.lobes().intersects(Lobes::GLOSSY_TRANSMISSION) { 3.0 * error } else { 0.0 }]
 }
 
-/// A material of one roughness, the indices it is met between, and its name in the table.
+/// The name in the table, a material of one roughness, and the indices that it lies between.
 type Row = (String, String, Vec<[f64; 2]>);
 
 fn rows() -> Vec<Row> {

@@ -1,4 +1,4 @@
-//! Rooms behind windows: light that panes let straight on.
+//! Rooms behind windows: light that passes straight through panes.
 //!
 //! ```text
 //! cargo test --test all windows::

@@ -1,4 +1,4 @@
-//! What files say of the camera, and the flags that crop and add overscan.
+//! Camera metadata in files, and the flags for crop and overscan.
 
 use exr::image::{AnyChannels, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, EnvironmentMap, Text};
@@ -40,7 +40,7 @@ fn a_crop_is_the_data_window_of_the_full_display_window() {
         assert_eq!(image.layer_data.size, Vec2(4, 2));
         assert_eq!(image.layer_data.attributes.screen_window_width, 4.0);
         let picture = folder.read("image.png");
-        // The size of a PNG stands in its first chunk.
+        // A PNG stores its size in its first chunk.
         assert_eq!(picture[16..24], [0, 0, 0, 4, 0, 0, 0, 2]);
     }
 }
@@ -60,7 +60,7 @@ fn overscan_begins_before_the_display_window() {
         let image = written(&folder, scene, flags);
         assert_eq!(image.attributes.display_window, IntegerBounds::from_dimensions((8, 4)));
         assert_eq!((image.layer_data.attributes.layer_position, image.layer_data.size), (corner, size), "{flags:?}");
-        // The screen window is that of the display window.
+        // The screen window is the one of the display window.
         assert_eq!(image.layer_data.attributes.screen_window_width, 4.0);
         let picture = folder.read("image.png");
         assert_eq!(picture[16..24], [0, 0, 0, size.x() as u8, 0, 0, 0, size.y() as u8]);
@@ -107,7 +107,7 @@ fn a_crop_that_cannot_be_is_refused() {
 fn a_shift_moves_the_screen_window() {
     let folder = Folder::new();
     let image = written(&folder, &SCENE.replace("= 90", "= 90\nshift = [0.25, -0.5]"), &[]);
-    // A quarter and a half of the window's height, which is 2 at 90 degrees.
+    // The shifts are a quarter and a half of the window's height, which is 2 at 90 degrees.
     let attributes = image.layer_data.attributes;
     let near = |a: f32, b: f32| (a - b).abs() <= 1e-6;
     let Vec2(x, y) = attributes.screen_window_center;
@@ -129,7 +129,7 @@ fn files_say_how_the_world_was_projected() {
     assert_eq!(attributes.other.get(&Text::from("render/projection")).cloned(), text("equirectangular"));
     assert_eq!(attributes.environment_map, Some(EnvironmentMap::LatitudeLongitude));
     assert_eq!((attributes.screen_window_width, attributes.screen_window_center), (1.0, Vec2(0.0, 0.0)));
-    // Readers take the data window for the sphere, so a crop is no environment, and nor is overscan.
+    // Readers map the data window to the whole sphere, so an image with a crop or overscan is no environment map.
     for flags in [&["--crop", "0,0,2,2"][..], &["--overscan", "1"], &["--overscan", "1", "--crop", "-1,0,8,4"]] {
         assert_eq!(written(&folder, &full, flags).layer_data.attributes.environment_map, None);
     }
@@ -175,7 +175,7 @@ fn files_say_the_lens_in_meters_and_millimeters() {
     };
     assert_eq!(said(SCENE), (None, [None; 2], None, None, None));
 
-    // 90 degrees high, twice as wide as high: half of the height from the middle.
+    // A view of 90 degrees: the focal length is half the height of the sensor, which is half as high as wide.
     let sensor = SCENE.replace("= 90", "= 90\nsensor_width = 36\nnear = 0.5");
     let millimeters = Some(AttributeValue::FloatVec2(Vec2(36.0, 18.0)));
     assert_eq!(said(&sensor), (millimeters.clone(), [Some(9.0), None], None, None, Some(0.5)));

@@ -1,4 +1,4 @@
-//! What lens, filters and crop do to an image.
+//! How the lens, filters and crop affect an image.
 
 use abbe::film::Film;
 use abbe::plan::plan;
@@ -14,7 +14,7 @@ fn view(camera: &str, film: &str, samples: u32) -> String {
 
 const LAMP: &str = "[material.lamp]\nemissive = { radiance = 1 }\n";
 
-/// Variance of an image along x and y about its mean, in pixels.
+/// Returns the variances of an image along x and y about its mean, in pixels.
 fn variances(film: &Film) -> [f64; 2] {
     let (mut sum, mut first, mut second) = (0.0, [0.0; 2], [0.0; 2]);
     for y in 0..film.height {
@@ -34,9 +34,9 @@ fn variances(film: &Film) -> [f64; 2] {
 fn a_point_out_of_focus_becomes_a_disc_of_the_size_that_the_thin_lens_gives() {
     let (radius, depth, spot, side) = (0.2, 4.0_f64, 0.04, 60);
     for (focus, written) in [(2.0, "2"), (f64::INFINITY, "inf"), (40.0, "40")] {
-        // Light of depth d through the lens point l falls on l (1/F - 1/d) in the plane one unit ahead.
+        // Light from depth d through the lens point l meets the plane one unit ahead at l (1/F - 1/d).
         let blur: f64 = 2.0 * radius * (1.0 / focus - 1.0 / depth).abs();
-        // The image is three times as wide as the blur is in radius.
+        // The image is as wide as three radii of the blur disc.
         let fov = 2.0 * libm::atan(0.75 * blur).to_degrees();
         let lens = format!("vertical_fov = {fov:?}\nlens = {{ radius = {radius}, focus_distance = {written} }}");
         let lamp = format!(
@@ -46,8 +46,8 @@ fn a_point_out_of_focus_becomes_a_disc_of_the_size_that_the_thin_lens_gives() {
         let (film, _) = image(&(view(&lens, &format!("width = {side}\nheight = {side}"), 768) + &lamp), SPLITTING);
         let pixel = 1.5 * blur / f64::from(side);
         for variance in variances(&film) {
-            // A disc of diameter D has the variance D^2 / 16; so has the lamp, and a pixel of side h has h^2 / 12
-            // (Sheppard).
+            // A disc of diameter D has the variance D^2 / 16. The lamp is such a disc, too. A pixel of side h adds h^2
+            // / 12 (Sheppard).
             let lamp = (spot / depth) * (spot / depth) / 4.0;
             let found = 4.0 * (variance * pixel * pixel - lamp - pixel * pixel / 12.0).sqrt();
             println!(
@@ -76,7 +76,7 @@ fn what_lies_in_the_plane_in_focus_is_as_sharp_as_through_a_pinhole() {
 
 #[test]
 fn rays_that_start_inside_of_a_body_know_it() {
-    // The view's plane cuts an absorbing ball that bends nothing; the camera's own position lies beside it.
+    // The plane of the view cuts an absorbing ball of index 1. The camera's own position lies beside it.
     let ball = "[material.fog]\ndielectric = { index = 1, absorption = 0.7 }\n[[object]]\n\
                 shape.sphere = { center = [1.5, 0, 0], radius = 1 }\nmaterial = \"fog\"\n";
     let camera = "projection = \"orthographic\"\nheight = 2";
@@ -95,8 +95,8 @@ fn rays_that_start_inside_of_a_body_know_it() {
 
 #[test]
 fn a_lens_that_dips_into_a_body_starts_its_rays_on_either_side() {
-    // A box of fog that reaches 6 ahead of the lens begins beside its middle; focused at infinity, the rays of the
-    // middle pixel run straight.
+    // A box of fog starts beside the center of the lens and extends 6 units ahead of it. With the focus at infinity,
+    // the rays of the middle pixel are parallel.
     for begin in [0.1_f64, -0.1] {
         let fog = format!(
             "[material.fog]\ndielectric = {{ index = 1, absorption = 0.5 }}\n[[object]]\n\
@@ -107,12 +107,12 @@ fn a_lens_that_dips_into_a_body_starts_its_rays_on_either_side() {
         let film = "width = 1\nheight = 1\nfilter = \"center\"";
         let (film, report) = image(&(view(camera, film, 4096) + &fog + &environment(1.0)), SPLITTING);
         assert_eq!(report.unmatched, 0);
-        // The share of a disk beyond a chord.
+        // The fraction of a disk beyond a chord.
         let chord = begin / 0.5;
         let share = (libm::acos(chord) - chord * (1.0 - chord * chord).sqrt()) / std::f64::consts::PI;
         let expected = 1.0 - share + share * libm::exp(-0.5 * 6.0);
         let found = f64::from(film.at(0, 0).rgb[1]);
-        // 4096 points of a (0, 2)-sequence: a cut through the disk is right to about 64 of them.
+        // 4096 points of a (0, 2)-sequence: the fraction beyond a cut through the disk is accurate to about 64 points.
         assert!((found - expected).abs() <= 64.0 / 4096.0, "{found} for {expected}");
     }
 }
@@ -130,7 +130,8 @@ fn no_filter_changes_the_mean_of_an_even_image() {
 
 #[test]
 fn an_edge_through_a_wide_filter_is_the_integral_of_the_filter() {
-    // The edge x = 0 through the middle of an odd image: pixel k sees the share of a tent beyond k.
+    // The edge x = 0 lies in the middle of an image with an odd number of pixels: pixel k sees the part of a tent
+    // beyond k.
     let wall = format!(
         "{LAMP}[[object]]\nshape.quad = {{ center = [50, 0, -1], u = [50, 0, 0], v = [0, 50, 0] }}\nmaterial = \"lamp\"\n"
     );
@@ -138,7 +139,7 @@ fn an_edge_through_a_wide_filter_is_the_integral_of_the_filter() {
     let (film, _) = image(&(view("vertical_fov = 10", film, 4096) + &wall), SPLITTING);
     for (k, expected) in [0.0, 0.0, 0.125, 0.5, 0.875, 1.0, 1.0].into_iter().enumerate() {
         let found = f64::from(film.at(k as u32, 0).rgb[1]);
-        // Strata of 1 / 4096 on the axis.
+        // The strata along the axis have a size of 1 / 4096.
         assert!((found - expected).abs() <= 2.0 / 4096.0, "pixel {k}: {found} for {expected}");
     }
 }

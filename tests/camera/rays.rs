@@ -1,4 +1,4 @@
-//! Camera rays against closed forms.
+//! Camera rays compared with closed forms.
 
 use std::f64::consts::{PI, TAU};
 
@@ -17,7 +17,7 @@ fn camera(target: DVec3, projection: Projection) -> Camera {
 
 const POSITION: DVec3 = DVec3::new(0.3, -0.2, 0.5);
 
-/// A point of the film and one of the unit square.
+/// Draws a point of the film and a point of the unit square.
 fn anywhere(random: &mut Random) -> (DVec2, [f64; 2]) {
     let [x, y] = random.pair();
     (DVec2::new(x * f64::from(SIZE[0]), y * f64::from(SIZE[1])), random.pair())
@@ -83,7 +83,7 @@ fn orthographic_rays_are_parallel_and_a_pixel_apart() {
     for (x, y) in [(0.0, 0.0), (30.0, 20.0), (7.5, 31.0), (60.0, 40.0)] {
         let ray = camera.ray(DVec2::new(x, y));
         assert_eq!(ray.direction, DVec3::NEG_Z);
-        // A pixel is a tenth of a unit; the view's middle lies a quarter of 4 to the right and half of 4 up.
+        // A pixel is a tenth of a unit. The center of the view is shifted right by a quarter of 4 and up by half of 4.
         let expected = POSITION + DVec3::new((x - 30.0) * 0.1 + 1.0, (20.0 - y) * 0.1 + 2.0, -2.0);
         assert!((ray.origin - expected).length() <= 1e-14, "{x}, {y}: {} for {expected}", ray.origin);
         assert!((camera.depth(ray.at(3.0)) - 5.0).abs() <= 1e-14);
@@ -95,7 +95,7 @@ fn orthographic_rays_are_parallel_and_a_pixel_apart() {
 #[test]
 fn equirectangular_rays_follow_longitude_and_latitude() {
     let camera = camera(DVec3::Z, Projection::Equirectangular);
-    // OpenEXR, ImfEnvmap.h: +z in the middle, +x where the longitude is a quarter turn, +y at the top.
+    // OpenEXR, ImfEnvmap.h: +z in the middle, +x at a longitude of a quarter turn, +y at the top.
     for (film, expected) in [
         ([30.0, 20.0], DVec3::Z),
         ([15.0, 20.0], DVec3::X),
@@ -124,7 +124,7 @@ fn equirectangular_rays_follow_longitude_and_latitude() {
 fn a_shift_keeps_verticals_parallel() {
     let camera = camera(DVec3::new(1.0, 0.0, -2.0), PERSPECTIVE).shifted([0.3, 0.8]);
     for x in [0.0, 13.0, 60.0] {
-        // The rays of a column lie in one plane that holds the vertical through the camera.
+        // The rays of a column lie in one plane, which contains the vertical through the camera.
         let heading = |y: f64| {
             let direction = camera.ray(DVec2::new(x, y)).direction;
             direction.x / direction.z
@@ -143,7 +143,7 @@ fn a_shift_shows_a_part_of_a_larger_image() {
     let whole = Camera::new(POSITION, POSITION + DVec3::NEG_Z, DVec3::Y, whole, [60, 80]).0;
     let mut random = Random::new(5);
     for _ in 0..1000 {
-        // Half an image up: the upper half of an image of twice the height.
+        // A shift by half an image upward shows the upper half of an image of twice the height.
         let (film, _) = anywhere(&mut random);
         assert!((part.ray(film).direction - whole.ray(film).direction).length() <= 1e-14);
     }

@@ -1,4 +1,5 @@
-//! Where points are seen is where the camera's rays go, and areas fill as many pixels as it says.
+//! The camera projects points to the film where its own rays start, and its importance matches the projected area in
+//! pixels.
 
 use abbe::film::Filter;
 use abbe::math::{DVec2, DVec3};
@@ -37,7 +38,8 @@ fn a_point_is_seen_where_its_ray_comes_from() {
             let ray = camera.lens_ray(film, u);
             let distance = random.between(0.1, 9.0);
             let seen = camera.see(ray.at(distance), u).unwrap_or_else(|| panic!("camera {number}: {film} is not seen"));
-            // Rounding is some 1e-16 of 10 units, times 64 pixels over the least distance and near the poles once more.
+            // Rounding errors are about 1e-16 of 10 units, times 64 pixels over the smallest distance. They grow once
+            // more near the poles.
             assert!((seen.film - film).length() < 1e-9, "camera {number}: {} for {film}", seen.film);
             assert!((seen.direction + ray.direction).length() < 1e-12, "camera {number}: {}", seen.direction);
             assert!((seen.start - ray.origin).length() < 1e-12, "camera {number}: {}", seen.start);
@@ -99,7 +101,7 @@ fn a_small_area_that_faces_the_camera_fills_as_many_pixels_as_its_importance_say
                 (at(STEP) - at(-STEP)) / (2.0 * STEP)
             };
             let pixels = moved(DVec3::X).perp_dot(moved(DVec3::Y)).abs();
-            // Central differences err by the square of the step.
+            // The error of central differences is quadratic in the step.
             assert!((seen.importance / pixels - 1.0).abs() < 1e-6, "camera {number}: {} for {pixels}", seen.importance);
         }
     }
@@ -129,7 +131,8 @@ fn filters_have_the_density_of_their_samples() {
     ];
     for filter in filters {
         let reach = filter.reach();
-        // Means of waves over the samples, and over the density on a grid of midpoints, which errs by about one step.
+        // Means of waves over the samples, and over the density on a grid of midpoints, whose error is about one grid
+        // step.
         const SIDE: u32 = 1000;
         let at = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE);
         let grid = || (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| [at(i), at(j)]));

@@ -1,4 +1,5 @@
-//! The same image with the light pass and without it, where lamps are large enough to be met by chance.
+//! The light pass changes no image. Each image is rendered with it and without it, under lamps large enough for random
+//! paths to hit.
 
 use abbe::film::Film;
 use abbe::plan::plan;
@@ -9,12 +10,12 @@ use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 use crate::support::larger::larger;
 use crate::support::scenes::{SPLITTING, films_of, moments, object, scene, standard_errors};
 
-/// Pixels along each side of the images, and blocks that are compared.
+/// Pixels along each side of the images, and blocks along each side that are compared.
 const SIDE: usize = 24;
 const BLOCKS: usize = 4;
 const SEEDS: u64 = 16;
 
-/// Camera and film; `film` may add a filter.
+/// Returns the camera and the film. `film` may add a filter.
 pub fn seen_by(camera: &str, film: &str) -> String {
     format!("[camera]\n{camera}\n[film]\nwidth = {SIDE}\nheight = {SIDE}\n{film}\n")
 }
@@ -28,14 +29,14 @@ pub fn glass(text: &str) -> String {
     format!("[material.glass]\ndielectric = {{ {text} }}\n")
 }
 
-/// A scene with the method that is planned for it.
+/// Compiles a scene and returns it with the method that is planned for it.
 pub fn with_method(text: &str) -> (Scene<Curve>, Method) {
     let scene = scene(text);
     let method = plan(&scene).method;
     (scene, method)
 }
 
-/// The image by some seeds, with the light pass, which may have a map, or without it.
+/// Renders with several seeds, either with the light pass, which may have a map, or without it.
 fn films(
     (scene, method): &(Scene<Curve>, Method),
     pass: bool,
@@ -44,7 +45,7 @@ fn films(
     seeds: u64,
 ) -> Vec<Film> {
     let lights = (0..scene.lights.len()).collect();
-    // Bounces are aimed at openings through which photons are sent.
+    // Photons are sent through the same openings that bounces are aimed at.
     let openings = method.bright.as_ref().map_or(Vec::new(), |bright| bright.openings().openings);
     let photons = u64::from(samples) * (SIDE * SIDE) as u64;
     let to = Smoothness::ALL.to_vec();
@@ -53,7 +54,7 @@ fn films(
     films_of(scene, &asked, 0..seeds)
 }
 
-/// Mean and variance of the mean of every block and band.
+/// Returns the mean of every block and band, with the variance of that mean.
 pub fn blocks(planned: &(Scene<Curve>, Method), pass: bool, map: Option<MapPasses>, samples: u32) -> Vec<(f64, f64)> {
     let films = films(planned, pass, map, samples, SEEDS);
     let mut found = Vec::new();
@@ -70,23 +71,23 @@ pub fn blocks(planned: &(Scene<Curve>, Method), pass: bool, map: Option<MapPasse
     found
 }
 
-/// Compares all blocks of as many samples with the light pass as without it.
+/// Compares all blocks with the light pass and without it, at the same number of samples.
 pub fn agree(what: &str, text: &str, samples: u32) {
     agree_with(what, text, [samples; 2], None);
 }
 
-/// Compares all blocks of some samples with the light pass, which may have a map, and of others without it: more of the
-/// noisier, so that the difference is told best in the least time.
+/// Compares all blocks with the light pass, which may have a map, and without it. The two numbers of samples differ:
+/// the noisier side takes more, which resolves the difference best in the least time.
 pub fn agree_with(what: &str, text: &str, samples: [u32; 2], map: Option<MapPasses>) {
     agree_of(what, &with_method(text), samples, map);
 }
 
-/// The same of a scene by a method.
+/// Compares all blocks of a scene under a given method with the light pass and without it.
 pub fn agree_of(what: &str, planned: &(Scene<Curve>, Method), samples: [u32; 2], map: Option<MapPasses>) {
     let with = blocks(planned, true, map, samples[0]);
     let without = blocks(planned, false, None, samples[1]);
-    // Means of 16 films have the tails of Student's t with 30 degrees of freedom: 1.25 times those of the normal one so
-    // far out.
+    // Means of 16 films have the tails of Student's t with 30 degrees of freedom. So far out they are 1.25 times as
+    // wide as those of the normal distribution.
     let limit = 1.25 * standard_errors(with.len());
     let (mut worst, mut squares, mut quieter) = (0.0_f64, 0.0, 0);
     for (a, b) in with.iter().zip(&without) {
@@ -108,13 +109,13 @@ pub fn agree_of(what: &str, planned: &(Scene<Curve>, Method), samples: [u32; 2],
         sums[1] / with.len() as f64
     );
     assert!(worst < limit, "{what}: {worst} standard errors apart");
-    // Bands of a block move together, so the sum of all has a few times the error of independent ones.
+    // The bands of a block are correlated, so the sum of all blocks has a few times the error of independent ones.
     assert!(whole.abs() < 3.0 * 3.0_f64.sqrt(), "{what}: the whole is {whole} standard errors apart");
     let [shown, hidden] = [true, false].map(|pass| films(planned, pass, map.filter(|_| pass), samples[0], 1));
     assert!(shown[0].pixels != hidden[0].pixels, "{what}: the light pass did nothing");
 }
 
-/// Of what balls throw, the light pass has a tenth of the variance or less.
+/// Numbers of samples for the caustics of balls, where the light pass has a tenth of the variance or less.
 const BALL_SAMPLES: [u32; 2] = [4, 20];
 
 pub const BALL: &str = "sphere = { center = [0, 1.5, 0], radius = 1 }";
@@ -138,7 +139,7 @@ fn a_glass_ball_under_a_round_lamp() {
     agree_with("ball", &text, BALL_SAMPLES, None);
 }
 
-/// Squares of three brightnesses on lamps of every kind, each in a room of its own.
+/// Squares of three brightnesses on lamps of every kind, each in a scene of its own.
 #[test]
 fn a_glass_ball_under_lamps_that_show_patterns() {
     let shown =
@@ -163,12 +164,12 @@ fn a_glass_ball_under_lamps_that_show_patterns() {
         let text = seen_by(ABOVE, "") + FLOOR + shown + &glass("index = 1.5") + &object("glass", BALL) + lamp;
         agree_with(&format!("ball under pattern {number}"), &text, BALL_SAMPLES, None);
     }
-    // Instances of a lamp that is bright everywhere.
+    // Instances of a lamp with uniform radiance.
     let text = seen_by(ABOVE, "") + FLOOR + LAMP + &glass("index = 1.5") + &object("glass", BALL) + &lamps[6];
     agree_with("ball under two of a kind", &text, BALL_SAMPLES, None);
 }
 
-/// A sky of three bright places and a dim rest, which photons and the camera's rays share.
+/// A sky of three bright places and a dim rest, which photons and camera paths share.
 #[test]
 fn l11_a_glass_ball_under_an_image_of_the_sky_with_lamps_in_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -237,7 +238,7 @@ fn absorbing_water_in_a_glass_with_a_lamp_in_the_sky() {
     agree("water", &text, 16);
 }
 
-/// A plane without end lets some of the sun through to a ball below it; another ball is above it.
+/// An infinite plane transmits some of the sunlight to a ball below it. Another ball is above it.
 #[test]
 fn balls_in_the_sun_below_a_plane_with_holes_and_one_above_it() {
     let over = |material: &str| {

@@ -1,4 +1,4 @@
-//! Photons that are shown where shading normals bend for the viewer: they bring the light that comes straight.
+//! Photons that are splatted where shading normals are bent: they contribute the same as direct light.
 
 use abbe::math::DVec3;
 use abbe::trace::{LightPass, Method, Polarizing, Smoothness, prepare, render};
@@ -6,19 +6,19 @@ use abbe::trace::{LightPass, Method, Polarizing, Smoothness, prepare, render};
 use crate::polarization::stokes_vectors;
 use crate::support::scenes::{SPLITTING, assert_near, body, method, quad, scene};
 
-/// A triangle of some material by a tilted normal, whose S0 to S3 a camera sees.
+/// A triangle of some material with a tilted normal, whose S0 to S3 a camera sees.
 struct Seen {
     camera: String,
     material: &'static str,
 }
 
-/// From where light comes to the triangle, and the tables of what it passes before.
+/// The direction from which light reaches the triangle, and the tables of what it passes on the way.
 struct Beam {
     toward: DVec3,
     sheets: String,
 }
 
-/// A square of half sides across a direction.
+/// Returns a square perpendicular to a direction, with sides of twice `half`.
 fn across(center: DVec3, direction: DVec3, half: f64) -> String {
     let u = direction.cross(DVec3::Z).normalize();
     quad(center, u * half, direction.cross(u) * half)
@@ -29,14 +29,16 @@ fn sun(toward: DVec3) -> String {
     format!("[[light]]\nsun = {{ toward = [{x:?}, {y:?}, {z:?}], angular_diameter = 0, irradiance = 1 }}\n")
 }
 
-/// A sun whose light a perfect mirror sends on from a direction. It is below the triangle.
+/// Returns a perfect mirror and a sun whose light it sends to the triangle from the direction `toward`. The sun is
+/// below the triangle.
 fn mirrored(toward: DVec3) -> String {
     let below = DVec3::new(-toward.y, toward.x, -0.5).normalize();
     body("mirror", "mirror = {}", &[&across(toward * 2.0, (below - toward).normalize(), 0.6)]) + &sun(below)
 }
 
 impl Seen {
-    /// Over what S0 would be were the light taken for unpolarized: all photons bring the same.
+    /// Returns the Stokes vector relative to the S0 of the same render with light treated as unpolarized. All photons
+    /// carry the same flux.
     fn stokes(&self, rest: &str, light_pass: Option<&LightPass>) -> [f64; 4] {
         let Self { camera, material } = self;
         let tilt = DVec3::new(0.4_f64.sin() * 0.8, 0.4_f64.sin() * 0.6, 0.4_f64.cos());
@@ -71,7 +73,7 @@ impl Seen {
     }
 }
 
-/// What polarization makes of photons that a mirror sends to a rough surface is what it makes of a sun there.
+/// Photons that a mirror sends to a rough surface are polarized there in the same way as the light of a sun.
 #[test]
 fn photons_on_bent_normals_are_polarized_as_a_sun_is() {
     let above = "position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 0.4";
@@ -101,7 +103,7 @@ fn photons_on_bent_normals_are_polarized_as_a_sun_is() {
     }
 }
 
-/// A floor between a board and a wall of rough metal whose normals are bent, and a lamp before it.
+/// Returns a floor between a board and a wall of rough metal with bent normals, and a lamp in front of the wall.
 fn beside_a_bent_wall() -> String {
     let wall = "mesh = { points = [[0, -2, 0], [0, 2, 0], [0, 2, 2], [0, -2, 2]], faces = [[0, 1, 2], [0, 2, 3]], \
                 normals = [[0.4, -0.7, -0.5], [0.4, 0.7, -0.5], [0.4, 0.7, 0.5], [0.4, -0.7, 0.5]] }";
@@ -120,7 +122,7 @@ fn beside_a_bent_wall() -> String {
         + &body("lamp", "emissive = { radiance = 10 }", &["sphere = { center = [0.3, 0, 1], radius = 0.1 }"])
 }
 
-/// The wall polarizes unpolarized light, which diffuse surfaces do not mind.
+/// The wall polarizes unpolarized light, to which diffuse surfaces are insensitive.
 #[test]
 fn light_paths_over_bent_normals_are_as_bright_as_without_polarization() {
     let scene = scene(&beside_a_bent_wall());

@@ -1,4 +1,4 @@
-//! How far gathered photons blur, as a render with a stop rule tells it, beside how far they do.
+//! The blur of gathered photons: the estimate of a render with a stop rule is compared with the actual blur.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use crate::support::scenes::{SPLITTING, moments, object};
 /// Pixels along each side of the images.
 const SIDE: usize = 24;
 
-/// A floor below a point that is 1 away, seen through a plate that bends no light.
+/// Returns a floor below a point light that is 1 away, seen through a plate that refracts no light.
 fn point_behind_a_plate() -> String {
     seen_by(
         "position = [0, 3, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\nprojection = \"orthographic\"\nheight = 1.5",
@@ -25,13 +25,14 @@ fn point_behind_a_plate() -> String {
         + "[[light]]\npoint = { position = [0, 1, 0], intensity = 3 }\n"
 }
 
-/// What the floor of it sends to the camera beside the point below the lamp, without blur.
+/// Returns the exact radiance toward the camera of the floor in [`point_behind_a_plate`], at an offset from the point
+/// below the light.
 fn radiance(x: f64, y: f64) -> f64 {
     let squared = 1.0 + x * x + y * y;
     3.0 * 0.8 / PI / (squared * squared.sqrt())
 }
 
-/// The same within a kernel of Epanechnikov around the point, less what is at its middle.
+/// Returns how much an Epanechnikov kernel around a point changes [`radiance`] there.
 fn moved(x: f64, y: f64, radius: f64) -> f64 {
     const STEPS: u32 = 32;
     let middle = |step: u32| (f64::from(step) + 0.5) / f64::from(STEPS);
@@ -44,7 +45,7 @@ fn moved(x: f64, y: f64, radius: f64) -> f64 {
     sum / f64::from(STEPS * STEPS) - radiance(x, y)
 }
 
-/// Renders of eight replicates, with a map of so many photons for each of their passes and a radius in pixels.
+/// Renders with eight replicates. `map` gives the number of photons for each of their passes and a radius in pixels.
 fn renders(text: &str, map: MapPasses, samples: u32, stop: &Stop, count: u64) -> Vec<(Film, Report)> {
     let (scene, method) = with_method(text);
     let light_pass = Some(LightPass {
@@ -65,15 +66,16 @@ fn all_of(most: u32) -> Stop {
     Stop { noise: None, time: None, least: 64, most }
 }
 
-/// Mean and standard error.
+/// Returns the mean and its standard error.
 fn mean(values: &[f64]) -> [f64; 2] {
     let (mean, variance) = moments(values.iter().copied());
     [mean, (variance / values.len() as f64).sqrt()]
 }
 
-/// The mean of a function of a place over a pixel of that width around it.
+/// Returns the mean of a function over a pixel of the given width around a place.
 fn over_pixel([x, y]: [f64; 2], width: f64, value: &dyn Fn(f64, f64) -> f64) -> f64 {
-    // Gauss's two points are exact for the cubes that pixels see of such slow functions.
+    // Gauss's two points are exact for cubic polynomials, and a pixel sees little more of such slowly varying
+    // functions.
     let aside = 0.5 * width / 3.0_f64.sqrt();
     let corners = [[-aside, -aside], [aside, -aside], [-aside, aside], [aside, aside]];
     corners.iter().map(|[a, b]| value(x + a, y + b)).sum::<f64>() / 4.0
@@ -97,12 +99,12 @@ fn the_blur_that_is_told_is_that_of_a_closed_form_and_grows_with_the_area() {
         let [told, error] = mean(&squares);
         let twice = pixels_of(&|x, y| 2.0 * (moved(x, y, radius) - moved(x, y, half)));
         let blurs = pixels_of(&|x, y| moved(x, y, radius));
-        // Relative to the image as it is.
+        // Relative to the blurred image.
         let blurred: Vec<f64> = sharp.iter().zip(&blurs).map(|(sharp, blur)| sharp + blur).collect();
         let asked = square(&twice) / square(&blurred);
         println!("{pixels} pixels: {told:.4e} +- {error:.1e}, closed form {asked:.4e}");
         assert!((told - asked).abs() < 4.5 * error, "{pixels} pixels: {told} for {asked}, error {error}");
-        // The image is moved by the blur of its whole kernel.
+        // The image is changed by the blur of the whole kernel.
         let part = |(film, _): &(Film, Report)| {
             let pixels = film.pixels.iter().zip(&sharp).zip(&blurs);
             pixels.map(|((pixel, sharp), blur)| (f64::from(pixel.rgb[1]) - sharp) * blur).sum::<f64>() / square(&blurs)
@@ -112,7 +114,7 @@ fn the_blur_that_is_told_is_that_of_a_closed_form_and_grows_with_the_area() {
         assert!((part - 1.0).abs() < 4.5 * error, "{part} of the blur is there, error {error}");
         told_of.push(told);
     }
-    // Four times the area, so four times the blur, but for higher orders.
+    // Four times the area means four times the blur, up to higher orders.
     let ratio = (told_of[1] / told_of[0]).sqrt();
     assert!(ratio > 3.5 && ratio < 4.5, "{ratio}");
 }
@@ -121,8 +123,8 @@ fn blur(report: &Report) -> Estimate {
     report.blur.expect("there are replicates")
 }
 
-/// Of renders of the same seeds, by which blurs they are apart, and the square of their mean with its standard error:
-/// the mean of products of two renders, whose noise has nothing in common.
+/// Returns the mean square of the blurs by which renders of the same seeds differ, with its standard error. It is the
+/// mean of products of two renders with independent noise.
 fn square_apart(found: &[(Film, Report)], sharp: &[(Film, Report)]) -> [f64; 2] {
     let colors = |film: &Film| -> Vec<f64> { film.pixels.iter().flat_map(|pixel| pixel.rgb).map(f64::from).collect() };
     let apart = |i: usize| {
@@ -137,7 +139,7 @@ fn square_apart(found: &[(Film, Report)], sharp: &[(Film, Report)]) -> [f64; 2] 
         others.sum::<f64>() / (found.len() - 1) as f64 / mean(&signals)[0]
     };
     let [square, error] = mean(&(0..apart.len()).map(with_others).collect::<Vec<f64>>());
-    // Every product is in two of them.
+    // Every product appears in two of the values.
     [square, 2.0 * error]
 }
 
@@ -150,10 +152,10 @@ fn the_blur_that_is_told_of_a_caustic_is_that_beside_a_kernel_that_hardly_blurs(
     let [told, of_told] = mean(&squares);
     let error = 4.5 * of_there.hypot(of_told);
     println!("{there:.3e} +- {of_there:.1e} there, {told:.3e} +- {of_told:.1e} told");
-    // Edges and folds are blurred by more than what is told, by at most 1.93 of its square.
+    // At edges and folds the true blur exceeds the estimate, by a factor of at most 1.93 in its square.
     assert!(there > told - error && there < 1.93 * told + error, "{there} for {told}, {error}");
     assert!(of_there < 0.2 * there && of_told < 0.1 * told, "{of_there} and {of_told} tell too little");
-    // 95 of 100; fewer than 13 of 16 by chance once in 140 times.
+    // The bound holds for 95 of 100. Fewer than 13 of 16 occur by chance once in 140 times.
     let kept = found.iter().filter(|(_, report)| there.sqrt() <= blur(report).at_most).count();
     assert!(kept >= 13, "{kept} of 16");
 }

@@ -1,4 +1,5 @@
-//! Caustics of surfaces that are smooth only in part: what a clear coat mirrors, or a mix of paint and mirror.
+//! Caustics of surfaces that are only partly smooth: the mirror reflection of a clear coat, or a mix of paint and
+//! mirror.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -15,10 +16,10 @@ const VARNISH: &str = "[material.varnish]\nplastic = { reflectance = { rgb = [0.
 const MIX: &str = "[material.paint]\ndiffuse = { reflectance = 0.5 }\n[material.mirror]\nmirror = { reflectance = 0.9 }\n\
                    [material.mixed]\nmix = { materials = [\"paint\", \"mirror\"], amount = 0.5 }\n";
 
-/// Renders of what has a closed form.
+/// Number of renders that are compared with a closed form.
 const SEEDS: u64 = 64;
 
-/// Reflectance of unpolarized light at a clear surface (Born & Wolf, *Principles of Optics*, 1.5.2).
+/// Returns the reflectance of a clear surface for unpolarized light (Born & Wolf, *Principles of Optics*, 1.5.2).
 fn fresnel(cos: f64, index: f64) -> f64 {
     let refracted = (1.0 - (1.0 - cos * cos) / (index * index)).sqrt();
     let s = (cos - index * refracted) / (cos + index * refracted);
@@ -26,8 +27,8 @@ fn fresnel(cos: f64, index: f64) -> f64 {
     0.5 * (s * s + p * p)
 }
 
-/// A varnished floor mirrors a spot that shines at it alone: where that image of the spot lights a small disc above the
-/// floor, its intensity is F times as large, and it lies as far below the floor as the spot above.
+/// A varnished floor mirrors a spotlight that shines only at the floor. The mirror image lies as far below the floor as
+/// the spot is above it, with its intensity scaled by F. It lights a small disc above the floor.
 #[test]
 fn what_a_varnished_floor_mirrors_of_a_spot_has_its_closed_form() {
     for (index, aside) in [(1.5, 1.0), (1.8, 6.0)] {
@@ -88,7 +89,7 @@ fn a_varnished_ball_and_a_mixed_one_under_a_lamp() {
     }
 }
 
-/// Each mirrors the lamp onto all others, and what the glass throws lands on varnish.
+/// Each body mirrors the lamp onto all the others, and the caustic of the glass lands on varnish.
 #[test]
 fn a_glass_ball_and_a_cube_of_varnish_on_varnish_without_end() {
     let text = seen_by(ABOVE, "")
@@ -130,7 +131,8 @@ fn what_varnish_throws_is_seen_in_a_mirror() {
     agree_with("in a mirror", &text, [64; 2], Some(NARROW));
 }
 
-/// Where light is left to chance that varnish throws, photons still bring all that glass does, by way of varnish too.
+/// Where the caustics of varnish are left to random paths, photons still contribute all caustics of glass, also those
+/// that varnish reflects.
 #[test]
 fn photons_to_glass_alone_leave_varnish_to_chance() {
     let text = seen_by(ABOVE, "")

@@ -1,4 +1,4 @@
-//! Caustics that end where surfaces end, meet or are laid in pieces.
+//! Caustics at places where surfaces end, meet or are made of pieces.
 
 use abbe::film::Window;
 use abbe::plan::plan;
@@ -7,10 +7,10 @@ use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 use super::agreement::{blocks, seen_by, with_method};
 use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene, standard_errors};
 
-/// What a mirror before the camera shows, which looks the other way.
+/// A camera that looks the other way and sees the scene in a mirror in front of it.
 const VIEW: &str = "position = [0, 6, 6]\nlook_at = [0, 6, 5]\nvertical_fov = 25";
 const WINDOW: &str = "quad = { center = [0, 6, 5], u = [0.6, 0, 0], v = [0, 0.216, 0.4608] }";
-/// Nothing that light leaves a surface for is bright enough to be seen.
+/// Surfaces so dark that the light they reflect adds nothing visible elsewhere.
 const MATERIALS: &str =
     "[material.matte]\ndiffuse = { reflectance = 0.001 }\n[material.mirror]\nmirror = { reflectance = 1 }\n";
 
@@ -18,7 +18,7 @@ fn point(x: f64, y: f64) -> String {
     format!("[[light]]\npoint = {{ position = [{x}, {y}, 2], intensity = 8 }}\n")
 }
 
-/// A point light beside a mirror upright at x = 3, as high above the origin as it is below.
+/// Returns a point light beside a vertical mirror at x = 3. The light is as high above the origin as it is below.
 fn by_mirror(bodies: &str, height: f64) -> String {
     let mirror = format!("quad = {{ center = [3, {}, 1.5], u = [0, 0.8, 0], v = [0, 0, 0.7] }}", height * 2.3 / 3.0);
     seen_by(VIEW, "")
@@ -29,15 +29,16 @@ fn by_mirror(bodies: &str, height: f64) -> String {
         + &point(2.0, height)
 }
 
-/// The same light with its mirror image in place of the mirror.
+/// Returns the scene of [`by_mirror`] with the light's mirror image in place of the mirror.
 fn by_image(bodies: &str, height: f64) -> String {
     seen_by(VIEW, "") + MATERIALS + &object("mirror", WINDOW) + bodies + &point(2.0, height) + &point(4.0, height)
 }
 
-/// Photons are gathered within 1.5 pixels, a sixteenth of the image.
+/// A map whose photons are gathered within 1.5 pixels, a sixteenth of the image.
 const WIDE: MapPasses = MapPasses { count: 4, photons: 32_768, radius: 1.5, chance: 1.0 };
 
-/// Compares the light of a mirror, which photons bring, with that of a lamp at its image, which is known.
+/// Compares the light of a mirror, which photons contribute, with the light of a lamp at its mirror image, which is
+/// sampled directly.
 fn agree(what: &str, bodies: &str, map: MapPasses) {
     let gathered = blocks(&with_method(&by_mirror(bodies, 3.0)), true, Some(map), 64);
     let known = blocks(&with_method(&by_image(bodies, 3.0)), false, None, 64);
@@ -49,7 +50,7 @@ fn agree(what: &str, bodies: &str, map: MapPasses) {
         [a.0, b.0, a.1 + b.1].into_iter().zip(&mut sums).for_each(|(x, sum)| *sum += x);
     }
     let [gathered, known, variance] = sums;
-    // The three bands of a block move together.
+    // The three bands of a block are correlated.
     let (ratio, error) = (gathered / known, (3.0 * variance).sqrt() / known);
     println!("{what}: {ratio:.5} of what is known, error {error:.5}");
     assert!(
@@ -72,7 +73,7 @@ fn k4_light_is_right_on_bodies_that_stand_on_a_floor_and_on_the_floor_around_the
         + &object("matte", "cube = { center = [-0.2, 0.3, -0.2], size = [0.6, 0.6, 0.6] }")
         + &object("matte", "cube = { center = [-0.8, 0.05, 0.3], size = [0.2, 0.1, 0.3] }")
         + &object("matte", "sphere = { center = [0.4, 0.3, 0.2], radius = 0.3 }");
-    // Shadows are blurred from block to block by the square of the radius.
+    // Shadows are blurred from block to block in proportion to the square of the radius.
     agree("bodies", &bodies, MapPasses { radius: 0.75, ..WIDE });
 }
 
@@ -94,7 +95,7 @@ fn k4_light_is_right_on_coins_smaller_than_the_kernel_and_on_laths_with_gaps() {
     agree("coins and laths", &(coins + &(0..36).map(lath).collect::<String>()), WIDE);
 }
 
-/// The mean of an image as it is planned.
+/// Returns the mean of an image that is rendered as planned.
 fn planned(text: &str) -> [f64; 3] {
     let scene = scene(text);
     let method = plan(&scene).method;
@@ -102,7 +103,7 @@ fn planned(text: &str) -> [f64; 3] {
     mean_color(&film_of(&scene, method))
 }
 
-/// A ball of glass above a floor of so many pieces, seen in a mirror above; `turned` turns every other piece over.
+/// Returns a glass ball above a floor of `count` pieces, seen in a mirror above. `turned` flips every other piece.
 fn pieces(count: u32, turned: bool) -> String {
     let lath = |i: u32| {
         let half = 1.6 / f64::from(count);

@@ -1,19 +1,19 @@
-//! The same for caustics that are seen in mirrors, through glass or by way of lit surfaces: photons that land are
-//! gathered.
+//! Caustics that are seen in mirrors, through glass or indirectly, by way of surfaces that they light: the photons that
+//! land are gathered. Images with photons are compared with images of camera paths alone.
 
 use abbe::trace::MapPasses;
 
 use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree_with, blocks, glass, seen_by, with_method};
 use crate::support::scenes::{object, standard_errors};
 
-/// A radius so small that blurring moves nothing between blocks that these samples could tell.
+/// A map with a radius so small that its blur moves nothing between blocks that these samples could resolve.
 pub const NARROW: MapPasses = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
 
 fn agree(what: &str, text: &str, samples: [u32; 2]) {
     agree_with(what, text, samples, Some(NARROW));
 }
 
-/// A ball before a leaning mirror.
+/// Returns a ball in front of a leaning mirror.
 pub fn mirror() -> String {
     seen_by("position = [0, 1.2, 2.5]\nlook_at = [0, 0.8, -2]\nvertical_fov = 40", "")
         + FLOOR
@@ -35,7 +35,7 @@ fn a_caustic_is_as_bright_where_few_places_look_for_photons() {
     agree_with("few places", &mirror(), [64; 2], Some(MapPasses { chance: 0.25, ..NARROW }));
 }
 
-/// Under water, lit by a lamp beside it.
+/// Returns a pool whose floor is under water, lit by a lamp beside it.
 fn pool(film: &str) -> String {
     seen_by(ABOVE, film)
         + FLOOR
@@ -52,7 +52,7 @@ fn the_floor_of_a_pool_seen_through_its_water() {
     agree("pool", &pool("filter = \"tent\""), [32; 2]);
 }
 
-/// The plan's own radius on an image whose pixels are as wide as they can be: nowhere does blurring move a hundredth.
+/// The plan's own radius, on an image whose pixels are as wide as possible: the blur changes no block by a hundredth.
 #[test]
 fn the_bias_of_the_plans_radius_is_less_than_a_hundredth() {
     let pool = with_method(&pool(""));
@@ -68,7 +68,7 @@ fn the_bias_of_the_plans_radius_is_less_than_a_hundredth() {
         whole += a.0;
         variance += error * error;
     }
-    // The three bands of a block move together.
+    // The three bands of a block are correlated.
     let error = (3.0 * variance).sqrt() / whole;
     println!("the whole is moved by {:.5}, error {error:.5}", moved / whole);
     assert!(moved.abs() / whole + 2.0 * error < 0.01, "bias {}, error {error}", moved / whole);
@@ -109,7 +109,7 @@ fn a_body_of_many_materials_under_a_dome_of_glass() {
     agree("dome", &text, [2, 24]);
 }
 
-/// The radius is one of pixels, whose width grows from the camera on, not from where its rays start.
+/// The radius is given in pixels. Their width grows with the distance from the camera, not from the start of a ray.
 #[test]
 fn photons_are_gathered_as_widely_behind_a_near_plane() {
     let map = MapPasses { radius: 1.0, ..NARROW };

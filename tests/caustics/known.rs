@@ -1,4 +1,4 @@
-//! Caustics whose light is known: by other programs, by hand, or because nothing may change it.
+//! Caustics with a known result: from other programs, by hand, or because a change must not affect them.
 
 use abbe::film::Film;
 use abbe::plan::{Plan, plan};
@@ -8,7 +8,7 @@ use super::agreement::{LAMP, agree, seen_by};
 use crate::support::run::{Answer, Folder, render};
 use crate::support::scenes::{SPLITTING, film_of, mean_color, object, scene};
 
-/// The method of a scene's plan with all lights and so many photons.
+/// Renders a scene by its planned method, with photons from all lights.
 fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     let scene = scene(text);
     let light_pass = Some(LightPass {
@@ -22,8 +22,8 @@ fn with_photons(text: &str, photons: u64, samples: u32) -> Film {
     film_of(&scene, method)
 }
 
-/// The caustic A of the light tracing lab: a ball of index 1.5 and radius 1, its center 1.5 above the floor, a lamp of
-/// power pi at a height of 7. Seen by parallel rays that start below the ball, so that it hides nothing.
+/// Returns caustic A of the light tracing lab: a ball of index 1.5 and radius 1 with its center 1.5 above the floor,
+/// and a lamp of power pi at a height of 7. The camera's parallel rays start below the ball, so the ball hides nothing.
 fn patch(light: &str) -> String {
     format!(
         "[camera]\nposition = [0, 0.4, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\nprojection = \"orthographic\"\nheight = 1.6\n\
@@ -42,7 +42,8 @@ fn lamp(radius: f64) -> String {
     )
 }
 
-/// Row T1 of the closed forms: mean irradiance .0084 over the patch of 1.6 by 1.6 for radii up to 0.3 and .0085 for 1.
+/// Row T1 of the closed forms: the mean irradiance over the patch of 1.6 by 1.6 is .0084 for radii up to 0.3 and .0085
+/// for radius 1.
 #[test]
 fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
     let point = "[[light]]\npoint = { position = [0, 7, 0], intensity = 0.25 }\n".to_owned();
@@ -53,20 +54,20 @@ fn the_caustic_of_a_ball_has_the_irradiance_that_another_program_found() {
         ("a point", point, 0.0084),
     ] {
         let mean = |film: &Film| mean_color(film)[1];
-        // Straight light, past the ball, is no part of the caustic; the camera's samples are the same.
+        // Direct light that passes beside the ball is no part of the caustic. The camera samples are the same.
         let straight = scene(&patch(&light));
         let method = Method { samples: 16, light_pass: None, diffuse_bounces: 0, ..plan(&straight).method };
         let straight = mean(&film_of(&straight, Method { transport: SPLITTING, ..method }));
-        // The floor is so dark that none of its light comes back from the ball: what is seen is irradiance / 1000 pi.
+        // The floor is so dark that none of its light returns by way of the ball: the camera sees irradiance / 1000 pi.
         let irradiance = (mean(&with_photons(&patch(&light), 400_000, 16)) - straight) * 1e3 * std::f64::consts::PI;
         println!("T1, radius {what}: {irradiance:.6}");
-        // Two digits are given; every photon of these carries at most a part in 10 000.
+        // The reference has two digits. Each photon carries at most a part in 10 000.
         assert!((irradiance - expected).abs() < 0.5e-4 + 0.01 * expected, "radius {what}: {irradiance} for {expected}");
     }
 }
 
-/// A spot that shines everywhere to where a point does throws the same caustic, and one that shines into a part of the
-/// ball a part of it.
+/// A spotlight that covers all that matters of a point light throws the same caustic. A spot that covers a part of the
+/// ball throws a part of it.
 #[test]
 fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
     let image = |light: &str| {
@@ -82,21 +83,22 @@ fn a_wide_spot_throws_the_caustic_of_a_point_and_a_narrow_one_a_part_of_it() {
     let [all, wide, narrow] = [point, spot(120.0), spot(6.0)].map(|film| mean_color(&film)[1]);
     println!("point {all:.4e}, wide spot {wide:.4e}, narrow spot {narrow:.4e}");
     assert!((wide / all - 1.0).abs() < 0.01, "{wide} for {all}");
-    // All light of a cone of half angle 3 degrees meets the ball within its inner third, where nearly (2 sqrt(n) / (n +
-    // 1))^4 goes through, as at normal incidence, and lands on the patch: flux over its area, over pi.
+    // All light of a cone with half angle 3 degrees hits the ball within its inner third. As at normal incidence,
+    // nearly (2 sqrt(n) / (n + 1))^4 of it is transmitted and lands on the patch: the flux divided by the area and by
+    // pi.
     let flux = 0.25 * std::f64::consts::TAU * (1.0 - 3.0_f64.to_radians().cos());
     let exact = flux * 0.96 * 0.96 / (1.6 * 1.6) * 1e-3 / std::f64::consts::PI;
     assert!((narrow / exact - 1.0).abs() < 0.01, "{narrow} for {exact}");
 }
 
-/// A beam of parallel light through a prism onto a screen: what falls on the screen is what Fresnel's equations let
-/// through.
+/// A parallel beam through a prism onto a screen: the screen receives what Fresnel's equations transmit.
 #[test]
 fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through() {
-    // The beam meets the left face at 45 degrees to its normal; apex up. Everything in the plane z = 0.
+    // The beam hits the left face at `incidence` to its normal. The apex points up and everything lies in the plane z =
+    // 0.
     let (apex, index) = (30.0_f64.to_radians(), 1.5_f64);
     let incidence = 0.6_f64;
-    // Faces meet in the apex at the origin, symmetric about -y.
+    // Two faces meet at the apex in the origin, symmetric about -y.
     let (left, right) = ([-(apex.cos()), apex.sin()], [apex.cos(), apex.sin()]);
     let inside = (incidence.sin() / index).asin();
     let second = 2.0 * apex - inside;
@@ -106,14 +108,14 @@ fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through(
         1.0 - 0.5 * (s * s + p * p)
     };
     let exact = share(incidence, inside) * share(second, out);
-    // The sun stands where light meets the left face at the incidence, from below its normal.
+    // The sun is placed so that its light hits the left face at `incidence`, from below the normal.
     let angle = left[1].atan2(left[0]) + incidence;
     let sun = [angle.cos(), angle.sin()];
     let outward = right[1].atan2(right[0]) - out;
     let way = [outward.cos(), outward.sin()];
     let (depth, half) = (2.0, 0.1);
     let bottom = depth * apex.tan();
-    // A slit just before the left face, in the middle of it, and a screen that the beam meets head-on.
+    // A slit in front of the middle of the left face, and a screen perpendicular to the beam.
     let middle = [-0.5 * bottom, -0.5 * depth];
     let slit = [middle[0] + 0.8 * sun[0], middle[1] + 0.8 * sun[1]];
     let across = [-sun[1], sun[0]];
@@ -134,7 +136,7 @@ fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through(
             slit[0], slit[1], side * (half + 3.0), across[0] * half * 1.01, across[1] * half * 1.01
         )
     });
-    // From the right face's middle on.
+    // Starting at the middle of the right face.
     let screen = [0.5 * bottom + 3.0 * way[0], -0.5 * depth + 3.0 * way[1]];
     let camera = [screen[0] - 0.8 * way[0], screen[1] - 0.8 * way[1]];
     let wide = [-way[1], way[0]];
@@ -172,8 +174,8 @@ fn a_beam_through_a_prism_brings_the_screen_the_light_that_fresnel_lets_through(
     assert!((landed / sent / exact - 1.0).abs() < 0.005, "{} of the beam arrives for {exact}", landed / sent);
 }
 
-/// Two balls in one line with a point and a sun between two mirrors: cones overlap, photons are sent to several
-/// objects.
+/// Two balls in line with a point light, and a sun between two mirrors: cones overlap and photons are sent toward
+/// several objects.
 const CROWD: &str = "[render]\nseed = 5\n\
     [material.floor]\ndiffuse = { reflectance = 0.7 }\n[material.glass]\ndielectric = { index = \"N-SF11\" }\n\
     [material.mirror]\nmirror = { reflectance = 0.9 }\n\
@@ -240,7 +242,7 @@ fn any_number_of_threads_writes_the_same_bytes_of_a_caustic() {
     }
 }
 
-/// Lamps large enough to be met by chance: a photon that could have been sent toward several objects counts once.
+/// Lamps large enough for random paths to hit: a photon that could have been sent toward several objects counts once.
 #[test]
 fn photons_toward_objects_whose_cones_overlap_count_once() {
     let things = CROWD.split("[[light]]").next().unwrap_or_default().replace("\"N-SF11\"", "1.7");
@@ -329,8 +331,8 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
     asks(format!("{ball}{pane}{point}"), "photon map: 12 passes of");
 }
 
-/// In a box lit by a lamp in a ball of glass, pixels are so wide that thousands of photons lie around each place: more
-/// passes of fewer make the same image in less time.
+/// In a box lit by a lamp inside a glass ball, pixels are so wide that thousands of photons lie around each place. More
+/// passes with fewer photons make the same image in less time.
 #[test]
 fn a_pass_has_no_more_photons_than_are_worth_looking_through() {
     let text = "[camera]\nposition = [0, 1, 3]\nlook_at = [0, 1, 0]\nprojection = \"equirectangular\"\n\
@@ -345,9 +347,9 @@ fn a_pass_has_no_more_photons_than_are_worth_looking_through() {
     assert!(map.photons < 1024 && map.count > 8, "{map:?}");
 }
 
-/// The camera sees a chip under a ball of glass that throws a lamp's light onto the floor. From there light comes back
-/// to the chip by way of the ball, from places that lie farther apart than the chip is wide. None of a few photons fell
-/// within a pixel of them, so that there was no map, and 3.4 times the variance.
+/// The camera sees a chip below a glass ball that throws a lamp's light onto the floor. From there light returns to the
+/// chip through the ball, from places that lie farther apart than the chip is wide. With few photons, none landed
+/// within a pixel of them, so no map was planned, at 3.4 times the variance.
 #[test]
 fn a_map_is_kept_for_places_that_lie_farther_apart_than_the_view_is_wide() {
     let text = "[camera]\nposition = [0.37, -1.199, 0.045]\nlook_at = [0.37, -1.2, 0.044]\n\

@@ -1,4 +1,4 @@
-//! Surfaces so large that the camera sees a small part of what they throw: seas, and mirrors without end.
+//! Surfaces so large that the camera sees only a small part of their caustics: seas and infinite mirrors.
 
 use abbe::math::DVec2;
 use abbe::plan::plan;
@@ -7,7 +7,7 @@ use abbe::trace::MapPasses;
 use super::agreement::{FLOOR, LAMP, agree, agree_with, glass, seen_by};
 use crate::support::scenes::{film_of, moments, object, scene};
 
-/// Just above the water, with the horizon in sight.
+/// A camera just above the water, with the horizon in sight.
 const ASHORE: &str = "position = [0, 2, 5]\nlook_at = [0, 0.3, 0]\nvertical_fov = 50";
 const WATER: [&str; 2] = [
     "plane = { point = [0, 1, 0], normal = [0, 1, 0] }",
@@ -15,7 +15,7 @@ const WATER: [&str; 2] = [
 ];
 const SUN: &str = "[[light]]\nsun = { toward = [0.6, 1, 0.3], irradiance = 2, angular_diameter = 40 }\n";
 
-/// A sun so large that rays find it by chance, too.
+/// The sun is so large that random paths hit it as well.
 #[test]
 fn a_sea_in_the_sun() {
     let map = MapPasses { count: 16, photons: 8192, radius: 0.1, chance: 1.0 };
@@ -31,7 +31,7 @@ fn a_sea_in_the_sun() {
     }
 }
 
-/// What it throws onto a ball is seen straight.
+/// The caustic on a ball is seen directly.
 #[test]
 fn a_mirror_without_end() {
     let text = seen_by("position = [0, 1.5, 4]\nlook_at = [0, 0.8, 0]\nvertical_fov = 50", "")
@@ -44,14 +44,14 @@ fn a_mirror_without_end() {
     agree("mirror", &text, 64);
 }
 
-/// The floor under a sea in the light of a sun without extent, which nothing but photons finds, as Fresnel and Beer
-/// have it, near and far: what is seen at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2
-/// times what is left after depth / cos(s') + depth / cos(v') of water.
+/// The floor of a sea, lit by a sun without extent whose light only photons find, is as bright as Fresnel and Beer
+/// predict, near and far. The radiance at the angle v to the normal is (reflectance / pi) E cos(s) T(s) T(v) / n^2,
+/// times the transmittance of depth / cos(s') + depth / cos(v') of water.
 #[test]
 fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
     const N: f64 = 1.33;
     const ABSORPTION: f64 = 0.3;
-    // Cosine inside, and the share that crosses.
+    // Returns the cosine inside the water and the transmitted fraction.
     let crosses = |cos: f64| {
         let inside = (1.0 - (1.0 - cos * cos) / (N * N)).sqrt();
         let [s, p] = [(cos - N * inside) / (cos + N * inside), (N * cos - inside) / (N * cos + inside)];
@@ -80,7 +80,7 @@ fn the_floor_of_a_sea_is_as_bright_as_fresnel_and_beer_have_it() {
             let (mean, variance) = moments((rows.start * 40..rows.end * 40).map(ratio));
             let error = (variance / (40 * rows.len()) as f64).sqrt();
             println!("{water}, rows {rows:?}: {mean:.4} of the exact light, with an error of {error:.4}");
-            // Pixels share photons, so that their noise is not all independent.
+            // Pixels share photons, so their noise is not fully independent.
             assert!(error < 0.03 && (mean - 1.0).abs() < 6.0 * error + 0.002, "{water}, {rows:?}: {mean} +- {error}");
         }
     }

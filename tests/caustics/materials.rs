@@ -1,10 +1,10 @@
-//! Photons and camera rays agree on surfaces of every kind: layers, holes, images, bent normals, rough glass.
+//! Photons and camera paths agree on surfaces of every kind: layers, holes, images, bent normals, rough glass.
 
 use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
 use crate::support::scenes::{GROUND, object};
 
 pub const ROUND_LAMP: &str = "sphere = { center = [0, 7, 0], radius = 1 }";
-/// A square whose normals bend.
+/// A square with bent normals.
 pub const BENT: &str = "mesh = { points = [[-2, 0, -2], [2, 0, -2], [2, 0, 2], [-2, 0, 2]], faces = [[0, 2, 1], [0, 3, 2]], \
                         normals = [[0.6, 1, 0], [0, 1, 0.5], [-0.5, 1, 0], [0, 1, -0.6]], smooth = true }";
 

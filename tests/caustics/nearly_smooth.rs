@@ -1,5 +1,5 @@
-//! Caustics of surfaces that are nearly smooth: what polished metal and glossy coats reflect by a narrow lobe, and what
-//! frosted glass refracts.
+//! Caustics of nearly smooth surfaces: what polished metal and glossy coats reflect in a narrow lobe, and what frosted
+//! glass refracts.
 
 use super::agreement::{ABOVE, BALL, FLOOR, LAMP, agree, agree_with, glass, seen_by};
 use super::gathered::NARROW;
@@ -9,7 +9,7 @@ use crate::support::scenes::object;
 const METAL: &str = "[material.metal]\nconductor = { metal = \"Au\", roughness = 0.3 }\n";
 const GLOSSY: &str =
     "[material.glossy]\nplastic = { reflectance = { rgb = [0.4, 0.3, 0.2] }, index = 1.5, roughness = 0.3 }\n";
-/// Half mirror, half glossy plastic; two thirds of that.
+/// Half mirror, half glossy plastic, at an opacity of two thirds.
 const MIX: &str = "[material.mirror]\nmirror = { reflectance = 0.9 }\n\
                    [material.half]\nmix = { materials = [\"mirror\", \"glossy\"], amount = 0.5 }\n\
                    [material.mixed]\nmask = { material = \"half\", opacity = 0.67 }\n";
@@ -22,7 +22,7 @@ fn a_ball_under_a_lamp() {
     }
 }
 
-/// What one mirrors lands on the others: on matte ones and, from smooth surfaces alone, on metal.
+/// The reflection of each body lands on the others: on matte ones and, from smooth surfaces only, on metal.
 #[test]
 fn all_kinds_in_the_sun_on_a_glossy_floor() {
     let text = seen_by(ABOVE, "")
@@ -57,7 +57,7 @@ fn bent_normals_and_a_polarizer_before_the_wall() {
     }
 }
 
-/// In water that the camera sees or does not see, whose surface the light crosses first.
+/// Balls in water that is either visible to the camera or not. The light crosses its surface first.
 #[test]
 fn a_ball_in_water() {
     for seen in ["", "visible_to_camera = false\n"] {
@@ -93,8 +93,8 @@ fn what_metal_throws_is_seen_in_a_mirror() {
 
 const FROSTED: &str = "[material.frosted]\ndielectric = { index = 1.5, roughness = 0.25 }\n";
 
-/// Bare, coated with what absorbs, tinted, and of an index that parts colors. Light goes through it, and is mirrored
-/// inside again and again.
+/// Frosted glass without a coating, with an absorbing coating, tinted, and with dispersion. Light is refracted through
+/// it and reflected inside repeatedly.
 #[test]
 fn frosted_glass() {
     let with = |more: &str| FROSTED.replace("0.25", &format!("0.25, {more}"));
@@ -115,7 +115,7 @@ fn frosted_glass() {
     }
 }
 
-/// A lamp in a frosted bulb, and water of the glass's index in a frosted shell that stands in a pool.
+/// A lamp in a frosted bulb, and liquid with the index of glass in a frosted shell that stands in a pool.
 #[test]
 fn frosted_glass_around_a_lamp_and_in_water() {
     let bulb = seen_by(ABOVE, "")
@@ -143,7 +143,7 @@ fn frosted_glass_around_a_lamp_and_in_water() {
     }
 }
 
-/// A map finds what lies on the floor, close under the glass, and not on the glass.
+/// The map finds the photons on the floor, close below the glass, and not those on the glass.
 #[test]
 fn a_map_under_frosted_glass_that_nearly_touches_the_floor() {
     let text = seen_by(ABOVE, "")

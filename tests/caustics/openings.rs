@@ -1,4 +1,4 @@
-//! Caustics of skies whose light comes through openings, against the camera's rays alone.
+//! Caustics of skies whose light enters through openings, compared with camera paths alone.
 
 use abbe::light::Opening;
 use abbe::math::{Bounds, DVec3};
@@ -7,7 +7,7 @@ use abbe::trace::{BrightPlace, BrightPlaces, MapPasses, Method};
 use super::agreement::{agree_of, glass, seen_by, with_method};
 use crate::support::scenes::{body, environment, object, quad};
 
-/// A room over the floor, 6 x 4 x 6, with a square hole in the roof above its middle.
+/// Returns a room of 6 x 4 x 6 above the floor, with a square hole in the middle of the roof.
 fn room(half: f64) -> String {
     let strip = 0.5 * (3.0 - half);
     let walls = [
@@ -24,7 +24,7 @@ fn room(half: f64) -> String {
     body("floor", "diffuse = { reflectance = 0.4 }", &walls.each_ref().map(String::as_str))
 }
 
-/// A hole in the roof, toward -y.
+/// Returns a hole in the roof that faces -y.
 fn hole(center: [f64; 3], half: f64) -> Opening {
     Opening { center: DVec3::from(center), half: [DVec3::X * half, DVec3::Z * half] }
 }
@@ -32,7 +32,7 @@ fn hole(center: [f64; 3], half: f64) -> Opening {
 const CAMERA: &str = "position = [1.8, 2.6, 1.8]\nlook_at = [0, 0, 0]\nvertical_fov = 50";
 const BALL: &str = "sphere = { center = [0.2, 1, 0.1], radius = 0.5 }";
 
-/// The method of a scene, with bounces that are aimed at some openings.
+/// Returns a scene with a method whose bounces are aimed at the given openings.
 fn aimed(text: &str, openings: &[Opening]) -> (abbe::scene::Scene<abbe::spectrum::Curve>, Method) {
     let (scene, method) = with_method(text);
     let within = Bounds { min: DVec3::new(-3.1, -0.1, -3.1), max: DVec3::new(3.1, 4.1, 3.1) };
@@ -52,8 +52,8 @@ fn sky(folder: &std::path::Path) -> String {
     format!("[[light]]\nenvironment = {{ radiance = {{ image = {file:?} }} }}\n")
 }
 
-/// Photons bring what comes through an opening and no more, whatever lies before it and behind it and however much of
-/// the hole it holds.
+/// Photons contribute exactly the light that enters through an opening, whatever lies in front of it and behind it, and
+/// however much of the hole it covers.
 #[test]
 fn a_glass_ball_in_a_room_with_a_hole() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! What polarization may change of a caustic: photons carry what their surfaces did, and it is counted where they are
-//! seen.
+//! The estimated effect of polarization on a caustic: photons carry the effect of their surfaces, and it is counted
+//! where they are seen.
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
@@ -13,8 +13,8 @@ fn square(center: DVec3, normal: DVec3, half: f64) -> String {
     quad(center, up, normal.cross(up))
 }
 
-/// Light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a floor, and a
-/// view of that floor, in a mirror or not. A screen keeps the lamp's own light from it.
+/// Returns the light of a small lamp that two glass plates, both at Brewster's angle and in one plane, reflect to a
+/// floor, and a view of that floor, in a mirror or not. A screen blocks the lamp's direct light.
 fn two_plates(in_a_mirror: bool) -> String {
     let turn = 180.0 - 2.0 * 1.5_f64.atan().to_degrees();
     let way = |times: f64| {
@@ -39,7 +39,7 @@ fn two_plates(in_a_mirror: bool) -> String {
     let lamp = format!("sphere = {{ center = [{:?}, {:?}, {:?}], radius = 0.02 }}", lamp.x, lamp.y, lamp.z);
     text += &body("lamp", "emissive = { radiance = 1000 }", &[&lamp]);
     if in_a_mirror {
-        // Any two vectors at right angles to the normal.
+        // Any two vectors perpendicular to the normal.
         let normal = (-along - aside).try_normalize().expect("not straight on");
         let u = normal.cross(DVec3::new(0.0, 0.0, 1.0)).try_normalize().expect("not upright");
         let v = normal.cross(u);
@@ -48,7 +48,7 @@ fn two_plates(in_a_mirror: bool) -> String {
     text
 }
 
-/// Renders whose spread is their noise.
+/// Number of renders whose spread gives the noise.
 const SEEDS: u64 = 4;
 
 #[test]
@@ -71,14 +71,14 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
         let (film, report) = by(Polarizing::Averaged, 0);
         let lit = film.pixels.iter().filter(|pixel| pixel.rgb[1] > 0.0).count();
         assert!(lit > film.pixels.len() / 2, "in a mirror {in_a_mirror}: {lit} pixels are lit");
-        // All that is seen was reflected by both plates, which reflect one polarization alone: it is twice as much.
+        // All visible light was reflected by both plates, which reflect only one polarization: polarization doubles it.
         println!("in a mirror {in_a_mirror}: {:.4}", report.polarization);
         let stated = [report.polarization, report.polarization_of_tile];
         assert!(stated.iter().all(|&stated| stated > 0.99 && stated < 1.0 + 1e-6), "{in_a_mirror}: {stated:?}");
         assert!(planned.method.light_pass.is_some(), "{:?}", planned.because);
         let said = |line: &String| line.starts_with("polarization on: without it, the image would be wrong by");
         assert!(planned.because.iter().any(said), "{in_a_mirror}: {:?}", planned.because);
-        // The planes of incidence are one: traced, it is twice as much.
+        // The planes of incidence coincide, so tracing polarization doubles the light.
         let sums = |polarization| {
             moments((0..SEEDS).map(|seed| {
                 let (film, report) = by(polarization, seed);
@@ -93,23 +93,23 @@ fn what_polarization_may_change_of_a_caustic_is_said_where_photons_are_seen_and_
     }
 }
 
-/// Sunlight at 60 degrees through a roof of glass, whose index in the three bands differs, seen from below.
+/// Sunlight at 60 degrees through a glass roof whose index differs between the three bands, seen from below.
 const ROOF: &str = "[camera]\nposition = [0, 0.1, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, -1]\nprojection = \"orthographic\"\n\
                     height = 0.3\nnear = 0\n[film]\nwidth = 8\nheight = 8\nfilter = \"box\"\n\
                     [render]\nmodel = \"rgb\"\nsamples = 4\n\
                     [[light]]\nsun = { toward = [0.8660254037844386, 0.5, 0], angular_diameter = 0, irradiance = 1 }\n";
 const INDICES: [f64; 3] = [1.333, 1.52, 2.42];
 
-/// Of light that crosses a plate at 60 degrees: of unpolarized light, each polarization by itself (Stokes 1862), and of
-/// light that is taken for unpolarized at every surface.
+/// Returns the light that crosses a plate at 60 degrees, once with each polarization traced by itself (Stokes 1862) and
+/// once with the light treated as unpolarized at every surface.
 fn through_a_plate(index: f64) -> [f64; 2] {
     let reflected = reflectances(index, 0.5);
     let through = |r: f64| (1.0 - r) / (1.0 + r);
     [reflected.map(through).iter().sum::<f64>() / 2.0, through(reflected.iter().sum::<f64>() / 2.0)]
 }
 
-/// Photons of which the wavelengths have parted bring one lane each: what polarization changes is a share of what that
-/// lane brings, and lanes that are not there have no say.
+/// Photons whose wavelengths have parted carry one lane each. The effect of polarization is relative to that lane, and
+/// absent lanes do not count.
 #[test]
 fn what_polarization_changes_of_parted_photons_is_said_by_the_lanes_that_they_bring() {
     let [red, green, blue] = INDICES;
@@ -128,13 +128,13 @@ fn what_polarization_changes_of_parted_photons_is_said_by_the_lanes_that_they_br
     let seen = |way: usize| (0..3).map(|band| amounts[band] * through_a_plate(INDICES[band])[way]).sum::<f64>();
     let expected = seen(0) / seen(1) - 1.0;
     println!("{mean:.5} +- {:.5}, expected {expected:.5}", variance.sqrt());
-    // What is told is some standard errors of its cells above it.
+    // The stated error is some standard errors of its cells above the expected one.
     assert!((0.9 * expected..2.5 * expected).contains(&mean), "{mean}, expected {expected}");
 }
 
-/// What polarization adds to one beam and takes from another is an error of both: off, the beam that leaves the base of
-/// the prism is a quarter too bright, and so is 3.3 % of the image (root mean square), though all its light is right
-/// within 0.3 %.
+/// Polarization brightens one beam and dims another, and both changes count as errors. Without polarization, the beam
+/// that leaves the base of the prism is a quarter too bright, and the image has an error of 3.3 % (root mean square),
+/// although its total light is right within 0.3 %.
 #[test]
 fn beams_that_polarization_changes_either_way_are_no_less_wrong_together() {
     let scene = scene(&std::fs::read_to_string("scenes/rainbow.toml").expect("it comes with Abbe"));

@@ -1,4 +1,4 @@
-//! A map of photons leaves every camera sample the wavelengths that it has without one.
+//! Every camera sample has the same wavelengths with a photon map as without one.
 
 use abbe::plan::plan;
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
@@ -6,7 +6,7 @@ use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 use super::agreement::{ABOVE, FLOOR, agree_with, glass, seen_by};
 use crate::support::scenes::{SPLITTING, film_of, object, scene};
 
-/// All that is seen through dispersive glass had one wrong color while paths of a pass shared their wavelengths.
+/// Everything seen through dispersive glass had one wrong color when the paths of a pass shared their wavelengths.
 #[test]
 fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_without() {
     let text = seen_by("position = [0, 0, 5]\nlook_at = [0, 0, 0]\nvertical_fov = 30", "")
@@ -32,8 +32,9 @@ fn k1_glass_that_no_photon_lights_is_the_same_to_the_last_bit_with_a_map_and_wit
     }
 }
 
-/// Wavelengths of a lamp of lines either coincide or are other lines; those of a smooth one fall into bins. Photons and
-/// paths part or not: a prism and a mirror throw light that is seen straight on and through another prism.
+/// The wavelengths of a line spectrum either coincide or belong to other lines. Those of a smooth spectrum fall into
+/// bins. Photons and paths may part or not: the light of a prism and a mirror is seen directly and through another
+/// prism.
 #[test]
 fn k2_lines_and_smooth_spectra_thrown_by_a_prism_and_a_mirror_are_seen_through_another_prism() {
     let prism = |x: f64| {

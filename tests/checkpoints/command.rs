@@ -1,4 +1,4 @@
-//! What the command says of checkpoints and parts, and what it leaves alone.
+//! Messages of the command about checkpoints and parts, and the files that it leaves alone.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -12,12 +12,12 @@ fn folder() -> Folder {
     Folder::with("s.toml", GLASS)
 }
 
-/// Runs words that are separated by blanks.
+/// Runs `render` with arguments that are separated by blanks.
 fn run(folder: &Folder, words: &str) -> Answer {
     render(folder, &words.split(' ').collect::<Vec<_>>())
 }
 
-/// The last lines of what was said, from the one on that begins with a word.
+/// Returns the rest of stderr from the first occurrence of a word.
 fn said_from<'a>(answer: &'a Answer, word: &str) -> &'a str {
     answer.stderr.find(word).map_or(&*answer.stderr, |at| &answer.stderr[at..]).trim_end()
 }
@@ -54,18 +54,18 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
             "s.checkpoint has all samples that are needed, and the image is written: nothing is left to do",
         ),
     ] {
-        // No plan is made for it.
+        // The command makes no plan for this.
         assert_eq!(done(&folder, words).stderr, format!("{told}\n"), "{words}");
     }
     assert_eq!(["s.checkpoint", "s.exr"].map(|name| modified(&folder, name)), times);
-    // An image that is not the one that was written is made again, and so are other files that are asked for now.
+    // An image that differs from the written one is made again, and so are other files that are now asked for.
     let image = folder.read("s.exr");
     folder.write("s.exr", "another image");
     done(&folder, "s.toml --resume");
     assert!(folder.read("s.exr") == image);
     done(&folder, "s.toml --resume --exr s.exr --png s.png --report s.json");
     assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.json", "s.png", "s.toml"]);
-    // A picture of another exposure is another picture.
+    // A different exposure makes a different picture.
     let picture = folder.read("s.png");
     done(&folder, "s.toml --resume --exr s.exr --png s.png --exposure 2");
     assert!(folder.read("s.png") != picture && folder.read("s.exr") == image);
@@ -103,7 +103,7 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
     refused(&folder, "s.toml --resume --samples 4", &message);
     #[cfg(unix)]
     {
-        // Nobody writes to it.
+        // A pipe that nobody writes to.
         let pipe = folder.path_of("s.checkpoint");
         fs::remove_file(&pipe).expect("it is there");
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("there is mkfifo").success());
@@ -133,7 +133,7 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
         done(&folder, &format!("s.toml --samples 4 --exr new/folder/s.exr --shard {part}"));
     }
     done(&folder, "s.toml --samples 4 --exr seed.exr --shard 2/2 --seed 8");
-    // Where no photons are gathered, no plan depends on the samples.
+    // Plans without a photon map do not depend on the number of samples.
     let off = "--set render.caustics=off";
     done(&folder, &format!("s.toml --samples 4 {off} --exr off.exr --shard 1/2"));
     done(&folder, &format!("s.toml --samples 5 {off} --exr samples.exr --shard 2/2"));
@@ -217,7 +217,7 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
     assert_eq!(folder.read("s.toml"), GLASS.as_bytes());
 }
 
-/// A plan of a scene that asks for spectra is followed for a picture alone as well, which has none.
+/// A plan for a scene with spectra can also be used for a picture alone, which has none.
 #[test]
 fn a_picture_alone_follows_the_plan_of_a_scene_with_spectra() {
     let folder = folder();
@@ -227,7 +227,7 @@ fn a_picture_alone_follows_the_plan_of_a_scene_with_spectra() {
     assert_eq!(folder.listing(), ["s.plan", "s.png", "s.toml"]);
 }
 
-/// Parts may have got other names; a checkpoint that has the name of one then is of another render.
+/// Parts may have been renamed. A checkpoint that matches a new name belongs to another render.
 #[test]
 fn merging_deletes_the_checkpoints_of_parts_alone() {
     let folder = folder();
@@ -301,7 +301,7 @@ fn flags_that_have_no_place_are_refused() {
     assert_eq!(folder.listing(), ["s.toml"]);
 }
 
-/// Sends a signal to commands, one after the other.
+/// Sends a signal to each of several commands.
 #[cfg(unix)]
 fn send(signal: &str, to: &[&Child]) {
     let sent = Command::new("kill").arg(signal).args(to.iter().map(|child| child.id().to_string())).status();
@@ -315,8 +315,8 @@ fn wait_for(folder: &Folder, file: &str) {
     }
 }
 
-/// Starts a render, sends a signal twice, as `timeout` does, when a file is there, and answers what was said and the
-/// exit code.
+/// Starts a render, waits for a file and then sends a signal twice, as `timeout` does. Returns the text on stderr and
+/// the exit code.
 #[cfg(unix)]
 fn stopped(folder: &Folder, words: &str, signal: &str, file: &str) -> (String, Option<i32>) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
@@ -359,7 +359,7 @@ fn a_render_that_keeps_nothing_says_so_when_it_is_told_to_stop() {
         command.current_dir(folder.path()).args(words).stdout(Stdio::piped());
         let mut child = command.spawn().expect("the command can be started");
         let mut said = BufReader::new(child.stdout.take().expect("it is piped"));
-        // It tells its progress once a second.
+        // The command reports its progress once a second.
         let mut line = String::new();
         while !line.contains("\"kind\":\"progress\"") {
             line.clear();
@@ -387,7 +387,7 @@ fn a_snapshot_has_its_spectra_beside_it() {
     }
 }
 
-/// Arguments may be in any encoding.
+/// Arguments may have any encoding.
 #[cfg(target_os = "linux")]
 #[test]
 fn how_to_go_on_is_said_of_files_of_any_name() {
@@ -410,7 +410,7 @@ fn how_to_go_on_is_said_of_files_of_any_name() {
     );
 }
 
-/// Before the first sample a signal ends the command at once, whatever would be kept.
+/// Before the first sample, a signal ends the command at once, whether it writes checkpoints or not.
 #[cfg(unix)]
 #[test]
 fn a_command_that_has_not_begun_to_render_stops_at_once() {
@@ -421,7 +421,7 @@ fn a_command_that_has_not_begun_to_render_stops_at_once() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
         command.current_dir(folder.path()).args(["p.toml", "--exr", "p.exr"]).args(more).stderr(Stdio::piped());
         let child = command.spawn().expect("the command can be started");
-        // It opens the scene, and waits for its text.
+        // The command opens the scene and waits for its text.
         let scene = fs::OpenOptions::new().write(true).open(folder.path_of("p.toml")).expect("somebody reads");
         send("-TERM", &[&child]);
         let output = child.wait_with_output().expect("it ends");
@@ -431,7 +431,7 @@ fn a_command_that_has_not_begun_to_render_stops_at_once() {
     }
 }
 
-/// A limit on the size of files, as by a disk that is full, makes a write fail and ends nothing.
+/// A limit on the file size makes a write fail, like a full disk, but ends no render.
 #[cfg(unix)]
 #[test]
 fn a_checkpoint_that_cannot_be_written_stops_no_render_and_loses_no_file() {

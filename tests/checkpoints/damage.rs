@@ -1,4 +1,4 @@
-//! Files that were cut short or have changed on a disk: never an image, never a panic.
+//! Truncated or corrupted files: they never give an image and never cause a panic.
 
 use std::fs;
 use std::path::Path;
@@ -9,10 +9,10 @@ use abbe::{Error, Options, Rendering, merge};
 use super::{GLASS, advance, rendering};
 use crate::support::scenes::scene;
 
-/// Every byte whose number is a multiple of this is changed, one at a time.
+/// Every byte at a multiple of this offset is changed, one at a time.
 const STEP: usize = 97;
 
-/// Tries a reader on all that may become of a file; all has to be told as damage of that file.
+/// Runs a reader on damaged versions of a file. Each time, it has to return an error that names the file.
 fn try_all(path: &Path, what: &str, mut read: impl FnMut() -> Result<(), Error>) {
     let whole = fs::read(path).expect("it was written");
     assert!(read().is_ok(), "{what}");

@@ -1,4 +1,4 @@
-//! Samples of the pixel filters against the densities that give them their names.
+//! Samples of the pixel filters are compared with the densities that give the filters their names.
 
 use abbe::film::{Filter, Mitchell, SampleWeights};
 use abbe::math::DVec2;
@@ -6,7 +6,7 @@ use abbe::math::DVec2;
 use super::warps::{around, check_warp};
 use crate::support::random::Random;
 
-/// A sample's place about the middle of its pixel.
+/// Returns a sample's position relative to the center of its pixel.
 fn about(filter: Filter, u: [f64; 2]) -> [f64; 2] {
     let place = filter.place(u);
     [place.x - 0.5, place.y - 0.5]
@@ -15,7 +15,7 @@ fn about(filter: Filter, u: [f64; 2]) -> [f64; 2] {
 #[test]
 fn samples_of_a_tent_fall_in_a_straight_line() {
     for radius in [1.0, 2.5] {
-        // Integral of 1 - |x| from -1.
+        // The integral of 1 - |x| from -1.
         let below = |x: f64| if x < 0.0 { 0.5 * (1.0 + x) * (1.0 + x) } else { 1.0 - 0.5 * (1.0 - x) * (1.0 - x) };
         let between = |low: f64, high: f64| below(2.0 * high - 1.0) - below(2.0 * low - 1.0);
         let warp = |u| about(Filter::Tent { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
@@ -32,7 +32,7 @@ fn samples_of_a_gaussian_are_normal_within_four_sigma() {
         let [x, y] = about(Filter::Gaussian { sigma }, u);
         [((x * x + y * y).sqrt() / (4.0 * sigma)).min(1.0), around(x, y)]
     };
-    // Of the plane's normal distribution, exp(-r^2 / 2) lies beyond r.
+    // The part exp(-r^2 / 2) of the normal distribution in the plane lies beyond r.
     let beyond = |r: f64| libm::exp(-0.5 * 16.0 * r * r);
     let probability = |r0, r1, a0, a1| (beyond(r0) - beyond(r1)) / (1.0 - beyond(1.0)) * (a1 - a0);
     check_warp("gaussian filter", warp, probability);
@@ -52,15 +52,16 @@ fn samples_of_blackman_harris_follow_the_window() {
     };
     let radius = 1.5;
     let warp = |u| about(Filter::BlackmanHarris { radius }, u).map(|x| 0.5 + 0.5 * x / radius);
-    // What Simpson's rule leaves is taken out by the sum over the whole window.
+    // Dividing by the sum over the whole window removes the error of Simpson's rule.
     let all = between(0.0, 0.5) + between(0.5, 1.0);
     check_warp("Blackman-Harris filter", warp, |x0, x1, y0, y1| between(x0, x1) * between(y0, y1) / (all * all));
 }
 
-/// B and C of cubic filters: the plain one, the spline of Catmull and Rom, the B-spline, and the ends of what may be.
+/// B and C of cubic filters: the plain one, the Catmull-Rom spline, the B-spline, and the ends of the allowed range.
 const CUBICS: [[f64; 2]; 5] = [[1.0 / 3.0, 1.0 / 3.0], [0.0, 0.5], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
 
-/// The integral of a cubic filter from the middle to x, of either sign: of equation 8 of Mitchell & Netravali 1988.
+/// Returns the integral of a cubic filter from its center to x, with negative lobes counted as negative: from equation
+/// 8 of Mitchell & Netravali 1988.
 fn cubic(b: f64, c: f64, x: f64) -> f64 {
     let inner = [6.0 - 2.0 * b, 0.0, -18.0 + 12.0 * b + 6.0 * c, 12.0 - 9.0 * b - 6.0 * c];
     let outer = [8.0 * b + 24.0 * c, -12.0 * b - 48.0 * c, 6.0 * b + 30.0 * c, -b - 6.0 * c];
@@ -69,7 +70,8 @@ fn cubic(b: f64, c: f64, x: f64) -> f64 {
     near + far - start
 }
 
-/// The same of the absolute value: the outer piece has the root (2 B + 6 C) / (B + 6 C) beside a double one at 2.
+/// Returns the integral of a cubic filter's absolute value from its center to x. Beside a double root at 2, the outer
+/// piece has the root (2 B + 6 C) / (B + 6 C).
 fn absolute_cubic(b: f64, c: f64, x: f64) -> f64 {
     let root = (2.0 * b + 6.0 * c) / (b + 6.0 * c);
     if x <= root { cubic(b, c, x) } else { 2.0 * cubic(b, c, root) - cubic(b, c, x) }
@@ -92,10 +94,10 @@ fn samples_of_cubics_follow_their_absolute_value() {
 #[test]
 fn cubics_have_the_published_values_and_add_up_to_1_over_all_pixels() {
     let value = |[b, c]: [f64; 2], x: f64| Filter::Mitchell(Mitchell { b, c }).value(DVec2::new(x, 0.0));
-    // (6 - 2 B) / 6 squared in the middle, times B / 6 beside it.
+    // ((6 - 2 B) / 6)^2 at the center, and (6 - 2 B) / 6 times B / 6 one pixel beside it.
     assert!((value(CUBICS[0], 0.0) - 64.0 / 81.0).abs() < 1e-15);
     assert!((value(CUBICS[0], 1.0) - 8.0 / 9.0 / 18.0).abs() < 1e-15);
-    // The spline of Catmull and Rom passes through its samples; halfway, it weighs them 9 / 16 and -1 / 16.
+    // The Catmull-Rom spline passes through its samples. Halfway between them, their weights are 9 / 16 and -1 / 16.
     let halfway = [0.0, 1.0, 0.5, 1.5].map(|x| value(CUBICS[1], x));
     for (found, expected) in halfway.into_iter().zip([1.0, 0.0, 9.0 / 16.0, -1.0 / 16.0]) {
         assert!((found - expected).abs() < 1e-15, "{halfway:?}");
@@ -114,17 +116,17 @@ fn cubics_have_the_published_values_and_add_up_to_1_over_all_pixels() {
     }
 }
 
-/// Means of independent samples have the expectation and the variance that are told of them, of few samples as of many.
+/// Means of independent samples have the stated expectation and variance, for few samples as well as for many.
 #[test]
 fn means_of_signed_samples_are_unbiased_and_their_variance_is_known() {
     let filter = Filter::Mitchell(Mitchell { b: 0.0, c: 0.8 });
-    // An edge at 0.6 pixels to the right of the middle, before light that grows to the right.
+    // An edge 0.6 pixels right of the center, with light that grows to the right of it.
     let light = |x: f64| if x < 0.6 { 3.0 } else { 1.0 + 0.5 * x };
     let steps = 1 << 16;
     let exact: f64 = (0..steps)
         .map(|i| {
             let x = 4.0 * (f64::from(i) + 0.5) / f64::from(steps) - 2.0;
-            // The middle of the other axis, so that its integral is left out.
+            // The other axis is evaluated at its center, so that its integral drops out.
             light(x) * filter.value(DVec2::new(x, 0.0)) / filter.value(DVec2::ZERO) * 4.0 / f64::from(steps)
         })
         .sum::<f64>();
@@ -145,7 +147,7 @@ fn means_of_signed_samples_are_unbiased_and_their_variance_is_known() {
         }
         let pixels = f64::from(pixels);
         let (mean, variance) = (sum / pixels, squares / pixels - (sum / pixels) * (sum / pixels));
-        // Where none of 5 samples is added, 1 of 10000 times, there is nothing to subtract from.
+        // Once in 10000 times, all of 5 samples are in negative lobes, and there is nothing to subtract from.
         let z = (mean - exact) / (variance / pixels).sqrt();
         assert!(z.abs() < 4.0, "{samples} samples: {mean} is {z} standard errors off {exact}");
         let ratio = told / pixels / variance;

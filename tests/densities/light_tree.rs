@@ -1,4 +1,4 @@
-//! Choosing one of many things that shine: as likely as it is said to be, and none left out that sends light.
+//! Sampling one of many lights: each is chosen with its stated probability, and none that contributes is left out.
 
 use abbe::light::{LightBounds, LightTree};
 use abbe::math::{Bounds, DVec3};
@@ -38,7 +38,7 @@ fn lights_are_chosen_as_often_as_they_say() {
             counts[drawn.index] += 1;
             chosen += 1;
         }
-        // A branch whose bound promised light that none of its lights can send ends without a drawn.
+        // The search ends without a light in a branch whose bound promised light that none of its lights can send.
         let share = f64::from(chosen) / f64::from(DRAWS);
         assert!(sum <= 1.0 + 1e-12 && (share - sum).abs() < 4.0 * (0.25 / f64::from(DRAWS)).sqrt(), "{sum} {share}");
         let among: Vec<f64> = probabilities.iter().map(|p| p / sum).collect();
@@ -67,7 +67,7 @@ fn no_light_is_left_out_that_sends_light() {
     }
 }
 
-/// Whether the front, or the back that shines too, faces a point at the start of a way.
+/// Returns whether the front, or the back of a two-sided light, faces the start of a ray.
 fn faces(normal: DVec3, two_sided: bool, way: DVec3) -> bool {
     let cos = -normal.dot(way);
     cos > 1e-9 || (two_sided && cos < -1e-9)
@@ -86,7 +86,7 @@ fn lights_in_one_place_and_in_growing_distances_are_all_chosen() {
         let normal = DVec3::ONE.normalize();
         let sum: f64 = (0..lights.len()).map(|i| tree.probability(i, DVec3::ZERO, normal, false)).sum();
         assert!((sum - 1.0).abs() < 1e-9, "{sum}");
-        // Also from as good as the place of one.
+        // Also from almost exactly the position of a light.
         let found = tree.sample(DVec3::splat(1.0 - 1e-15), normal, false, 0.3).expect("there is light");
         assert!(found.probability.is_finite() && found.probability > 0.0);
     }

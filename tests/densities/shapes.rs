@@ -1,4 +1,4 @@
-//! Directions drawn toward a shape against the density it claims, integrated over bins of directions.
+//! Directions sampled toward a shape are compared with its pdf, integrated over bins of directions.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -15,15 +15,15 @@ use crate::support::bodies::{ball, closed_mesh};
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
-/// Calls of `check_samples` by the tests of this file.
+/// Number of calls of `check_samples` by the tests of this file.
 const TESTS: u32 = 54;
 const DRAWS: usize = 100_000;
-/// Bins by height, and around.
+/// Number of bins by height and by azimuth.
 const BINS: [usize; 2] = [12, 24];
-/// Points of the quadrature in most bins, each way.
+/// Number of quadrature points along each side of most bins.
 const POINTS: usize = 64;
 
-/// Directions within a cone, or within the image of a cone under a linear map, cut into bins.
+/// Directions within a cone, or within the image of a cone under a linear map, divided into bins.
 struct Bins {
     axis: DVec3,
     frame: Frame,
@@ -31,16 +31,17 @@ struct Bins {
     width: f64,
     map: DMat3,
     inverse: DMat3,
-    /// Whether bins grow dense toward the edge of the cone.
+    /// Whether bins become narrower toward the edge of the cone.
     ///
-    /// The density of a body with an outline like a ball's is infinite along it; times the solid angle it has a bound.
+    /// The pdf of a body with an outline like a ball's is infinite along that outline. Its product with the solid angle
+    /// is bounded.
     dense: bool,
-    /// Points of the quadrature in a bin, each way.
+    /// Number of quadrature points along each side of a bin.
     points: usize,
 }
 
 impl Bins {
-    /// All directions within `half_angle` of the axis.
+    /// Returns bins of all directions within `half_angle` of the axis.
     fn new(axis: DVec3, half_angle: f64) -> Self {
         let axis = axis.normalize();
         let sin = libm::sin(0.5 * half_angle);
@@ -48,28 +49,29 @@ impl Bins {
         Self { axis, frame: Frame::about(axis), width: 2.0 * sin * sin, map, inverse, dense: false, points: POINTS }
     }
 
-    /// The directions in which an ellipsoid is seen: the image of the cone in which the unit ball is seen.
+    /// Returns bins of the directions in which an ellipsoid is seen: the image of the cone in which the unit ball is
+    /// seen.
     fn of_ellipsoid(center: DVec3, axes: DMat3, from: DVec3) -> Self {
         let toward = axes.inverse() * (center - from);
         let half_angle = if toward.length() > 1.0 { libm::asin(1.0 / toward.length()) } else { PI };
         Self { map: axes, inverse: axes.inverse(), dense: true, ..Self::new(toward, half_angle) }
     }
 
-    /// The direction at a place in the unit square, and the solid angle that it stands for there.
+    /// Returns the direction at a point of the unit square, and the density of solid angle there.
     fn direction(&self, [height, around]: [f64; 2]) -> (DVec3, f64) {
         let (share, slope) = if self.dense { (height * (2.0 - height), 2.0 - 2.0 * height) } else { (height, 1.0) };
         let x = self.width * share;
         let (radius, (sin, cos)) = ((x * (2.0 - x)).max(0.0).sqrt(), libm::sincos(TAU * around));
         let image = self.map * self.frame.to_world(DVec3::new(radius * cos, radius * sin, 1.0 - x));
         let length = image.length();
-        // Solid angle grows under a linear map A by |det A| / |A n|^3.
+        // A linear map A scales solid angle by |det A| / |A n|^3.
         let growth = self.map.determinant().abs() / (length * length * length);
         (image / length, growth * TAU * self.width * slope)
     }
 
     fn index(&self, direction: DVec3) -> Option<usize> {
         let local = (self.inverse * direction).normalize();
-        // 1 - cos by the chord, which keeps its digits in narrow cones.
+        // 1 - cos is computed from the chord, which stays accurate in narrow cones.
         let share = 0.5 * (local - self.axis).length_squared() / self.width;
         if share > 1.0 + 1e-9 {
             return None;
@@ -82,7 +84,7 @@ impl Bins {
         Some(cell(height, BINS[0]) * BINS[1] + cell(around, BINS[1]))
     }
 
-    /// Integral of a density over each bin, by one random point in each cell of a grid.
+    /// Integrates a density over each bin, with one random point in each cell of a grid.
     fn integrate(&self, random: &mut Random, mut density: impl FnMut(DVec3) -> f64) -> Vec<f64> {
         let [rows, columns] = BINS.map(|bins| bins * self.points);
         let mut integrals = vec![0.0; BINS[0] * BINS[1]];
@@ -96,20 +98,21 @@ impl Bins {
     }
 }
 
-/// Tests what `sample` draws from a point against `pdf`; what does not lie on the drawn part is not seen.
+/// Tests the samples that a shape draws from a point against its `pdf`. A sample that does not hit the part it was
+/// drawn on is hidden.
 fn check_shape(name: &str, shape: &Shape, from: DVec3, bins: &Bins) {
     let pdf = |ray: &Ray, intersection: &Intersection| shape.pdf(ray, intersection);
     check_samples(name, shape, from, bins, |u| shape.sample(from, u), pdf);
 }
 
-/// What a light's sample says of the shape it is.
+/// Converts a light's sample to a sample of its shape.
 fn of_light(shape: &Shape, sample: &LightSample) -> ShapeSample {
     let intersection = shape.intersect(&sample.ray, f64::INFINITY).expect("the sample lies on the lamp");
     let density = sample.pdf.map(Density::SolidAngle);
     ShapeSample { direction: sample.ray.direction, part: Some(intersection.part), density }
 }
 
-/// Tests how a shape is sampled as a lamp, by its parts, from a surface of some normal.
+/// Tests the sampling of a shape as a lamp with parts, from a surface with some normal.
 fn check_lamp(name: &str, shape: &Shape, from: DVec3, axis: DVec3, half_angle: f64) {
     let normal = (axis.normalize() + DVec3::new(0.5, -0.3, 0.4)).normalize();
     let area = Area::new(Arc::new(shape.clone()), 0, (), Sides::Both, true, None, &mut KnownParts::default());
@@ -136,7 +139,7 @@ fn check_samples(
     let ray = |direction| Ray { origin: from, direction };
     let mut counts = vec![0; BINS[0] * BINS[1]];
     for _ in 0..DRAWS {
-        // Nothing drawn is nothing seen.
+        // A missing sample counts as hidden.
         let Some(sample) = sample(random.pair()) else { continue };
         let intersection = shape.intersect(&ray(sample.direction), f64::INFINITY);
         let bin = bins.index(sample.direction).unwrap_or_else(|| panic!("{name}: drawn beside the shape"));
@@ -144,7 +147,7 @@ fn check_samples(
             intersection.filter(|intersection| sample.part.is_none_or(|part| part == intersection.part))
         {
             counts[bin] += 1;
-            // What the draw says of its density is what is found of a direction met by chance.
+            // The pdf reported by the sample equals the one found for a direction that hits by chance.
             if let Some(density) = sample.density {
                 let ray = ray(sample.direction);
                 let cos = shape.point(&ray, &intersection).normal.dot(ray.direction).abs();
@@ -159,7 +162,7 @@ fn check_samples(
     });
     let integral: f64 = probabilities.iter().sum();
     let seen = counts.iter().sum::<u64>() as f64 / DRAWS as f64;
-    // 4 standard deviations of the seen share, and the quadrature's own error.
+    // 4 standard deviations of the visible fraction, plus the quadrature's own error.
     let tolerance = 4.0 * (seen * (1.0 - seen) / DRAWS as f64).sqrt() + 1e-3;
     println!("{name}: seen {seen:.4}, integral {integral:.5}");
     assert!((integral - seen).abs() < tolerance, "{name}: the pdf integrates to {integral}, {seen} is seen");
@@ -175,7 +178,7 @@ fn check_ellipsoid(name: &str, shape: &Shape, center: DVec3, axes: DMat3, from: 
     check_shape(name, shape, from, &Bins::of_ellipsoid(center, axes, from));
 }
 
-/// A map that turns, stretches unevenly and turns again.
+/// Returns a map that rotates, stretches unevenly and rotates again.
 fn skew() -> Transform {
     Transform::rotate(DVec3::new(0.2, 1.0, -0.4), 35.0)
         .then(&Transform::scale(DVec3::new(1.5, 0.4, 0.8)))
@@ -293,7 +296,7 @@ fn directions_toward_a_mesh_follow_their_density() {
     check_lamp("triangles of a mesh from inside", &mesh, DVec3::new(0.1, 0.05, 0.1), DVec3::Y, PI);
 }
 
-/// A mesh that is placed where maps keep angles has the parts of the mesh itself, and any other has its own.
+/// A mesh that is placed by an angle-preserving map has the parts of the original mesh. Any other copy has its own.
 #[test]
 fn directions_toward_the_triangles_of_copies_of_a_mesh_follow_their_density_and_miss_none() {
     let (points, faces) = ball();
@@ -333,7 +336,7 @@ fn directions_toward_the_triangles_of_copies_of_a_mesh_follow_their_density_and_
     }
 }
 
-/// A dim image with one bright and one brighter texel.
+/// Returns a dim image with one bright and one brighter texel.
 fn picture(repeat: [f64; 2], filter: TexelFilter) -> CurveKind {
     let mut texels = vec![0.05; 7 * 5];
     [texels[9], texels[23], texels[24], texels[12]] = [3.0, 10.0, 0.0, 0.0];
@@ -341,7 +344,7 @@ fn picture(repeat: [f64; 2], filter: TexelFilter) -> CurveKind {
     CurveKind::Texture(Texture { image: Arc::new(Image::of_floats(7, 1, texels)), placement })
 }
 
-/// Tests how a shape that shows an image is sampled as a lamp after a transform, from a point with a normal toward it.
+/// Tests the sampling of a shape that shows an image as a lamp after a transform, from a point whose normal faces it.
 fn check_image(name: &str, written: &Shape, map: &Transform, from: DVec3, bins: &Bins) {
     let coordinates = Coordinates::new(written, map).expect("it has coordinates");
     let picture =
@@ -405,6 +408,6 @@ fn directions_toward_lamps_of_parts_with_images_follow_their_density() {
     let coordinates = points.iter().map(|point| [point.x as f32, 0.5 * point.y as f32]).collect();
     let mesh = Mesh::new(Vertices::Double(points), faces).expect("it has triangles");
     let mesh = Shape::Mesh(Arc::new(mesh.with(Attributes { coordinates, ..Default::default() })));
-    // Its density is steep: the quadrature is finer.
+    // Its density is steep, so the quadrature is finer.
     check_image("image on a mesh", &mesh, &skew(), from, &Bins { points: 2 * POINTS, ..Bins::new(-from, 1.0) });
 }

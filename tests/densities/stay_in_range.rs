@@ -1,5 +1,5 @@
-//! Rows A3 and A4 of the stability catalog: random numbers and strata never reach 1, and what is mapped from the ends
-//! of the unit square is on the shape.
+//! Rows A3 and A4 of the stability catalog: random numbers and strata never reach 1, and the edges of the unit square
+//! are mapped onto the shape.
 
 use abbe::math::{BranchKey, DVec3, Sampler, ball_surface, cosine_hemisphere, disk, triangle_coordinates};
 use abbe::shape::{Cube, Shape};
@@ -8,10 +8,10 @@ use crate::support::bodies::{ball, closed_mesh};
 use crate::support::larger::larger;
 use crate::support::random::Random;
 
-/// The largest number that 24 bits hold below 1: the most that a sampler of f32 may give.
+/// The largest number below 1 with 24 bits, which is the most that a sampler of f32 may return.
 const MOST: f64 = 1.0 - 1.0 / (1 << 24) as f64;
 
-/// The smallest and the largest of very many numbers of the sampler.
+/// Returns the smallest and the largest of very many numbers of the sampler.
 fn extremes() -> [f64; 2] {
     let [mut least, mut most] = [1f64, 0f64];
     for pixel in 0..64 {
@@ -47,7 +47,7 @@ fn a3_and_a4_neither_the_sampler_nor_a_stratum_ever_gives_1() {
 
 #[test]
 fn a3_the_numbers_of_a_pixel_fill_their_strata() {
-    // 4^6 points of a Sobol sequence: one in each of as many equal intervals, in every dimension.
+    // 4^6 points of a Sobol sequence: each of 4^6 equal intervals contains one, in every dimension.
     const COUNT: usize = 1 << 12;
     for dimension in 0..4 {
         let mut counts = vec![0; COUNT];

@@ -1,4 +1,4 @@
-//! Maps from the unit square against the densities they claim.
+//! Maps from the unit square are compared with their stated densities.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,13 +7,13 @@ use abbe::math::{DVec3, ball_surface, cone, cosine_hemisphere, disk, one_minus_c
 use crate::support::chi_squared;
 use crate::support::random::Random;
 
-/// Calls of `check_warp`, those for filters included.
+/// Number of calls of `check_warp`, including those for filters.
 const TESTS: u32 = 17;
 const DRAWS: usize = 400_000;
 const ROWS: usize = 16;
 const COLUMNS: usize = 16;
 
-/// Tests a map whose results have coordinates in the unit square with a known probability for every cell of a grid.
+/// Tests a map into the unit square. The probability of every cell of a grid is known.
 pub fn check_warp(name: &str, warp: impl Fn([f64; 2]) -> [f64; 2], probability: impl Fn(f64, f64, f64, f64) -> f64) {
     let mut random = Random::new(name.bytes().map(u64::from).sum());
     let mut counts = vec![0; ROWS * COLUMNS];
@@ -34,21 +34,21 @@ pub fn check_warp(name: &str, warp: impl Fn([f64; 2]) -> [f64; 2], probability: 
     chi_squared::check(name, &counts, &probabilities, TESTS);
 }
 
-/// Azimuth as a share of the full turn.
+/// Returns the azimuth as a fraction of a full turn.
 pub fn around(x: f64, y: f64) -> f64 {
     (libm::atan2(y, x) / TAU + 0.5).clamp(0.0, 1.0)
 }
 
 #[test]
 fn points_of_the_disk_are_uniform_by_area() {
-    // The area between two radii and two azimuths, over pi.
+    // The area between two radii and two azimuths, divided by pi.
     let probability = |r0: f64, r1: f64, a0: f64, a1: f64| (r1 * r1 - r0 * r0) * (a1 - a0);
     check_warp("disk", |u| [disk(u).length(), around(disk(u).x, disk(u).y)], probability);
 }
 
 #[test]
 fn directions_of_the_cosine_hemisphere_follow_the_cosine() {
-    // Integral of cos(theta) / pi between two heights and two azimuths.
+    // The integral of cos(theta) / pi between two heights and two azimuths.
     let probability = |z0: f64, z1: f64, a0: f64, a1: f64| (z1 * z1 - z0 * z0) * (a1 - a0);
     let warp = |u| {
         let d: DVec3 = cosine_hemisphere(u);
@@ -77,7 +77,7 @@ fn directions_of_a_cone_are_uniform() {
         let exact = 2.0 * libm::pow(libm::sin(0.5 * half_angle), 2.0);
         assert!((one_minus_cos / exact - 1.0).abs() < 1e-14, "1 - cos of {half_angle}: {one_minus_cos:e}");
         let probability = |x0: f64, x1: f64, a0: f64, a1: f64| (x1 - x0) * (a1 - a0);
-        // 1 - cos by the chord from the axis, which keeps its digits in narrow cones.
+        // 1 - cos is computed from the chord to the axis, which stays accurate in narrow cones.
         let warp = |u| {
             let d = cone(one_minus_cos, u);
             let x = 0.5 * (d - DVec3::Z).length_squared() / one_minus_cos;
@@ -89,7 +89,7 @@ fn directions_of_a_cone_are_uniform() {
 
 #[test]
 fn points_of_a_triangle_are_uniform_by_area() {
-    // The part of a cell below the diagonal of the square, over the triangle's area of 1/2.
+    // The part of a cell below the diagonal of the square, divided by the triangle's area of 1/2.
     let probability = |x0: f64, x1: f64, y0: f64, y1: f64| {
         let whole = (x1 - x0) * (y1 - y0);
         if x1 + y1 <= 1.0 {

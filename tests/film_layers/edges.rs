@@ -1,10 +1,10 @@
-//! What layers of surfaces hold where a pixel is covered in part.
+//! Contents of surface layers in partly covered pixels.
 
 use abbe::film::Layer;
 
 use super::{rendered, rgb};
 
-/// A ball of radius 1 before nothing.
+/// A ball of radius 1 with no surface behind it.
 const BALL: &str = "camera = { position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }\n\
     film = { width = 16, height = 16 }\nrender.samples = 16\nmaterial.white.diffuse.reflectance = 0.5\n\
     light = [{ environment.radiance = 1 }]\n\
@@ -24,15 +24,15 @@ fn at_edges_albedo_and_normals_are_premultiplied_and_places_are_whole() {
     for pixel in edges {
         let share = f64::from(covered[pixel]);
         assert!((albedo[pixel][1] - 0.5 * share).abs() < 1e-5, "{} of {share}", albedo[pixel][1]);
-        // Normals within a pixel are at most a few tenths apart.
+        // Normals within a pixel differ by at most a few tenths.
         let normal = length("N", pixel);
         assert!(normal <= share + 1e-6 && normal > 0.9 * share, "{normal} of {share}");
         assert!((length("P", pixel) - 1.0).abs() < 1e-5, "a place is on the ball");
     }
 }
 
-/// A sheet with holes sends back as much of white light as it covers, and what is behind it the rest, whatever counts
-/// as the first surface. A holdout elsewhere leaves it to chance whether a sample goes through the holes.
+/// A sheet with holes counts in proportion to its opacity and whatever is behind it counts for the rest, for either
+/// definition of the first surface. With a holdout elsewhere, each sample passes through the holes or not at random.
 #[test]
 fn albedo_and_normals_of_a_sheet_with_holes_are_of_what_it_covers() {
     let opacities = [(0.1, false), (0.5, false), (0.9, false), (0.1, true), (0.3, true), (0.5, true), (0.9, true)];
@@ -64,7 +64,7 @@ fn sheet_with_holes(first: &str, has_holdout: bool, opacity: f64, has_wall: bool
     };
     let [expected, covered] =
         if has_wall { [0.8 * opacity + 0.5 * (1.0 - opacity), 1.0] } else { [0.8 * opacity, opacity] };
-    // Whether a sample meets the sheet is left to chance.
+    // Each sample hits the sheet or misses it at random.
     let deviation = (opacity * (1.0 - opacity) / (64.0 * 256.0_f64)).sqrt();
     for (name, expected) in [("albedo.R", expected), ("N.Z", covered), ("A", covered)] {
         let found = mean(name);
@@ -75,7 +75,8 @@ fn sheet_with_holes(first: &str, has_holdout: bool, opacity: f64, has_wall: bool
     }
 }
 
-/// A pane with holes before a wall: half is met, all of whose light goes on or back, and half is not.
+/// A pane with holes in front of a wall. Half of the light hits the pane, which reflects or transmits all of it. The
+/// other half passes through the holes.
 #[test]
 fn the_albedo_behind_a_pane_with_holes_counts_once() {
     let text = "camera = { position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 5 }\n\
@@ -87,12 +88,12 @@ fn the_albedo_behind_a_pane_with_holes_counts_once() {
         [[light]]\npoint = { position = [1, 1, 4], intensity = 10 }\n";
     let albedo = rgb(&rendered(text, &[Layer::Albedo]), "albedo");
     let mean = albedo.iter().map(|rgb| rgb[1]).sum::<f64>() / albedo.len() as f64;
-    // Each sample says 1 or 0.8, by chance.
+    // Each sample has an albedo of 1 or 0.8, at random.
     let sigma = 0.1 / libm::sqrt(256.0 * 256.0);
     assert!((mean - 0.9).abs() < 5.0 * sigma, "{mean} for 0.9 +- {sigma:.1e}");
 }
 
-/// In CIE XYZ, white has a Z above 1.
+/// White has a Z above 1 in CIE XYZ.
 #[test]
 fn albedo_of_white_is_the_white_of_the_film() {
     for (space, white) in [("lin_ciexyzd65_scene", [0.9505, 1.0, 1.0891]), ("lin_ap1_scene", [1.0; 3])] {

@@ -1,4 +1,4 @@
-//! Layers as files hold them.
+//! Layers as they are stored in files.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use exr::prelude::{AttributeValue, FlatSamples, ReadChannels, ReadLayers, read};
 use super::ROOM;
 use crate::support::scenes::rendered;
 
-/// A part's name, and its channels with their bits and values.
+/// Each part's name, and its channels with their number of bits and their values.
 type Parts = Vec<(Option<String>, BTreeMap<String, (u32, Vec<f32>)>)>;
 
 fn written(precision: Precision, compression: Compression, multipart: bool, layers: &[Layer]) -> (Parts, Vec<u8>) {
-    // Caustics would be most of the plan, and the plan most of the time.
+    // Caustics would take most of the planning time, and planning most of the total time.
     let text = ROOM.replace("samples = 8", "samples = 2, caustics = \"off\"");
     let mut scene = Scene::parse(&text, "").expect("the scene is valid");
     (scene.format.precision, scene.format.compression) = (precision, compression);
@@ -107,7 +107,7 @@ fn a_compression_that_loses_changes_colors_alone() {
         let (red, exact) = (&parts[0].1["R"].1, &exact[0].1["R"].1);
         assert!(red != exact, "{compression:?} loses nothing");
         if compression == Compression::Pxr24 {
-            // 15 bits of a mantissa are left, rounded.
+            // Pxr24 keeps 15 bits of the mantissa, rounded.
             assert!(red.iter().zip(exact).all(|(red, exact)| (red - exact).abs() <= exact.abs() / 65536.0));
         } else {
             assert!(parts[0].1["A"] == half[0].1["A"], "{compression:?} changes alpha");
@@ -118,7 +118,7 @@ fn a_compression_that_loses_changes_colors_alone() {
 #[test]
 fn a_lossy_file_of_one_part_holds_no_data() {
     let asked = |compression, precision, multipart, layers: &[Layer]| {
-        // Caustics would be most of the plan, and the plan most of the time.
+        // Caustics would take most of the planning time, and planning most of the total time.
         let text = ROOM.replace("samples = 8", "samples = 2, caustics = \"off\"");
         let mut scene = Scene::parse(&text, "").expect("the scene is valid");
         (scene.format.compression, scene.format.precision, scene.format.multipart) =
@@ -170,7 +170,7 @@ fn half_precision_keeps_places_and_statistics_whole() {
 fn o1_what_is_too_bright_for_half_precision_is_its_largest_number_and_is_counted() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("image.exr");
-    // Halves end at 65504; from 65520 on, the nearest would be infinity.
+    // The largest half is 65504. From 65520 on, numbers would be rounded to infinity.
     for (radiance, clamped) in [("65503", 0), ("65519.99", 0), ("65520", 4 * 4 * 3), ("1e6", 4 * 4 * 3)] {
         let text = format!(
             "camera = {{ position = [0, 0, 4], look_at = [0, 0, 0], vertical_fov = 40 }}\n\

@@ -1,4 +1,4 @@
-//! Clear bodies that the camera does not see, and what is within them.
+//! Transparent bodies that are hidden from the camera, and the objects inside them.
 
 use abbe::Image;
 use abbe::film::Layer;
@@ -7,7 +7,7 @@ use super::{beauty, rendered, rgb};
 
 const PIXELS: usize = 16;
 
-/// A body that the camera does not see, and what is within it and behind it.
+/// Renders a body that is hidden from the camera, with `rest` inside and behind it.
 fn within(body: &str, rest: &str, samples: u32) -> Image {
     let text = format!(
         "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], vertical_fov = 10 }}\nfilm = {{ width = 4, height = 4 }}\n\
@@ -23,7 +23,8 @@ fn mean(colors: &[[f64; 3]]) -> f64 {
     colors.iter().map(|color| color[1]).sum::<f64>() / colors.len() as f64
 }
 
-/// In a medium of index n radiance is n^2 times that outside, which what leaves it has no more.
+/// Inside a medium of index n, radiance is n^2 times the radiance outside. Light that leaves the medium loses this
+/// factor.
 #[test]
 fn a_white_ball_in_a_hidden_body_is_as_bright_as_the_sky_around_both() {
     const SAMPLES: u32 = 1024;
@@ -31,8 +32,8 @@ fn a_white_ball_in_a_hidden_body_is_as_bright_as_the_sky_around_both() {
         [[light]]\nenvironment = { radiance = 1 }\n";
     let image = within("index = 1.5", ball, SAMPLES);
     let (shown, lost) = (mean(&beauty(&image)), mean(&rgb(&image, "residual")));
-    // Roulette alone makes noise, which is as bright at most as what is followed in place of what it ends: a sample is
-    // off by less than 1/4, root mean square.
+    // Russian roulette is the only source of noise. It is at most as bright as the paths that are followed in place of
+    // those it ends, so the error of a sample is less than 1/4, root mean square.
     let five_sigma = 5.0 * 0.25 / (PIXELS as f64 * f64::from(SAMPLES)).sqrt();
     assert!((shown - 1.0).abs() < five_sigma && lost.abs() < five_sigma, "{shown}, of which {lost} is lost");
 }
@@ -48,8 +49,8 @@ fn behind_holes_in_a_hidden_body_the_camera_sees_as_if_that_were_not_there() {
     }
 }
 
-/// Light that goes straight on through holes and panes is seen as if they were not there; what is mirrored or refracted
-/// is not seen straight.
+/// Light that passes through holes and panes is seen as if they were not there. Reflected or refracted light is not
+/// seen directly.
 #[test]
 fn what_the_camera_does_not_see_is_hidden_behind_holes_and_panes_and_not_in_mirrors_and_glass() {
     let quad = "quad = { center = [0, 0, 0], u = [3, 0, 0], v = [0, 3, 0] }";

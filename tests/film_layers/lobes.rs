@@ -1,11 +1,12 @@
-//! Light by the way it comes to the first surface, where photons bring it.
+//! Light sorted by the lobe of the first surface, where photons contribute it.
 
 use abbe::film::Layer;
 
 use super::{assert_sum, beauty, rendered, rgb};
 
-/// A caustic in glass, and a camera that looks at it through the surface of water that the glass displaces: photons are
-/// gathered where the camera's ray scatters first. Some of them come straight from the lamp, past that surface alone.
+/// A caustic in glass, seen by a camera that looks through the surface of water that the glass displaces. Photons are
+/// gathered where the camera's ray first scatters. Some of them come straight from the lamp and cross only that
+/// surface.
 const BEHIND_HIDDEN_WATER: &str = r#"
 camera = { position = [0, 1, 1.5], look_at = [0, 0, 0], vertical_fov = 50 }
 film = { width = 12, height = 12 }
@@ -52,13 +53,13 @@ fn photons_that_are_gathered_at_the_first_surface_have_its_lobes_and_are_direct_
     let all = beauty(&image).iter().flatten().sum::<f64>();
     assert!(total("caustics") > 0.3 * all && total("diffuse_direct") > 0.1 * all, "{} of {all}", total("caustics"));
     assert_sum(&image, &LOBES.map(Layer::name), 1.0);
-    // Whatever other layers are asked for.
+    // The result does not depend on which other layers are asked for.
     let plain = rendered(BEHIND_HIDDEN_WATER, &[Layer::Direct]);
     let direct = rgb(&plain, "direct").iter().flatten().sum::<f64>();
     assert!((direct / total("diffuse_direct") - 1.0).abs() < 1e-5, "{direct}");
 }
 
-/// The same light, looked at from below the water's surface: photons are shown.
+/// The light of [`BEHIND_HIDDEN_WATER`] is seen from below the water's surface, where photons are splatted.
 #[test]
 fn photons_that_are_shown_are_direct_where_they_come_straight() {
     let below = BEHIND_HIDDEN_WATER.replace("position = [0, 1, 1.5]", "position = [0, 0.2, 1.4]");

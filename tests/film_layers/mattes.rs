@@ -8,12 +8,12 @@ use super::{id, rendered, rgb};
 const PIXELS: usize = 36;
 const SAMPLES: usize = 256;
 
-/// A floor seen from above through a black card with holes. The lamp is below the card, which throws no shadow.
+/// Renders a floor seen from above through a black card with holes. The lamp is below the card, which casts no shadow.
 fn card_over_floor(floor: &str, card: &str, opacity: [f64; 2]) -> Image {
     seen_through("diffuse.reflectance = 0", floor, card, opacity)
 }
 
-/// A floor seen from above through a card of any material, below which the lamp is.
+/// Renders a floor seen from above through a card of any material. The lamp is below the card.
 fn seen_through(of: &str, floor: &str, card: &str, opacity: [f64; 2]) -> Image {
     let [of_floor, of_card] = opacity;
     let text = format!(
@@ -41,7 +41,7 @@ fn red(image: &Image) -> f64 {
     mean(image.rgb().iter().map(|rgb| f64::from(rgb[0])))
 }
 
-/// Of how many samples a share is: five standard deviations of it.
+/// Returns five standard deviations of a fraction that is estimated from all samples of the image.
 fn five_sigma(share: f64) -> f64 {
     5.0 * (share * (1.0 - share) / (PIXELS * SAMPLES) as f64).sqrt() + 1e-6
 }
@@ -59,7 +59,7 @@ fn a_shadow_catcher_seen_through_holes_shows_no_light_of_its_own() {
         assert!((of_card - opacity).abs() < five_sigma(opacity), "{of_card} of {opacity}");
         assert!(rgb(&image, "shadow").as_flattened().iter().all(|share| share.abs() < 1e-5), "{opacity}");
         assert_all_is_accounted_for(&image);
-        // With holes of its own it is as clear.
+        // A catcher with holes of its own is just as clear.
         let image = card_over_floor("shadow_catcher = true\n", "", [opacity, 0.0]);
         assert!(image.rgb().iter().all(|rgb| *rgb == [0.0; 3]), "{opacity}: {:?}", image.rgb()[0]);
         assert!(coverage(&image).abs() < 1e-5, "{opacity}: {}", coverage(&image));
@@ -86,12 +86,12 @@ fn a_pane_with_holes_shows_a_shadow_catcher_where_it_is() {
         let image = seen_through(pane, "shadow_catcher = true\n", "", [1.0, opacity]);
         let (of_card, shown) = (coverage(&image), red(&image) / (0.2 * open));
         assert!((of_card - opacity).abs() < five_sigma(opacity), "{of_card} of {opacity}");
-        // Its pixels are not all as bright.
+        // The pixels differ a little in brightness.
         assert!((shown / of_card - 1.0).abs() < 1e-3, "{shown} through {of_card}");
     }
 }
 
-/// Of a pane or a sheet the hole is as whole as of what nothing is seen through.
+/// A pane or sheet that is a holdout makes as complete a hole as an opaque body does.
 #[test]
 fn a_holdout_of_what_is_seen_through_hides_all_but_what_is_behind_its_holes() {
     let open = red(&card_over_floor("", "", [1.0, 0.0]));
@@ -110,7 +110,7 @@ fn a_holdout_of_what_is_seen_through_hides_all_but_what_is_behind_its_holes() {
     }
 }
 
-/// Photons are shown through no pane that is held out.
+/// Photons are not splatted behind a pane that is a holdout.
 #[test]
 fn a_caustic_behind_a_pane_that_is_held_out_is_hidden() {
     let text = |pane: &str| {
@@ -133,7 +133,7 @@ fn a_caustic_behind_a_pane_that_is_held_out_is_hidden() {
     assert_eq!(caustics(&hidden), 0.0);
 }
 
-/// A thing in the plate that is seen through a pane is seen as through glass, not as a black pane that covers it all.
+/// An object of the plate is seen through a pane as through glass. The pane does not turn into a black cover.
 #[test]
 fn what_stands_for_the_plate_is_seen_through_panes_as_all_else() {
     let floor = |sheet: &str, visibility: &str| seen_through(sheet, visibility, "", [1.0, 1.0]);
@@ -147,13 +147,13 @@ fn what_stands_for_the_plate_is_seen_through_panes_as_all_else() {
             assert!((coverage(&image) - 1.0).abs() < 1e-6, "{sheet}, {visibility}: {}", coverage(&image));
         }
     }
-    // Nothing is met that lets all light through.
+    // A sheet that transmits all light does not count as a surface.
     let image = floor("retarder = { axis = [1, 0, 0], retardance = 90 }", "holdout = true\n");
     assert!(red(&image) == 0.0 && coverage(&image) == 0.0, "{} and {}", red(&image), coverage(&image));
 }
 
-/// Photons are shown there as well: a caustic on a floor that stands for the plate is seen through a pane, and what of
-/// it is seen through the holes of the pane is not.
+/// Photons are splatted there as well: a caustic on a floor that stands for the plate is seen through a pane. The part
+/// of it behind the pane's holes is not.
 #[test]
 fn a_caustic_on_what_stands_for_the_plate_is_seen_through_panes() {
     let image = |visibility: &str, opacity: f64| {
@@ -179,9 +179,9 @@ fn a_caustic_on_what_stands_for_the_plate_is_seen_through_panes() {
     }
 }
 
-/// The share of the light of a disc that another disc hides from the middle of a floor, which is seen through both:
-/// b^2 / (b^2 + k^2) of a^2 / (a^2 + h^2), for radii and heights of the discs (Howell, Menguc, Daun & Siegel 2020,
-/// *Thermal Radiation Heat Transfer*, configuration factor of an element parallel to a disk).
+/// The fraction of the light of a disc that another disc blocks at the middle of a floor, which is seen through both:
+/// b^2 / (b^2 + k^2) divided by a^2 / (a^2 + h^2), for radii and heights of the discs (Howell, Menguc, Daun & Siegel
+/// 2020, *Thermal Radiation Heat Transfer*, configuration factor of an element parallel to a disk).
 #[test]
 fn a_shadow_catcher_seen_through_a_lamp_that_the_camera_does_not_see_shows_the_shadow_alone() {
     let shadow = |more: &str| {
@@ -203,8 +203,8 @@ fn a_shadow_catcher_seen_through_a_lamp_that_the_camera_does_not_see_shows_the_s
     assert!((shadow(disc) - expected).abs() < 0.005, "{} for {expected}", shadow(disc));
 }
 
-/// The camera sees `count` sheets, one behind the other, and a wall. Each sheet and the wall have the coverage of what
-/// reaches them, whatever the light that comes from there.
+/// Renders `count` sheets, one behind the other, in front of a wall. The coverage of each sheet and of the wall depends
+/// on what reaches it, not on the light that it sends.
 fn sheets_before_a_wall(count: u32, opacity: f64, more: &str) -> Image {
     let sheet = |number: u32| {
         format!(
@@ -231,7 +231,7 @@ fn what_is_behind_many_holes_is_met_as_often_as_it_is_seen() {
         let alpha = image.layer("A").expect("every image has it");
         assert!(alpha.iter().all(|&alpha| alpha == 1.0), "{count} of {opacity}: {alpha:?}");
         assert!(image.layer("N.Z").expect("it was asked for").iter().all(|&z| (z - 1.0).abs() < 1e-6), "{more}");
-        // No more objects have a rank.
+        // There are no ranks for more objects.
         for number in 0..=count.min(5) {
             let name = if number == count { "wall".into() } else { format!("sheet {number}") };
             let reached = (1.0 - opacity).powi(number as i32);
@@ -239,7 +239,7 @@ fn what_is_behind_many_holes_is_met_as_often_as_it_is_seen() {
             let found = mean((0..PIXELS).map(|pixel| coverage_of(&image, &name, pixel)));
             assert!((found - share).abs() < five_sigma(share), "{name} of {count}: {found} for {share}");
         }
-        // What chance adds to a sample and takes from another is nothing on the average. A limit leaves out all.
+        // Random gains and losses of samples average to nothing. A limit cuts off everything.
         let left_out = if more.is_empty() { 0.0 } else { 1.0 };
         let left = rgb(&image, "residual");
         let left = left.iter().map(|rgb| rgb[1]).sum::<f64>() / left.len() as f64;
@@ -247,7 +247,7 @@ fn what_is_behind_many_holes_is_met_as_often_as_it_is_seen() {
     }
 }
 
-/// The coverage of an object in a pixel.
+/// Returns the coverage of an object in a pixel.
 fn coverage_of(image: &Image, name: &str, pixel: usize) -> f64 {
     let bits = id(name);
     let rank = |rank: usize, half: usize| {

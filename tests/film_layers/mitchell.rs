@@ -1,4 +1,4 @@
-//! A filter that is negative in places: sharp edges, and numbers beside the image that stay in their range.
+//! A filter with negative lobes: sharp edges, and values beside the image that stay in range.
 
 use abbe::Image;
 use abbe::film::{Film, Filter, Layer, Mitchell};
@@ -11,10 +11,10 @@ use crate::support::scenes::{film_of, films_of, moments, scene, standard_errors}
 
 /// Pixels along each side of images of an edge.
 const SIDE: usize = 8;
-/// Where the edges of the square cross the film.
+/// Positions of the square's edges on the film.
 const EDGE: [f64; 2] = [3.3, 4.85];
 
-/// The corner of a square that shines before nothing; one unit is a pixel.
+/// Returns the corner of an emissive square with nothing behind it. One unit is a pixel.
 fn corner(filter: &str, more: &str) -> String {
     let [right, bottom] = [EDGE[0] - 4.0, 4.0 - EDGE[1]];
     format!(
@@ -27,7 +27,7 @@ fn corner(filter: &str, more: &str) -> String {
     )
 }
 
-/// The integral of a cubic filter up to x: of equation 8 of Mitchell & Netravali 1988, piece by piece.
+/// Returns the integral of a cubic filter up to x: equation 8 of Mitchell & Netravali 1988, integrated piece by piece.
 fn integral(b: f64, c: f64, x: f64) -> f64 {
     let inner = [6.0 - 2.0 * b, 0.0, -18.0 + 12.0 * b + 6.0 * c, 12.0 - 9.0 * b - 6.0 * c];
     let outer = [8.0 * b + 24.0 * c, -12.0 * b - 48.0 * c, 6.0 * b + 30.0 * c, -b - 6.0 * c];
@@ -59,7 +59,8 @@ fn an_edge_is_the_integral_of_the_filter_for_few_samples_and_many() {
             let at = |axis: usize, i: usize| integral(b, c, EDGE[axis] - i as f64 - 0.5);
             let expected = at(0, place % SIDE) * at(1, place / SIDE);
             let (mean, variance) = moments(films.iter().map(|film| f64::from(film.pixels[place].rgb[1])));
-            // As if one more sample had fallen on the square, for the pixels where hardly any does; and 32 bits.
+            // Adds one more sample on the square, for pixels where hardly any sample hits it, and the rounding to 32
+            // bits.
             let error = (variance / seeds as f64).sqrt() + one / (f64::from(samples) * seeds as f64) + 1e-7;
             let z = (mean - expected).abs() / error;
             assert!(z < standard_errors(5 * SIDE * SIDE), "b {b}, c {c}, pixel {place}: {mean} is {z} off {expected}");
@@ -74,7 +75,7 @@ fn an_edge_is_the_integral_of_the_filter_for_few_samples_and_many() {
 fn alpha_is_filtered_as_light_is_and_stays_within_0_and_1() {
     for film in films(&corner("\"mitchell\"", ""), 64, 8) {
         for pixel in &film.pixels {
-            // The square shines with a radiance of 1.
+            // The square has a radiance of 1.
             assert_eq!(pixel.alpha, pixel.rgb[0].clamp(0.0, 1.0));
         }
         let rgb = || film.pixels.iter().map(|pixel| pixel.rgb[0]);
@@ -95,7 +96,7 @@ fn an_even_image_has_no_noise() {
     }
 }
 
-/// Nor have its halves, of which each is an image of its own samples.
+/// The halves of an even image have no noise either. Each of them is an image of its own samples.
 #[test]
 fn halves_of_an_even_image_have_no_noise() {
     let sky = corner("\"mitchell\"", "light = [{ environment = { radiance = 1 } }]\n");
@@ -165,7 +166,7 @@ fn layers_change_no_bit_of_a_sharpened_image() {
     }
 }
 
-/// The variance layer against that of many images, where samples are no more even than by chance.
+/// The variance layer agrees with the variance of many images, where samples are no more even than random ones.
 #[test]
 fn the_variance_is_that_of_the_sharpened_image() {
     let text = "camera = { position = [0, 0, 0.9], look_at = [0, 0, -1], vertical_fov = 70 }\n\
@@ -182,11 +183,11 @@ fn the_variance_is_that_of_the_sharpened_image() {
         seen += moments(films.iter().map(|film| f64::from(film.pixels[place].rgb[1]))).1;
         said += films.iter().map(|film| rgb_of(film, "variance", place, 1)).sum::<f64>() / films.len() as f64;
     }
-    // Samples spread evenly make the image quieter than chance, as with any filter.
+    // As with any filter, evenly spread samples make the image less noisy than random ones.
     assert!(said / seen > 0.9 && said / seen < 2.5, "{said} is said, {seen} is seen");
 }
 
-/// Photons that a mirror sends to the middle of a floor: pixels share all of their light, whatever the filter is.
+/// A mirror sends photons to the middle of a floor. With any filter, the pixels together receive all of their light.
 #[test]
 fn photons_are_spread_by_the_filter_with_its_sign() {
     let caustic = |filter: &str| {

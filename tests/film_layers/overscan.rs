@@ -1,4 +1,4 @@
-//! Overscan: pixels around the format that change none in it.
+//! Overscan: pixels around the format, which change none inside it.
 
 use abbe::film::{Film, Layer, Overscan, Window};
 use abbe::{Image, Options};
@@ -17,7 +17,8 @@ fn window(film: &Film) -> Window {
     Window { left: film.corner[0], top: film.corner[1], width: film.width, height: film.height }
 }
 
-/// All that a film says of the pixels that a window has: numbers of the image and of every layer, as bits.
+/// Returns the bits of everything that a film stores for the pixels of a window: the numbers of the image and of every
+/// layer.
 fn bits(film: &Film, of: Window) -> Vec<u32> {
     let there = window(film);
     assert!(there.holds(&of), "{there:?} does not hold {of:?}");
@@ -64,7 +65,8 @@ fn overscan_changes_no_bit_of_the_format_and_crops_are_parts_of_both() {
     }
 }
 
-/// What is around the format is what a larger format shows there: camera paths, photons shown and gathered.
+/// The pixels around the format match those of a larger format, for camera paths and for photons that are splatted or
+/// gathered.
 #[test]
 fn overscan_shows_what_a_wider_view_shows() {
     let samples = |text: &str| text.replace("samples = 8", "samples = 64");
@@ -98,7 +100,7 @@ fn overscan_shows_what_a_wider_view_shows() {
     }
 }
 
-/// A plane whose places tell where the rays of pixels go.
+/// Renders a plane whose positions show where the rays of pixels go.
 fn depths(camera: &str, film: &str) -> Image {
     let text = format!(
         "camera = {{ position = [0.2, 1, 3], look_at = [0, 0.5, 0], {camera} }}\n\
@@ -114,11 +116,12 @@ fn places(image: &Image) -> Vec<[f32; 3]> {
     (0..x.len()).map(|at| [x[at], y[at], z[at]]).collect()
 }
 
-/// The film goes on beyond the format in the plane that the lens projects on.
+/// The film extends beyond the format, in the plane that the lens projects onto.
 #[test]
 fn a_pixel_of_the_overscan_looks_where_one_of_a_larger_format_does() {
     let half = libm::tan(20.0_f64.to_radians());
-    // Twice and three times the format, of 8 x 6 pixels, around it; a shift is told in heights of the format.
+    // The overscan adds twice the format of 8 x 6 pixels, so the larger format is three times as large. A shift is
+    // given in heights of the format.
     let fov = 2.0 * (3.0 * half).atan().to_degrees();
     for (camera, larger) in [
         ("vertical_fov = 40".into(), format!("vertical_fov = {fov:?}")),
@@ -140,7 +143,7 @@ fn a_pixel_of_the_overscan_looks_where_one_of_a_larger_format_does() {
     }
 }
 
-/// A view all around goes on beyond its seam and its poles.
+/// A full panorama continues beyond its seam and its poles.
 #[test]
 fn overscan_of_a_view_all_around_is_its_other_side() {
     let image = depths("projection = \"equirectangular\"", "width = 16, height = 8, overscan = [3, 2, 4, 2]");

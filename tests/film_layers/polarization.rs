@@ -1,4 +1,4 @@
-//! The layer `polarization` is what the Stokes vectors of its pixel make, whatever light they are summed of.
+//! The layer `polarization` follows from the Stokes vectors of its pixel, whatever light they are summed from.
 
 use abbe::Scene;
 use abbe::film::{Layer, polarization};
@@ -10,7 +10,7 @@ use crate::support::scenes::SHEETS;
 #[test]
 fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {
     let all = Layer::STOKES.into_iter().chain([Layer::Polarization]).collect::<Vec<_>>();
-    // Photons are shown and gathered, samples are subtracted.
+    // Photons are splatted and gathered, and some samples are subtracted.
     for (filter, space) in [("box", ColorSpace::Rec709), ("mitchell", ColorSpace::AcesCg)] {
         let film = format!("height = 28, filter = \"{filter}\", color_space = \"{}\"", space.interop_id());
         let image = rendered(&(ROOM.replace("height = 28", &film) + SHEETS), &all);
@@ -23,7 +23,7 @@ fn degrees_and_angles_are_those_of_the_sums_of_stokes_vectors() {
             let found = ["degree", "linear_degree", "angle"]
                 .map(|channel| f64::from(image.layer(&format!("polarization.{channel}")).expect("it is there")[pixel]));
             let expected = polarization(stokes);
-            // Sums are stored in f32: their differences are as many roundings off as they cancel.
+            // Sums are stored in f32. Cancellation magnifies the rounding errors of their differences.
             let rounding = 16.0 * f64::from(f32::EPSILON) * s0.iter().sum::<f64>().abs() / stokes[0].max(1e-9);
             assert!((found[0] - expected[0]).abs() <= rounding, "{filter}: pixel {pixel}: {found:?} for {expected:?}");
             assert!((found[1] - expected[1]).abs() <= rounding, "{filter}: pixel {pixel}: {found:?} for {expected:?}");

@@ -1,4 +1,4 @@
-//! The energy audit: all weight that leaves the camera comes to an end, and what a limit cuts off shows.
+//! The energy audit: all weight that leaves the camera ends somewhere, and the layer shows what a limit cuts off.
 
 use abbe::film::Layer;
 use abbe::trace::{self, Method};
@@ -8,7 +8,7 @@ use super::{ROOM, rendered, rgb};
 use crate::support::larger::larger;
 use crate::support::scenes::moments;
 
-/// Clear glass, glass that absorbs, glass in water, a pane, a mirror and gold: no random light path.
+/// Clear glass, absorbing glass, glass in water, a pane, a mirror and gold: no light path is random.
 const SPECULAR: &str = r#"
 camera = { position = [0, 1, 5], look_at = [0, 0.5, 0], vertical_fov = 30 }
 film = { width = 32, height = 24, filter = "center" }
@@ -45,7 +45,7 @@ fn residual(image: &Image) -> Vec<[f64; 3]> {
     rgb(image, "residual")
 }
 
-/// The mean of each channel over the pixels, and how many standard errors it is from 0.
+/// Returns the mean of each channel over the pixels and its distance from 0 in standard errors.
 fn mean_and_z(residual: &[[f64; 3]]) -> [(f64, f64); 3] {
     [0, 1, 2].map(|channel| {
         let (mean, variance) = moments(residual.iter().map(|rgb| rgb[channel]));
@@ -64,7 +64,7 @@ fn without_chance_all_weight_is_accounted_for_in_every_pixel() {
     }
 }
 
-/// The layer's mean is the weight that the report says was stopped: that of a white light, whose channels are 1.
+/// The mean of the layer equals the stopped weight of the report, which is that of a white light whose channels are 1.
 #[test]
 fn a_limit_of_eight_bounces_shows_where_it_cuts() {
     let scene = SPECULAR.replace("render = {}", "render.max_bounces = 8");
@@ -77,7 +77,7 @@ fn a_limit_of_eight_bounces_shows_where_it_cuts() {
     assert!((mean / stopped - 1.0).abs() < 0.05, "{mean} is not {stopped}");
 }
 
-/// Where branches are chosen and paths ended by chance the mean is 0, whatever surfaces do and however light is found.
+/// With branches chosen and paths ended at random, the mean is 0 on all surfaces and for all ways to find light.
 #[test]
 fn by_chance_the_mean_is_nothing() {
     let more = [
@@ -98,8 +98,8 @@ fn by_chance_the_mean_is_nothing() {
     }
 }
 
-/// Paths that end because their light was looked for at light vertices have ended at a light; those cut by a limit of
-/// diffuse bounces have not.
+/// Paths that end because light vertices contribute their light have ended at a light. Paths that a limit of diffuse
+/// bounces cuts off have not.
 #[test]
 fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
     let text = |render: &str, layers: &str| {
@@ -119,7 +119,7 @@ fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
         let numbers: Vec<f64> = film.layers[0].values.iter().map(|&x| f64::from(x)).collect();
         mean_and_z(numbers.as_chunks().0)
     };
-    // The report has it without a layer, by some of the paths.
+    // The report states the stopped weight without a layer, from some of the paths.
     let stopped = |render: &str, light_vertices: bool| {
         let scene = Scene::parse(&text(render, ""), "").expect("the scene is valid");
         let method = Method { light_vertices, ..plan(&scene).method };
@@ -135,12 +135,13 @@ fn light_vertices_end_paths_and_a_limit_of_diffuse_bounces_loses_them() {
     assert_eq!([true, false].map(|light_vertices| stopped("", light_vertices)), [0.0; 2]);
     let unlimited = room("");
     assert!(unlimited.iter().all(|(_, z)| z.abs() <= 3.0), "{unlimited:?}");
-    // What leaves the first wall is 0.7 of what arrives, and nothing may leave it. The lamp takes what meets it.
+    // The first wall scatters 0.7 of the arriving weight, and none of it may leave the wall. The lamp absorbs what hits
+    // it.
     let limited = room(", diffuse_bounces = 0");
     assert!(limited.iter().all(|(mean, _)| (0.6..=0.7).contains(mean)), "{limited:?}");
 }
 
-/// A filter takes half of all light before any surface does, which is no loss, and no surface's color.
+/// A filter blocks half of all light before any surface. That is no loss and does not belong to the color of a surface.
 #[test]
 fn a_filter_before_the_camera_is_accounted_for() {
     let behind = |scene: &str| scene.replacen("vertical_fov = 30", "vertical_fov = 30, polarizer = { axis = 20 }", 1);

@@ -10,7 +10,8 @@ use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, film_of, quad, scene, view};
 
-/// Y, x, y by a perfect mirror's.
+/// Returns the XYZ of a material relative to a perfect mirror, which reflects a D65 lamp at an angle in degrees, and
+/// the name of the basis that the plan chose.
 fn mirrored(material: &str, degrees: f64) -> ([f64; 3], String) {
     let (y, x) = degrees.to_radians().sin_cos();
     let center = [-6.0 * y, 0.0, 6.0 * x];
@@ -28,7 +29,7 @@ fn mirrored(material: &str, degrees: f64) -> ([f64; 3], String) {
     (apply(&ColorSpace::Rec709.to_xyz(), rgb), name)
 }
 
-/// CIELAB under the film's white.
+/// Converts XYZ to CIELAB under the film's white.
 fn lab(xyz: [f64; 3]) -> [f64; 3] {
     colors::lab(xyz, apply(&ColorSpace::Rec709.to_xyz(), [1.0; 3]))
 }
@@ -38,8 +39,8 @@ fn of_xy(y: f64, chromaticity: [f64; 2]) -> [f64; 3] {
     lab([x / small_y * y, y, (1.0 - x - small_y) / small_y * y])
 }
 
-/// Thickness in nm; Y, x and y at normal incidence and at 45 degrees: sums over 1 nm of Airy's formula, made with
-/// colour-science 0.4.7.
+/// Thickness in nm; Y, x and y at normal incidence and at 45 degrees. They are sums over 1 nm of Airy's formula,
+/// computed with colour-science 0.4.7.
 const SOAP: [(f64, [f64; 3], [f64; 3]); 9] = [
     (100.0, [0.075937, 0.31403, 0.33860], [0.092297, 0.29998, 0.32220]),
     (150.0, [0.046665, 0.43156, 0.43955], [0.088802, 0.35556, 0.38060]),
@@ -65,7 +66,7 @@ fn soap_has_its_colors() {
     }
 }
 
-/// Thickness in nm of a clear oxide of index 2.4 on titanium, and its CIELAB.
+/// Thickness in nm of a clear oxide of index 2.4 on titanium, and its CIELAB color.
 const OXIDE: [(f64, [f64; 3]); 11] = [
     (0.0, [81.02, 1.04, 3.62]),
     (20.0, [65.57, 2.81, 22.48]),
@@ -91,7 +92,8 @@ fn titanium_has_the_colors_of_its_oxide() {
     }
 }
 
-/// A slab in air with the same quarter waves on both faces, before a lamp: light crosses them twice or more.
+/// A slab in air with the same quarter-wave layers on both faces, in front of a lamp. Light crosses the layers twice or
+/// more.
 #[test]
 fn colors_through_slabs_coated_on_both_faces_are_missed_by_no_more_than_the_plan_says() {
     const SCENES: u64 = 40;
@@ -124,7 +126,7 @@ fn colors_through_slabs_coated_on_both_faces_are_missed_by_no_more_than_the_plan
         let mut exact = [0.0; 3];
         for (nm, column) in visible::wavelengths().zip(emission.columns()) {
             let [r, t] = shares(1.0, &layers, [1.52, 0.0], 1.0, nm);
-            // To and fro between two faces, without phase.
+            // Incoherent reflections between two faces.
             let through = t * t / (1.0 - r * r);
             (0..3).for_each(|c| exact[c] += through * column[c]);
         }

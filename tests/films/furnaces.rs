@@ -1,4 +1,5 @@
-//! The white furnace under films: what is clear shows 1, and metal under a clear film what Abeles' matrices say.
+//! The white furnace under films: clear materials return 1, and metal under a clear film returns what Abeles' matrices
+//! predict.
 
 use abbe::material::{Index, Lobes, Material, ScatterContext};
 use abbe::spectrum::{Draw, Table};
@@ -9,10 +10,10 @@ use crate::support::arrivals::{self, context, material, toward};
 const COSINES: [f64; 7] = [0.01, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0];
 const DRAWS: u32 = 1 << 12;
 const ROUGHNESSES: [f64; 5] = [0.0, 0.2, 0.45, 0.7, 1.0];
-/// Where three bands read, in nm.
+/// Wavelengths in nm at which the three bands are evaluated.
 const BANDS_NM: [f64; 3] = [656.27, 546.07, 486.13];
 
-/// What each band shows of an even sky, and how far chance may put it off.
+/// Returns the brightness of each band under a uniform sky, with the deviation that noise may cause.
 fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos: f64) -> [[f64; 2]; 3] {
     let draw = Draw::<4>::fixed(3);
     let at = context(&draw, toward(cos, 0.4), indices[0]);
@@ -21,7 +22,7 @@ fn furnace(material: &Material<Table>, indices: [f64; 2], from_inside: bool, cos
     arrivals::furnace(material, &context, DRAWS).map(|[shown, error]| [shown, allowed * error])
 }
 
-/// Clear films: a quarter wave, soap, a mirror of five layers, and more than a wavelength.
+/// Clear films: a quarter wave, soap, a mirror of five layers, and a layer thicker than a wavelength.
 const CLEAR: [&str; 4] = [
     "[{ index = 1.38, thickness_nm = 99.6 }]",
     "[{ index = 1.33, thickness_nm = 300 }]",
@@ -30,7 +31,7 @@ const CLEAR: [&str; 4] = [
     "[{ index = 1.6, thickness_nm = 900 }]",
 ];
 
-/// A mirror of nine layers, which turns within a few degrees.
+/// A mirror of nine layers, whose reflectance changes within a few degrees.
 const NINE: &str = "[{ index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }, \
      { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, \
      { index = 2.35, thickness_nm = 58.5 }, { index = 1.38, thickness_nm = 99.6 }, { index = 2.35, thickness_nm = 58.5 }]";
@@ -48,7 +49,7 @@ fn clear_films_lose_nothing_and_win_nothing() {
         rows.push((metal, vec![([1.0; 2], false)]));
     }
     for coating in CLEAR.into_iter().chain([NINE]) {
-        // Facets know a film at some angles alone, between which it is straight: smooth surfaces at every one.
+        // Facets interpolate a film linearly between tabulated angles. Smooth surfaces evaluate it at every angle.
         let plastic = format!("plastic = {{ reflectance = 1, coating = {coating} }}");
         rows.push((plastic, vec![([1.0; 2], false), ([1.7; 2], false)]));
     }

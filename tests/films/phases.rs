@@ -1,4 +1,4 @@
-//! The phase between both polarizations, which no image of unpolarized light shows.
+//! The phase between the two polarizations, which no image of unpolarized light shows.
 
 use abbe::material::{Block, Incoming, Index, Layer, Mueller, PolarizedShare, Scatter, ScatterContext, Stack, reflect};
 use abbe::math::Complex;
@@ -6,7 +6,7 @@ use abbe::spectrum::{Draw, Table};
 
 use crate::support::arrivals::{context, material, toward};
 
-/// What is reflected at 550 nm by one clear layer on n - i k, under an angle in degrees.
+/// Returns the light reflected at 550 nm by one clear layer on n - i k, at an angle in degrees.
 fn reflected(index: f64, thickness_nm: f64, n2: [f64; 2], degrees: f64) -> PolarizedShare {
     let layer = Layer { index: index.into(), thickness_nm };
     let stack = Stack::new([550.0, 0.0], [layer].into_iter());
@@ -34,13 +34,14 @@ fn p_is_the_negative_of_s_along_the_normal_and_turns_as_abeles_has_it() {
     }
 }
 
-/// Lanes that share a direction are reflected totally where their ray is, and where they have no angle of their own.
+/// Lanes that share a direction are totally reflected where their common ray is, and where a lane has no refraction
+/// angle of its own.
 #[test]
 fn total_reflection_of_lanes_that_go_together_keeps_all_polarization_under_a_film_as_without() {
     let materials = ["", ", coating = [{ index = 1.38, thickness_nm = 99.6 }]"]
         .map(|coating| material(&format!("dielectric = {{ index = 1.5{coating} }}")));
     let (draw, grazing) = (Draw::<4>::fixed(3), [0.001, 0.01, 0.05]);
-    // Beyond the critical angle of the ray alone: the first lane would cross in part.
+    // Beyond the critical angle of the common ray only: the first lane alone would be partly transmitted.
     let critical = (1.0 - (1.485_f64 / 1.62).powi(2)).sqrt();
     for (inside, outside, cosines) in
         [([1.49, 1.5, 1.51], [1.0; 3], &grazing[..]), ([1.6, 1.62, 1.64], [1.5, 1.48, 1.46], &[critical])]
@@ -65,7 +66,7 @@ fn total_reflection_of_lanes_that_go_together_keeps_all_polarization_under_a_fil
                     let [a, d, c, q] = [a, d, c, q].map(|x| x[lane]);
                     assert!((a - 1.0).abs() < 1e-6 && d.abs() < 1e-6, "{a} {d} of lane {lane} at {cos}");
                     assert!((c.hypot(q) - 1.0).abs() < 1e-6, "{c} {q} of lane {lane} at {cos}");
-                    // p is ahead of s by 12 degrees at most: Born & Wolf 1999, section 1.5.4.
+                    // p is at most 12 degrees ahead of s: Born & Wolf 1999, section 1.5.4.
                     assert!(cosines.len() == 1 || c > 0.975, "{c} of lane {lane} at {cos}");
                 }
             }

@@ -1,5 +1,5 @@
-//! Layers by another way than the renderer's: boundary by boundary, from the far side (Rouard 1937; Born & Wolf 1999,
-//! *Principles of Optics*, section 1.6.4, equation 55), in complex numbers of pairs.
+//! Layers computed by a different method from the renderer's: boundary by boundary, from the far side (Rouard 1937;
+//! Born & Wolf 1999, *Principles of Optics*, section 1.6.4, equation 55). Complex numbers are pairs.
 
 type C = [f64; 2];
 
@@ -27,11 +27,11 @@ fn exp_minus_i(a: C) -> C {
     [decay * a[0].cos(), -decay * a[0].sin()]
 }
 
-/// A layer: n - i k, and its thickness in nm.
+/// A layer, given as n - i k and its thickness in nm.
 pub type Layer = (C, f64);
 
-/// (reflected, crossing) of unpolarized light at a wavelength in nm, from index `n1` at a cosine through layers to n2,
-/// which is n - i k.
+/// Returns the reflected and the transmitted share of unpolarized light at a wavelength in nm, from index `n1` at a
+/// cosine through layers to n2, which is n - i k.
 pub fn shares(n1: f64, layers: &[Layer], n2: C, cos: f64, nm: f64) -> [f64; 2] {
     let along = n1 * n1 * (1.0 - cos * cos);
     let across = |n: C| root(add(mul(n, n), [-along, 0.0]));

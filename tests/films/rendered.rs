@@ -1,4 +1,4 @@
-//! Films in rendered images, where nothing is left to chance, against another way to add up their waves.
+//! Films in rendered images without random choices, compared with another method of summing their waves.
 
 use abbe::spectrum::{Basis, Response};
 use abbe::trace::{Method, prepare, render};
@@ -9,8 +9,8 @@ use crate::support::scenes::{EVERY_BRANCH, assert_near, body, method, quad, rend
 const ANGLES: [f64; 4] = [0.0, 30.0, 45.0, 60.0];
 const NAMED: [&str; 2] = ["reflected", "let through"];
 
-/// What of a lamp's light a pixel sees at three wavelengths in nm by way of a material at the origin, in its mirror
-/// image or behind it, under an angle in degrees.
+/// Returns the light of a lamp that a pixel receives from a material at the origin, reflected or from behind, at three
+/// wavelengths in nm and at an angle in degrees.
 fn seen(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -> [f64; 3] {
     let (y, x) = degrees.to_radians().sin_cos();
     let camera = [4.0 * y, 0.0, 4.0 * x];
@@ -21,7 +21,7 @@ fn seen(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -
         + &body("seen", material, &[shape])
         + &body("lamp", "emissive = { radiance = 1 }", &[&lamp]);
     let scene = scene(&text);
-    // Lanes of lines stand for single wavelengths, however far apart they are.
+    // Lanes of lines stand for single wavelengths, however far apart these are.
     let basis = Basis::wavelengths(scene.film.color_space, vec![600.0], &nm);
     let columns = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let method = Method { basis, ..method(&scene, EVERY_BRANCH) };
@@ -31,14 +31,14 @@ fn seen(material: &str, shape: &str, degrees: f64, behind: bool, nm: [f64; 3]) -
 
 const PLANE: &str = "plane = { point = [0, 0, 0], normal = [0, 0, 1] }";
 
-/// The same as a share of what a perfect mirror shows.
+/// Returns the light that a material reflects relative to a perfect mirror.
 fn reflected(material: &str, degrees: f64, nm: [f64; 3]) -> [f64; 3] {
     let white = seen("mirror = { reflectance = 1 }", PLANE, degrees, false, nm);
     let found = seen(material, PLANE, degrees, false, nm);
     std::array::from_fn(|i| found[i] / white[i])
 }
 
-/// n - i k and nm of layers, as a scene has them.
+/// Writes layers, given as n - i k and nm, in the form that scenes use.
 fn coating(layers: &[Layer]) -> String {
     let layer = |([n, k], nm): &Layer| {
         let name = if *n < 1.0 { "n" } else { "index" };
@@ -80,7 +80,7 @@ fn eleven_layers_are_a_mirror_at_one_color() {
     assert!((at_550 - 0.994_646).abs() < 1e-5 && (at_450 - 0.123_001).abs() < 1e-5, "F6: {at_450}, {at_550}");
 }
 
-/// Three layers of which one absorbs, so that the glass looks different from both sides.
+/// Three layers, one of which absorbs, so the glass looks different from its two sides.
 const STACK: [Layer; 3] = [([1.46, 0.0], 80.0), ([2.3, -0.4], 60.0), ([1.7, 0.0], 120.0)];
 
 /// A beam splitter: 20 nm of silver between clear layers.
@@ -168,7 +168,7 @@ fn metal_and_plastic_reflect_by_their_layers() {
     }
 }
 
-/// Squares of one thickness are a film of that thickness, whatever the model of color.
+/// A checkerboard whose squares all have one thickness is a film of that thickness, under any color model.
 #[test]
 fn a_checkerboard_of_thicknesses_is_what_its_squares_are() {
     let color = |thickness: &str, model: &str| {

@@ -1,20 +1,20 @@
-//! No circle of files: what a file needs can be read before it.
+//! Files form no cycles: everything that a file needs can be read before it.
 //!
-//! A `mod.rs` that holds a contract and dispatches over its variants stands in a circle with them; the contract in a
-//! file of its own, which `mod.rs` hands on by `pub use`, opens it.
+//! A `mod.rs` that defines a contract and dispatches over its variants forms a cycle with them. Moving the contract
+//! into a file of its own, which `mod.rs` re-exports with `pub use`, breaks the cycle.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::exceptions::CIRCLES;
 use super::house::{self, House, exactly, here};
 
-/// What a file stands for where folders inside a room are told apart: its folder, or itself if it is in none.
+/// Returns the folder of a file inside a room, or the file's own path if it is in no such folder.
 fn part(path: &str) -> &str {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     if folder.contains('/') { folder } else { path }
 }
 
-/// The circles of folders inside rooms, and of files beside them.
+/// Returns the cycles among folders inside rooms and the files beside them.
 fn circles_of_folders(texts: &BTreeMap<String, String>) -> Vec<Vec<String>> {
     let house = House::new(texts);
     let of_file: Vec<&str> = house.files.iter().map(|file| part(&file.path)).collect();
@@ -29,7 +29,7 @@ fn circles_of_folders(texts: &BTreeMap<String, String>) -> Vec<Vec<String>> {
     house::circles(&graph).iter().map(named).collect()
 }
 
-/// Each circle as its files in order, and beside it why: one name for each file that another one uses.
+/// Returns each cycle as its files in order, with an explanation: one used name for each dependency inside the cycle.
 fn circles(texts: &BTreeMap<String, String>) -> Vec<(String, String)> {
     let all = House::new(texts);
     let graph = all.graph();

@@ -1,22 +1,22 @@
-//! What may break a law, and why. A list is exact: an exception that is no longer needed fails as well.
+//! Exceptions to the laws, with reasons. A list is exact: an exception that is no longer needed fails as well.
 
-/// Circles, each as its files in order.
+/// Cycles, each as its files in order.
 pub const CIRCLES: &[&str] = &[];
 
-/// Functions that are longer, while there are more than may be.
+/// Functions that are too long, in case there are more than the allowed number.
 pub const LONG: &[&str] = &[];
 
-/// Functions that take a tuple without a name.
+/// Functions that take an unnamed tuple.
 pub const TUPLES: &[&str] = &[];
 
 /// Types with an inherent `impl` outside of the file that defines them.
 pub const ABROAD: &[&str] = &[
-    // Reading a scene stands above what a scene holds, and belongs to its name all the same.
+    // Reading a scene stands on a higher floor than the scene's contents, but belongs to the same type.
     "scene/source.rs: Scene",
 ];
 
-/// Files with comments that are wider, and how many.
+/// Files with comments that are too wide, and their number.
 pub const WIDE: &[&str] = &[];
 
-/// Names of several types of a room: what each command is asked.
+/// Names that several types of a room share. Each command has its own `Query`.
 pub const SHARED: &[&str] = &["command: Query"];

@@ -1,4 +1,4 @@
-//! Which file uses which, and which files stand in a circle.
+//! Which files use which, and the cycles among them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -7,13 +7,13 @@ use std::sync::LazyLock;
 use super::source::{Names, Source};
 use crate::support::texts::texts;
 
-/// All files, and the file that each module is.
+/// All files, and the file of each module.
 pub struct House {
     pub files: Vec<Source>,
     modules: BTreeMap<Names, usize>,
 }
 
-/// For each file the files that it uses, with one name of each that it uses.
+/// The files that each file uses, with one used name for each.
 pub type Graph = Vec<BTreeMap<usize, String>>;
 
 impl House {
@@ -28,8 +28,8 @@ impl House {
         Self { files, modules }
     }
 
-    /// The file that defines what a path leads to, through all that is handed on by `use`; none if it leads to a
-    /// module.
+    /// Returns the file that defines the item at a path, following re-exports by `use`. Returns none if the path leads
+    /// to a module.
     pub fn home(&self, path: &[String]) -> Option<usize> {
         let inside = (0..path.len())
             .rev()
@@ -60,7 +60,7 @@ impl House {
     }
 }
 
-/// The files that can be reached from a file.
+/// Returns the files that can be reached from a file.
 fn reach(graph: &Graph, from: usize) -> BTreeSet<usize> {
     let (mut reached, mut pending) = (BTreeSet::new(), vec![from]);
     while let Some(file) = pending.pop() {
@@ -69,7 +69,7 @@ fn reach(graph: &Graph, from: usize) -> BTreeSet<usize> {
     reached
 }
 
-/// The largest sets of files each of which uses, through others, all the others.
+/// Returns the largest sets of files in which each file uses all the others, directly or indirectly.
 pub fn circles(graph: &Graph) -> Vec<BTreeSet<usize>> {
     let reached: Vec<BTreeSet<usize>> = (0..graph.len()).map(|file| reach(graph, file)).collect();
     let circle = |file: usize| -> BTreeSet<usize> {
@@ -79,14 +79,14 @@ pub fn circles(graph: &Graph) -> Vec<BTreeSet<usize>> {
     found.into_iter().collect()
 }
 
-/// The texts of `src`, read once.
+/// Returns the texts of `src`, which are read once.
 pub fn here() -> &'static BTreeMap<String, String> {
     static TEXTS: LazyLock<BTreeMap<String, String>> =
         LazyLock::new(|| texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")));
     &TEXTS
 }
 
-/// Holds what a law finds against its exceptions, which have to be exactly these.
+/// Asserts that a law's findings are exactly its listed exceptions.
 pub fn exactly(name: &str, exceptions: &[&str], found: BTreeSet<String>, why: &str) {
     let lines: Vec<String> = found.iter().map(|one| format!("    {one:?},\n")).collect();
     let equal = found.iter().eq(exceptions);

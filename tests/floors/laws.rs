@@ -1,4 +1,4 @@
-//! Laws that a file keeps by itself.
+//! Laws that each file obeys by itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -7,12 +7,12 @@ use super::exceptions::{ABROAD, LONG, SHARED, TUPLES, WIDE};
 use super::house::{House, exactly, here};
 use crate::support::texts::texts;
 
-/// Most lines of a file.
+/// Maximum number of lines of a file.
 const LONGEST_FILE: usize = 500;
-/// Most lines of a function, and how many may have more.
+/// Maximum number of lines of a function, and how many functions may have more.
 const LONGEST_FUNCTION: usize = 60;
 const LONG_FUNCTIONS: usize = 3;
-/// Most columns of a comment, as of code.
+/// Maximum number of columns of a comment, the same as for code.
 const WIDEST: usize = 120;
 
 fn one(path: &str, text: &str) -> BTreeMap<String, String> {
@@ -109,7 +109,8 @@ fn a_tuple_as_a_parameter_is_noticed() {
     }
 }
 
-/// Inherent `impl` blocks away from their type; those of `shape/bvh` may be, whose tree is one concept in many files.
+/// Returns the inherent `impl` blocks outside the file of their type. Blocks in `shape/bvh` are allowed: its tree is
+/// one concept in many files.
 fn abroad(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     let house = House::new(texts);
     let mut found = BTreeSet::new();
@@ -120,7 +121,7 @@ fn abroad(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     found
 }
 
-/// Names that stand for types in several files of a room.
+/// Returns the names that several files of a room use for types of their own.
 fn shared_names(texts: &BTreeMap<String, String>) -> BTreeSet<String> {
     let mut homes: BTreeMap<String, u32> = BTreeMap::new();
     for source in House::new(texts).files {
@@ -181,7 +182,7 @@ fn an_impl_away_from_its_type_is_noticed() {
     }
 }
 
-/// Whether a comment ends beyond the last column.
+/// Returns whether a comment extends beyond the last column.
 fn is_wide(line: &str) -> bool {
     let marks = line.match_indices("//").map(|(at, _)| &line[..at]);
     let mut comments = marks.filter(|before| before.trim().is_empty() || before.matches('"').count() % 2 == 0);

@@ -1,18 +1,18 @@
-//! Rooms and floors.
+//! The dependencies between rooms and floors.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::house::{House, here};
 use super::source::Source;
 
-/// The command, and the crate of the package for Python, which stand above all floors.
+/// The command and the crate of the Python package, which stand above all floors.
 const COMMAND: [&str; 3] = ["main", "command", "python"];
-/// What `lib.rs` hands on from the room `error`.
+/// The names that `lib.rs` re-exports from the room `error`.
 const ERRORS: [&str; 5] = ["Diagnostic", "Error", "Result", "nearest", "error"];
 
 type Floors = BTreeMap<String, u32>;
 
-/// The floor of each room, from lines such as `//! floor 2   material   how ..  |  light   how ..`.
+/// Returns the floor of each room, from lines such as `//! floor 2   material   how ..  |  light   how ..`.
 fn floors() -> Floors {
     let mut floors = BTreeMap::new();
     for line in here()["lib.rs"].lines().filter_map(|line| line.strip_prefix("//! floor ")) {
@@ -24,12 +24,12 @@ fn floors() -> Floors {
     floors
 }
 
-/// The first names below the root that a file's paths lead to.
+/// Returns the first name below the crate root of each path in a file.
 fn names_used(source: &Source) -> BTreeSet<&str> {
     source.paths.iter().chain(&source.globs).filter_map(|path| path.first()).map(String::as_str).collect()
 }
 
-/// Why a file may not use a name, if it may not.
+/// Returns why a file may not use a name, or none if it may.
 fn objection(floors: &Floors, source: &Source, name: &str) -> Option<String> {
     let room = if ERRORS.contains(&name) { "error" } else { name };
     let own = source.module.first().map_or("lib", String::as_str);

@@ -1,5 +1,5 @@
-//! The files of `src` as the compiler reads them: what each defines, and which paths it writes. Tests inside them do
-//! not count.
+//! The files of `src` as the compiler reads them: the items that each one defines and the paths that it uses. Unit
+//! tests inside them do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,30 +10,30 @@ use syn::{Attribute, Item, UseTree};
 /// The names of a path.
 pub type Names = Vec<String>;
 
-/// A function, and what the laws ask of it.
+/// The properties of a function that the laws check.
 pub struct Function {
     pub name: String,
-    /// From its signature to its closing brace; none without a body.
+    /// Number of lines from the signature to the closing brace; 0 without a body.
     pub lines: usize,
     /// Whether a parameter is a tuple, or a reference to one.
     pub takes_tuple: bool,
 }
 
-/// A file of `src`; its paths begin at the crate's root.
+/// A file of `src`. Its paths begin at the crate root.
 pub struct Source {
-    /// Its path inside `src`, such as `shape/mesh.rs`.
+    /// Path relative to `src`, such as `shape/mesh.rs`.
     pub path: String,
-    /// The module that it is: `shape/mesh.rs` is shape, mesh; `shape/mod.rs` is shape.
+    /// Module path: shape, mesh for `shape/mesh.rs`; shape for `shape/mod.rs`.
     pub module: Names,
-    /// The items at its top level.
+    /// Names of the items at the top level.
     pub items: BTreeSet<String>,
-    /// The names that its `use` brings in, with what they stand for.
+    /// Names that `use` brings into scope, with the paths that they stand for.
     pub uses: BTreeMap<String, Names>,
-    /// The rooms of this crate of which its `use` brings in all there is.
+    /// Modules of this crate that are imported with a glob.
     pub globs: Vec<Names>,
-    /// Every path that it writes.
+    /// Every path that the file mentions.
     pub paths: BTreeSet<Names>,
-    /// The types of its inherent `impl`.
+    /// Types that have an inherent `impl` here.
     pub impls: BTreeSet<Names>,
     pub functions: Vec<Function>,
 }
@@ -75,7 +75,7 @@ impl Source {
         source
     }
 
-    /// A path from the crate's root; none of another crate, of a generic or of the prelude.
+    /// Returns a path from the crate root. Returns none for paths of other crates, of generics and of the prelude.
     fn absolute(&self, written: &Written) -> Option<Names> {
         let names = &written.names;
         let ups = names.iter().take_while(|name| *name == "super").count();
@@ -91,13 +91,13 @@ impl Source {
     }
 }
 
-/// A path as it is written, and the module in which it is.
+/// A path as written, with the module that it appears in.
 struct Written {
     module: Names,
     names: Names,
 }
 
-/// Collects what a file says.
+/// Collects the paths, imports, impls and functions of a file.
 #[derive(Default)]
 struct Reader {
     module: Names,
@@ -133,7 +133,7 @@ impl Reader {
         self.uses.push((alias, written));
     }
 
-    /// The paths in a macro, whose grammar is its own.
+    /// Collects the paths in a macro, which has a grammar of its own.
     fn tokens(&mut self, tokens: TokenStream) {
         let (mut names, mut colons) = (Names::new(), 0);
         for token in tokens.into_iter().map(Some).chain([None]) {
@@ -244,7 +244,7 @@ fn attributes(item: &Item) -> &[Attribute] {
     }
 }
 
-/// Whether `#[cfg(test)]` stands above it.
+/// Returns whether `#[cfg(test)]` is among the attributes.
 fn is_test(attributes: &[Attribute]) -> bool {
     let of_tests = |one: &Attribute| one.parse_args::<syn::Path>().is_ok_and(|condition| condition.is_ident("test"));
     attributes.iter().any(|one| one.path().is_ident("cfg") && of_tests(one))

@@ -1,4 +1,4 @@
-//! Rendered colors where nothing is left to chance.
+//! Rendered colors without random choices.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use crate::support::scenes::{body, film_of, scene, view};
 
 const PAPER: &str = "quad = { center = [0, 0, 0], u = [2, 0, 0], v = [0, 2, 0] }";
 
-/// Paper below a point light, as the only pixel sees it, times pi over the light's irradiance.
+/// Renders paper below a point light in a single pixel. The result is relative to the light's irradiance over pi.
 fn lit(material: &str, illuminant: &str, more: &str) -> [f64; 3] {
     pixel(&lit_scene(material, illuminant, more))
 }
@@ -34,7 +34,7 @@ fn one_photon_gives_one() {
     let dye = Dye { absorption: 1.0.into(), emission: Curve::from(CurveKind::Samples(emission)), quantum_yield: 1.0 };
     let power = dye.power_per_nm() * 405.0;
     assert!((power - 0.780_003).abs() < 1e-6, "{power}");
-    // In photons, of each its energy 1 / nm.
+    // Counted in photons, each with an energy of 1 / nm.
     let total: f64 = visible::wavelengths().map(shines).sum();
     let photons: f64 = visible::wavelengths().map(|nm| power * shines(nm) / total * nm / 405.0).sum();
     assert!((photons - 1.0).abs() < 1e-12, "{photons}");
@@ -63,12 +63,12 @@ fn dyes_have_the_colors_of_their_matrices() {
             .map(|(nm, (light, glow))| dye.reflected(nm) * light + brightness * glow)
             .collect();
         near(color(&leaving), expected, 2e-6, &format!("{what}, summed"));
-        // What is off are the colors of the paper in 32 lanes.
+        // The error is that of the paper's colors in 32 lanes.
         near(lit(&dye.material(), illuminant, ""), expected, 2e-4, &format!("{what}, rendered"));
     }
 }
 
-/// What a dye reflects and what it shines are off together.
+/// The stated error covers a dye's reflected and emitted light together.
 #[test]
 fn the_plan_keeps_its_word_of_dyed_paper() {
     for dye in [YELLOW, RED, BRIGHTENER] {
@@ -77,14 +77,14 @@ fn the_plan_keeps_its_word_of_dyed_paper() {
             let scene = scene(&text);
             let plan = plan(&scene);
             let found = film_of(&scene, plan.method.clone()).pixels[0].rgb.map(f64::from);
-            // 32 lanes are within 2e-4.
+            // 32 lanes have errors of at most 2e-4.
             let share = plan.model_error + 2e-4;
             near(found, pixel(&text), share, &format!("{} by {illuminant}, at most {share:.1e}", dye.name));
         }
     }
 }
 
-/// Through a sheet of glass that is dyed itself, by which light comes and is seen.
+/// A sheet of colored glass filters both the light that arrives at the dye and the light that is seen.
 #[test]
 fn light_that_excites_and_light_that_is_seen_are_filtered_by_their_own_wavelengths() {
     let crosses = |nm: f64| 0.3 + 0.6 / (1.0 + libm::exp((470.0 - nm) / 15.0));
@@ -107,7 +107,7 @@ fn light_that_excites_and_light_that_is_seen_are_filtered_by_their_own_wavelengt
     }
 }
 
-/// Patches of a dye between patches of gray: what is absorbed comes back from the same patch.
+/// Patches of a dye between patches of gray. Light that a patch absorbs is emitted from the same patch.
 #[test]
 fn a_share_of_the_surface_fluoresces_by_that_share() {
     let mixed = format!(
@@ -122,7 +122,7 @@ fn a_share_of_the_surface_fluoresces_by_that_share() {
     near(lit(&masked, "D65", ""), dyed.map(|x| 0.75 * x), 1e-6, "a mask");
 }
 
-/// What a dye absorbs and what the surface reflects are shares of the same light wherever an image shows a color.
+/// The dye's absorption and the surface's reflectance are shares of the same light, also at each texel of an image.
 #[test]
 fn a_dye_under_an_image_is_refused_where_a_texel_leaves_no_room_for_it() {
     let refused = |absorbed: f64| {

@@ -1,10 +1,10 @@
-//! What dyes shine is unpolarized, and is polarized on its way to the camera as any light is.
+//! The light that dyes emit is unpolarized, and is polarized on its way to the camera like any other light.
 
 use super::YELLOW;
 use crate::polarization::stokes_vectors;
 use crate::support::scenes::{one_pixel, rendered};
 
-/// Stokes vectors of red, green and blue that a pixel sees of a material under a point light.
+/// Returns the Stokes vectors of red, green and blue that a pixel receives from a material under a point light.
 fn stokes(material: &str, camera: &str, more: &str) -> [[f64; 3]; 4] {
     let text = one_pixel(camera, ", stokes = true")
         + &format!(
@@ -16,7 +16,7 @@ fn stokes(material: &str, camera: &str, more: &str) -> [[f64; 3]; 4] {
 
 const STRAIGHT: &str =
     "[[object]]\nmaterial = \"paper\"\nshape.quad = { center = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] }\n";
-/// Glass that mirrors the paper, which stands aside.
+/// Glass that reflects the paper, which stands to the side.
 const IN_GLASS: &str = "[[object]]\nmaterial = \"paper\"\nshape.quad = { center = [-4, 0, 0], u = [0, 0, 1], v = [0, 1, 0] }\n\
      [material.glass]\ndielectric = { index = 1.5, absorption = 1000 }\n[[object]]\nmaterial = \"glass\"\n\
      shape.quad = { center = [0, 0, 0], u = [0.5, 0, 0.5], v = [0, 0.5, 0] }\n";

@@ -1,4 +1,4 @@
-//! Light that excites dyes again and again.
+//! Light that excites dyes repeatedly.
 
 use abbe::spectrum::{Basis, visible};
 use abbe::trace::Method;
@@ -7,8 +7,8 @@ use super::{BRIGHTENER, Bells, RED, YELLOW, color, light};
 use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SINGLE_PATH, SPLITTING, film_of, method, scene, view};
 
-/// The radiance of a closed room whose walls have a dye and lose to, or get of, the outside what they do not cover:
-/// L = opacity (reflected + excited glow) L + (1 - opacity) E, a matrix of rank 1 beside a diagonal.
+/// Returns the radiance in a closed room whose walls have a dye. What the walls do not cover is lost to the outside or
+/// received from it: L = opacity (reflected + excited glow) L + (1 - opacity) E, a matrix of rank 1 plus a diagonal.
 fn room(dye: &Bells, opacity: f64, outside: &[f64]) -> Vec<f64> {
     let glow = dye.glow();
     let left = |nm: f64| 1.0 - opacity * dye.reflected(nm);
@@ -35,7 +35,7 @@ fn the_formula_of_closed_rooms_gives_published_rows() {
     }
 }
 
-/// A ball with holes in its wall, from within, under an even sky.
+/// The inside of a ball with holes in its wall, under a uniform sky.
 #[test]
 fn a_room_of_one_dye_shines_as_its_matrix_says() {
     const OPACITY: f64 = 0.8;
@@ -54,7 +54,7 @@ fn a_room_of_one_dye_shines_as_its_matrix_says() {
             let mean = Mean::of(&film);
             let strongest = expected.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
             for c in 0..3 {
-                // Colors in 32 lanes are off by so much where nothing is left to chance.
+                // Colors in 32 lanes have this error even without noise.
                 let (off, lanes) = ((mean.value[c] - expected[c]).abs(), 3e-4 * strongest);
                 println!("{} {c}: {:.5} +- {:.5} for {:.5}", dye.name, mean.value[c], mean.error[c], expected[c]);
                 assert!(off < 4.0 * mean.error[c] + lanes, "{}: {mean:?} for {expected:?}", dye.name);

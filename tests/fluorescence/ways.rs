@@ -1,4 +1,4 @@
-//! The ways by which light comes to a dye: photons, and wavelengths that have parted.
+//! How light reaches a dye: by photons, and in wavelengths that have parted.
 
 use abbe::film::Film;
 use abbe::spectrum::{Basis, Emission};
@@ -8,10 +8,10 @@ use super::{BRIGHTENER, Bells, RED, YELLOW};
 use crate::support::larger::larger;
 use crate::support::scenes::{Mean, SPLITTING, body, films_of, mean_color, method, moments, rendered, scene, view};
 
-/// Renders whose spread is their noise.
+/// Number of renders whose spread gives the noise.
 const SEEDS: u64 = 4;
 
-/// Every channel of two means agrees.
+/// Asserts that every channel of two means agrees.
 fn agree(found: Mean, expected: Mean, what: &str) {
     let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     for c in 0..3 {
@@ -22,7 +22,7 @@ fn agree(found: Mean, expected: Mean, what: &str) {
     }
 }
 
-/// The mean color of images under several seeds.
+/// Returns the mean color of images under several seeds.
 fn mean(films: &[Film]) -> Mean {
     let of = |c: usize| {
         let (value, variance) = moments(films.iter().map(|film| mean_color(film)[c]));
@@ -32,8 +32,8 @@ fn mean(films: &[Film]) -> Mean {
     Mean { value: bands.map(|band| band[0]), error: bands.map(|band| band[1]) }
 }
 
-/// Paper under a lamp whose light comes by way of a mirror alone, or under one where the mirror shows it; seen straight
-/// or in another mirror.
+/// Returns paper that is lit only by way of a mirror, or by a lamp at the place of the mirror image. The paper is seen
+/// directly or in another mirror.
 fn paper(dye: &Bells, lit_by_mirror: bool, seen_in_mirror: bool) -> String {
     let (position, look_at) =
         if seen_in_mirror { ([0.0, 0.0, 2.0], [0.0, -1.0, 1.0]) } else { ([0.0, -2.0, 2.0], [0.0; 3]) };
@@ -55,7 +55,7 @@ fn paper(dye: &Bells, lit_by_mirror: bool, seen_in_mirror: bool) -> String {
     text
 }
 
-/// The lamp where the mirror shows it.
+/// The lamp at the place of its mirror image.
 const SHOWN: &str = "sphere = { center = [2.4, 0, 1], radius = 0.1 }";
 
 fn films(text: &str, basis: impl Fn(&abbe::scene::Scene) -> Basis, light_pass: Option<LightPass>) -> Vec<Film> {
@@ -87,12 +87,12 @@ fn photons_excite_dyes_where_they_are_shown_and_where_they_are_gathered() {
     }
 }
 
-/// A dye behind a slab of glass that parts wavelengths, lit and seen through it: heroes, drawn anew for what excites,
-/// against as many lanes as there are, each of which goes its own way.
+/// A dye behind a slab of dispersive glass, lit and seen through it. Heroes, which are drawn anew for the exciting
+/// light, are compared with all lanes, each of which follows its own path.
 #[test]
 fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
     let day = ("{ illuminant = \"D65\" }", None);
-    // Under a line alone, no light of the lamp is where the dye shines.
+    // Under a single line, the lamp has no light at the wavelengths that the dye emits.
     let blue = ("{ lines = [[436, 1]] }", Some(436.0));
     let green = ("{ lines = [[546, 1]] }", Some(546.0));
     for (dye, (light, line)) in [(YELLOW, day), (RED, day), (BRIGHTENER, day), (YELLOW, blue), (RED, green)] {
@@ -121,14 +121,14 @@ fn heroes_that_have_parted_excite_dyes_as_all_wavelengths_do() {
             let strongest = expected.value.iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
             let (off, error) = ((found.value[c] - expected.value[c]).abs(), found.beside(&expected).error[c]);
             println!("{} {c}: {:.5} for {:.5} +- {error:.5}", dye.name, found.value[c], expected.value[c]);
-            // Colors of the lanes that stay together, in 12 and in 32 of them.
+            // The tolerance is the color error of lanes that stay together, of 12 and of 32.
             assert!(off < 4.0 * error + 2e-3 * strongest, "{}: {found:?} for {expected:?}", dye.name);
             assert!(error < 0.02 * strongest, "{}: the noise hides all", dye.name);
         }
     }
 }
 
-/// What comes through glass that parts its light is dispersed, whether paper scatters it or a dye shines it.
+/// Light from behind dispersive glass counts as dispersed, whether paper scatters it or a dye emits it.
 #[test]
 fn what_a_dye_shines_through_glass_is_dispersed() {
     let text = view([3.0, 0.0, 4.0], [0.0; 3], 3.0, 8)

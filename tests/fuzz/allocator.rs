@@ -1,4 +1,4 @@
-//! Counts what is allocated, on all threads.
+//! Counts the memory that is allocated on all threads.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -17,7 +17,7 @@ fn added(bytes: usize) {
     LARGEST.fetch_max(bytes, Relaxed);
 }
 
-// Sound: every call is handed on to the system's allocator as it came.
+// Sound: every call is forwarded unchanged to the system's allocator.
 #[allow(unsafe_code)]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
@@ -42,12 +42,12 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// Bytes asked for.
+/// Allocated bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Memory {
     /// The largest single allocation.
     pub largest: usize,
-    /// The most that was held at a time, beyond what was held before.
+    /// The largest total at any time, beyond what was allocated before.
     pub peak: usize,
 }
 
@@ -57,7 +57,7 @@ impl Memory {
     }
 }
 
-/// What a call allocates.
+/// Runs a call and measures what it allocates.
 pub fn memory_of<T>(call: impl FnOnce() -> T) -> (T, Memory) {
     let before = LIVE.load(Relaxed);
     PEAK.store(before, Relaxed);

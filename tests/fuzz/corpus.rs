@@ -1,4 +1,4 @@
-//! Small files without mistakes, of every kind and every variant of it that is read.
+//! Small valid files of every kind and of every variant that is read.
 
 use std::fs;
 use std::io::Cursor;
@@ -12,7 +12,7 @@ use super::pictures::{self, L8, L16, LA8, LA16, RGB8, RGB16, RGBA8, RGBA16};
 const POINTS: [[f32; 3]; 5] = [[-1., 0., -1.], [1., 0., -1.], [1., 0., 1.], [-1., 0., 1.], [0., 1.5, 0.]];
 const FACES: [[u32; 3]; 6] = [[0, 1, 2], [0, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]];
 
-/// Scenes that need no other file than those of `tests/messages`, with the place each stands in.
+/// Returns scenes that need no files but those of `tests/messages`, each with its path.
 pub fn scenes() -> Vec<(PathBuf, String)> {
     let shipped = fs::read_dir("scenes").expect("there are scenes").map(|entry| entry.expect("readable").path());
     let mut paths: Vec<PathBuf> = shipped.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
@@ -21,7 +21,7 @@ pub fn scenes() -> Vec<(PathBuf, String)> {
     let mut scenes: Vec<_> = paths.into_iter().map(|path| (path.clone(), text(&path))).collect();
     scenes
         .retain(|(_, text)| ![".png", ".jpg", ".exr", ".hdr", ".obj", ".ply", ".gl"].iter().any(|e| text.contains(e)));
-    // Those with everything come as often as all others together.
+    // The scene with everything comes up four times as often as any other.
     for name in ["base", "everything", "everything", "everything", "everything"] {
         let path = Path::new("tests/messages").join(name).with_extension("toml");
         scenes.push((path.clone(), text(&path)));
@@ -122,7 +122,7 @@ pub fn gltf() -> Vec<Vec<u8>> {
 "bufferViews":[{{"buffer":0,"byteLength":60}},{{"buffer":0,"byteOffset":60,"byteLength":36}}],
 "buffers":[{{{uri}"byteLength":96}}],"materials":[{{}}],"animations":[{{}}],"skins":[{{}}]}}"#
     );
-    // Corners are read as bytes there, of which the high ones are 0: enough triangles have an area.
+    // The vertex indices are read as bytes there, and the high bytes are 0. Enough triangles still have an area.
     vec![
         plain(&uri).into_bytes(),
         rich.replace("\"indices\":{\"bufferView\":1,", "\"indices\":{\"bufferView\":1,\"byteOffset\":1,").into_bytes(),
@@ -156,7 +156,7 @@ pub fn png() -> Vec<Vec<u8>> {
 pub fn jpeg() -> Vec<Vec<u8>> {
     let encoded =
         |quality, progressive, bytes: usize| pictures::jpeg([17, 9], quality, progressive, &numbers(17 * 9 * bytes));
-    // A directory of one entry, the orientation.
+    // An Exif directory with one entry, the orientation.
     let exif = b"\xff\xe1\0\x22Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
     let plain = encoded(50, false, 3);
     vec![
@@ -174,7 +174,7 @@ pub fn hdr() -> Vec<Vec<u8>> {
         let texels: Vec<[f32; 3]> = (0..width * 4).map(|i| [i as f32, 0.5, 1.0 / (1 + i) as f32]).collect();
         pictures::radiance(width, &texels)
     };
-    // Below 8 texels a row is not packed, beyond it is; runs of the older way repeat a texel.
+    // Rows of fewer than 8 texels are not packed, longer ones are. Runs of the older encoding repeat a texel.
     let old = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 6\n\x80\x40\x20\x81\x01\x01\x01\x05";
     let old = [old.as_slice(), b"\x80\x40\x20\x81\x01\x01\x01\x05"].concat();
     vec![encoded(3), encoded(16), old]

@@ -1,4 +1,4 @@
-//! Damage to files: random bytes, cuts, numbers that are too large, and pieces of other files of the same kind.
+//! Damage to files: random bytes, truncation, numbers that are too large, and pieces of other files of the same kind.
 
 /// Random numbers that are the same on every machine (SplitMix64; Steele, Lea & Flood 2014).
 pub struct Dice(u64);
@@ -17,7 +17,7 @@ impl Dice {
         x ^ (x >> 31)
     }
 
-    /// A number below `most`; 0 below 0.
+    /// Returns a number below `most`, or 0 if `most` is 0.
     pub fn below(&mut self, most: usize) -> usize {
         (self.bits() % most.max(1) as u64) as usize
     }
@@ -26,7 +26,7 @@ impl Dice {
         of[self.below(of.len())]
     }
 
-    /// A place in a file, half of the time near its beginning, where headers are.
+    /// Returns a place in a file. Half of the time it is near the beginning, where headers are.
     fn place(&mut self, length: usize) -> usize {
         match self.below(2) {
             0 => self.below(length.min(192)),
@@ -35,7 +35,7 @@ impl Dice {
     }
 }
 
-/// Numbers at the ends of the types that formats count with, and powers of two beside them.
+/// Numbers at the limits of the integer types that formats use for counts, and powers of two next to them.
 const COUNTS: [u64; 18] = [
     0,
     1,
@@ -57,7 +57,7 @@ const COUNTS: [u64; 18] = [
     u64::MAX,
 ];
 
-/// The same for formats of text.
+/// Numbers at and near the limits of types, for text formats.
 const NUMBERS: [&str; 26] = [
     "nan",
     "inf",
@@ -87,7 +87,7 @@ const NUMBERS: [&str; 26] = [
     "0x7f",
 ];
 
-/// One damaged copy of a file; `words` are what the format is written with.
+/// Returns a damaged copy of a file. `words` are the words of its format.
 pub fn mutated(dice: &mut Dice, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
     let mut bytes = corpus[dice.below(corpus.len())].clone();
     let changes = dice.pick(&[1, 1, 1, 2, 3, 6]);
@@ -143,7 +143,7 @@ fn change(dice: &mut Dice, bytes: &mut Vec<u8>, corpus: &[Vec<u8>], words: &[&st
     }
 }
 
-/// Start and end of the first run of such bytes at or after a place.
+/// Returns the start and end of the run of matching bytes that contains a place or comes first after it.
 fn run_from(bytes: &[u8], at: usize, belongs: impl Fn(u8) -> bool) -> Option<(usize, usize)> {
     let start = at + bytes[at..].iter().position(|&c| belongs(c))?;
     let start = bytes[..start].iter().rposition(|&c| !belongs(c)).map_or(0, |before| before + 1);
@@ -151,7 +151,7 @@ fn run_from(bytes: &[u8], at: usize, belongs: impl Fn(u8) -> bool) -> Option<(us
     Some((start, end))
 }
 
-/// Gives the chunks of a PNG the checksums that belong to them, so that damage within reaches the decoder.
+/// Recomputes the checksums of a PNG's chunks, so that damage inside them reaches the decoder.
 pub fn with_checksums(bytes: &mut [u8]) {
     let mut at = 8;
     while let Some(length) = bytes.get(at..at + 4) {
@@ -163,7 +163,7 @@ pub fn with_checksums(bytes: &mut [u8]) {
     }
 }
 
-/// Gives the chunks of a binary glTF file the lengths that they have.
+/// Sets the lengths in a binary glTF file to those that its chunks have.
 pub fn with_lengths(bytes: &mut [u8]) {
     let Some(binary) = bytes.windows(4).position(|four| four == b"BIN\0").filter(|&at| at >= 24) else { return };
     let number = |n: usize| (n as u32).to_le_bytes();

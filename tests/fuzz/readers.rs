@@ -1,4 +1,4 @@
-//! What reads the files: each reader by the way that a scene takes to it.
+//! The readers of files. Each is reached in the way that a scene reaches it.
 
 use std::fs;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use super::mutate::{Dice, mutated, with_checksums, with_lengths};
 /// A kind of file.
 pub struct Kind {
     pub name: &'static str,
-    /// The share of all cases that it gets.
+    /// Its share of all cases.
     pub share: usize,
     words: &'static [&'static str],
     corpus: Vec<Vec<u8>>,
@@ -20,15 +20,15 @@ pub struct Kind {
     via: Via,
 }
 
-/// How its bytes come to their reader.
+/// How the bytes reach their reader.
 enum Via {
-    /// They are a scene, in one of these places.
+    /// The bytes are a scene at one of these paths.
     Scene(Vec<PathBuf>),
-    /// They are a file that scenes name, in a folder of its own.
+    /// The bytes are a file in a folder of its own, which scenes refer to.
     File { path: PathBuf, scenes: Vec<Source> },
 }
 
-/// What became of a file: whether it was read, or else the message.
+/// Whether a file was read, or the message of its refusal.
 pub type Outcome = Result<(), String>;
 
 const WORLD: &str = "camera = { position = [0, 0, 9], look_at = [0, 0, 0], vertical_fov = 30 }\n\
@@ -50,7 +50,7 @@ impl Kind {
         Self { name: ending, share, words: &[], corpus, repair: |_| (), via }
     }
 
-    /// Reads a file that is told by its number: a damaged copy of one of the corpus.
+    /// Returns the file with a given number: a damaged copy of one in the corpus.
     pub fn case(&self, number: u64) -> Vec<u8> {
         let seed = self.name.bytes().fold(number, |seed, byte| seed.wrapping_mul(1_000_003) ^ u64::from(byte));
         let mut dice = Dice::new(seed);
@@ -61,12 +61,12 @@ impl Kind {
         bytes
     }
 
-    /// The files without mistakes.
+    /// Returns the valid files.
     pub fn corpus(&self) -> &[Vec<u8>] {
         &self.corpus
     }
 
-    /// Reads bytes by way `number` of those that this kind has; checks that a refusal can be shown.
+    /// Reads bytes in way `number` of those that this kind has, and checks that a refusal can be displayed.
     pub fn read(&self, bytes: &[u8], number: u64) -> Outcome {
         let of = |count: usize| (number % count as u64) as usize;
         let (answer, source) = match &self.via {
@@ -79,8 +79,8 @@ impl Kind {
                 fs::write(path, bytes).expect("the folder can be written");
                 let source = &scenes[of(scenes.len())];
                 let answer = source.compile();
-                // Files that are removed at once are never written to the disk; of a program that was stopped one is
-                // left.
+                // Files that are removed at once are never written to the disk. A program that is stopped leaves one
+                // behind.
                 fs::remove_file(path).expect("the file is there");
                 (answer, source.clone())
             }
@@ -100,7 +100,7 @@ impl Kind {
         }
     }
 
-    /// How many ways there are to read it.
+    /// Returns the number of ways to read this kind.
     pub fn ways(&self) -> u64 {
         match &self.via {
             Via::Scene(places) => places.len() as u64,
@@ -220,7 +220,7 @@ const EXR_WORDS: [&str; 14] = [
 ];
 const CSV_WORDS: [&str; 6] = ["nan", ",", ";", "\t", "#", "\n"];
 
-/// Every kind of file that is read.
+/// Returns every kind of file that is read.
 pub fn kinds() -> Vec<Kind> {
     let (places, scenes): (Vec<_>, Vec<_>) =
         corpus::scenes().into_iter().map(|(path, text)| (path, text.into_bytes())).unzip();

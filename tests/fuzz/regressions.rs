@@ -1,4 +1,4 @@
-//! Files that did harm once, and what is said of them now.
+//! Files that once did harm, and the messages that refuse them now.
 
 use super::corpus;
 use super::readers::{Kind, kinds};
@@ -8,7 +8,7 @@ fn kind(name: &str) -> Kind {
     kinds().into_iter().find(|kind| kind.name == name).expect("a kind of file")
 }
 
-/// What a file is refused with, by every way that leads to its reader.
+/// Returns the messages that refuse a file, one for each way to its reader.
 fn refusals(kind: &Kind, bytes: &[u8]) -> Vec<String> {
     let refusal = |way| read(kind, bytes, way, "regression").outcome.expect_err("it is damaged");
     (0..kind.ways()).map(refusal).collect()
@@ -19,7 +19,7 @@ fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     [&bytes[..at], to.as_bytes(), &bytes[at + from.len()..]].concat()
 }
 
-/// They take no bytes in a binary file, so that no end of the file ended the reading.
+/// Such elements take no bytes in a binary file, so the end of the file never stopped the reader.
 #[test]
 fn countless_elements_without_properties_are_passed_over() {
     let _alone = alone();
@@ -33,7 +33,8 @@ fn countless_elements_without_properties_are_passed_over() {
     }
 }
 
-/// Corners were multiplied before they were compared: an overflow, and a place far outside of the list.
+/// Vertex indices were multiplied before they were compared with the length of their list. They overflowed or led far
+/// outside of it.
 #[test]
 fn corners_far_outside_of_their_lists_are_refused() {
     let _alone = alone();
@@ -53,7 +54,7 @@ fn corners_far_outside_of_their_lists_are_refused() {
     assert_eq!(read(&obj, file("-1/-1/-1").as_bytes(), 1, "regression").outcome, Ok(()));
 }
 
-/// The memory was asked for before it showed that there are no texels in the file.
+/// Memory was allocated before it was known that the file has no texels.
 #[test]
 fn a_header_alone_gets_no_memory() {
     let _alone = alone();
@@ -66,7 +67,7 @@ fn a_header_alone_gets_no_memory() {
     }
     let exr = kind("exr");
     for whole in corpus::exr() {
-        // The data window of an image of 9 by 7, then one of 16384 by 8192.
+        // The data window of an image of 9 by 7, then that of one of 16384 by 8192.
         let window = |x: i32, y: i32| [[0; 8].as_slice(), &x.to_le_bytes(), &y.to_le_bytes()].concat();
         let at = whole.windows(16).position(|bytes| bytes == window(8, 6)).expect("a window");
         let second = at + 16 + whole[at + 16..].windows(16).position(|bytes| bytes == window(8, 6)).expect("two");
@@ -78,7 +79,7 @@ fn a_header_alone_gets_no_memory() {
     }
 }
 
-/// Nothing checked that there is a first texel.
+/// The reader did not check that there is a first texel.
 #[test]
 fn an_image_without_texels_is_refused() {
     let _alone = alone();
@@ -90,7 +91,7 @@ fn an_image_without_texels_is_refused() {
     }
 }
 
-/// Packed 16-bit floats that end too early: the decoder panics where overflow is checked, and else reads something.
+/// Packed 16-bit floats that end too early. The decoder panics if overflow is checked, and reads something otherwise.
 #[test]
 fn a_decoder_that_panics_stops_nothing() {
     let _alone = alone();

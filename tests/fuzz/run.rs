@@ -1,4 +1,4 @@
-//! Reads cases one after the other and watches what they cost.
+//! Reads cases one after the other and measures their cost.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -8,16 +8,16 @@ use std::time::{Duration, Instant};
 use super::allocator::{Memory, memory_of};
 use super::readers::{Kind, Outcome, kinds};
 
-/// Cases over all kinds of files, unless ABBE_FUZZ_CASES says otherwise.
+/// Number of cases over all kinds of files, unless ABBE_FUZZ_CASES sets another.
 const CASES: usize = 40_000;
-/// A case that takes longer hangs. Most take a thousandth of a second.
+/// A case that takes longer counts as hanging. Most take a thousandth of a second.
 const LONGEST: Duration = Duration::from_secs(10);
-/// The most that a file of some kilobytes may ask for.
+/// The most memory that a file of some kilobytes may take.
 pub const MOST_MEMORY: usize = 1 << 30;
 
-/// What is read now, and since when.
+/// The case that is being read, and its start.
 static NOW: Mutex<Option<(String, Instant)>> = Mutex::new(None);
-/// Memory is counted for one test at a time.
+/// Memory is counted for only one test at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
 pub fn alone() -> MutexGuard<'static, ()> {
@@ -28,7 +28,7 @@ fn now(of: Option<(String, Instant)>) {
     *NOW.lock().unwrap_or_else(PoisonError::into_inner) = of;
 }
 
-/// Ends the program with the name of a case that hangs: nothing else would.
+/// Ends the program with the name of a case that hangs, because nothing else would end it.
 fn watch() {
     thread::spawn(|| {
         loop {
@@ -42,14 +42,14 @@ fn watch() {
     });
 }
 
-/// What reading one file came to.
+/// The result of reading one file, with its cost.
 pub struct Cost {
     pub outcome: Outcome,
     pub time: Duration,
     pub memory: Memory,
 }
 
-/// Reads one file; panics with the case's name if the reader does.
+/// Reads one file, and panics with the name of the case if the reader panics.
 pub fn read(kind: &Kind, bytes: &[u8], way: u64, case: &str) -> Cost {
     let start = Instant::now();
     now(Some((case.to_owned(), start)));

@@ -1,5 +1,5 @@
-//! Light that comes straight from lights onto a diffuse floor, against closed forms: aiming at a light and meeting it
-//! by chance must together count it once.
+//! Direct light on a diffuse floor, compared with closed forms. Next-event estimation and random hits must together
+//! count a light once.
 
 mod bounces;
 mod combined;
@@ -12,7 +12,7 @@ use abbe::math::DVec3;
 
 use crate::support::scenes::{GROUND, Mean, SINGLE_PATH, SPLITTING, body, image, view};
 
-/// The bands' radiances are in these proportions.
+/// Relative radiances of the bands.
 const BANDS: [f64; 3] = [1.0, 2.0, 0.5];
 const REFLECTANCE: f64 = 0.5;
 
@@ -20,10 +20,10 @@ pub struct Case {
     name: &'static str,
     /// Objects of the material "lamp", and anything else.
     scene: String,
-    /// The place on the floor y = 0 that is looked at, and from where.
+    /// The point on the floor y = 0 that the camera looks at, and the position of the camera.
     point: [f64; 3],
     camera: [f64; 3],
-    /// Irradiance by a light of radiance 1.
+    /// Irradiance from a light of radiance 1.
     irradiance: f64,
 }
 
@@ -36,8 +36,9 @@ fn lamp(sides: &str, shapes: &[&str]) -> String {
     body("lamp", &format!("emissive = {{ radiance = {{ rgb = {BANDS:?} }}{sides} }}"), shapes)
 }
 
-/// Irradiance of a horizontal place by a polygon of radiance 1 above it: half the sum of its edges' angles times the
-/// heights of their planes' normals (Lambert 1760; Baum, Rushmeier & Winget 1989).
+/// Returns the irradiance of a horizontal surface from a polygon of radiance 1 above it: half the sum of the angles
+/// that its edges subtend, each times the vertical component of the edge plane's normal (Lambert 1760; Baum, Rushmeier
+/// & Winget 1989).
 fn by_polygon(point: [f64; 3], corners: &[DVec3]) -> f64 {
     let seen: Vec<DVec3> = corners.iter().map(|corner| (*corner - DVec3::from(point)).normalize()).collect();
     let edges = (0..seen.len()).map(|i| (seen[i], seen[(i + 1) % seen.len()]));
@@ -49,19 +50,19 @@ fn by_quad(point: [f64; 3], center: DVec3, u: DVec3, v: DVec3) -> f64 {
     by_polygon(point, &[center + u + v, center - u + v, center - u - v, center + u - v])
 }
 
-/// Irradiance by a ball wholly above the floor: that of its center's direction, pi sin^2 cos.
+/// Returns the irradiance from a ball that is wholly above the floor: pi sin^2 cos, in the direction of its center.
 fn by_ball(point: [f64; 3], center: [f64; 3], radius: f64) -> f64 {
     let d = DVec3::from(center) - DVec3::from(point);
     PI * radius * radius / d.length_squared() * d.normalize().y
 }
 
 fn assert_closed_forms(cases: &[Case]) {
-    // Aim at all lights, at one of them, and without going on to meet any.
+    // Next-event estimation with all lights, with one of them, and without a bounce that could hit any.
     let ways = [("", SPLITTING, 24), ("", SINGLE_PATH, 32), ("diffuse_bounces = 0\n", SINGLE_PATH, 32)];
     for case in cases {
         for (limit, transport, samples) in ways {
             let floor = format!("diffuse = {{ reflectance = {REFLECTANCE} }}");
-            // So far away and narrow that all pixels see one place.
+            // The camera is so far away and its view so narrow that all pixels see one point.
             let text = view(case.camera, case.point, 1e-5, 40)
                 + &format!("[render]\nsamples = {samples}\n{limit}")
                 + &body("floor", &floor, &[GROUND])

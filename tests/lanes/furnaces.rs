@@ -1,10 +1,10 @@
-//! Lossless bodies in an even sky: radiance is 1 outside and n^2 inside, in every band.
+//! Lossless bodies in a uniform sky: radiance is 1 outside and n^2 inside, in every band.
 
 use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, environment, image, view};
 use abbe::trace::Transport;
 
-/// Camera rays from outside that all meet the body, and from so many sides that no symmetry helps.
+/// Returns a view from outside. All camera rays hit the body, from so many sides that no symmetry helps.
 fn outside(bodies: &str, samples: u32) -> String {
     let head = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 64);
     head + &format!("[render]\nsamples = {samples}\n") + bodies + &environment(1.0)
@@ -13,7 +13,7 @@ fn outside(bodies: &str, samples: u32) -> String {
 const INDICES: [&str; 7] =
     ["1.1", "1.5", "2", "2.5", "{ rgb = [1.1, 1.5, 2.5] }", "{ rgb = [1.3, 1.31, 1.32] }", "{ rgb = [2.5, 1.1, 1] }"];
 
-/// A ball, a turned cube, an ellipsoid, and bodies within bodies whose priorities decide.
+/// Returns a ball, a turned cube, an ellipsoid, and nested bodies whose priorities decide.
 fn bodies(index: &str) -> Vec<(&'static str, String)> {
     let clear = |extra: &str| format!("dielectric = {{ index = {index}{extra} }}");
     let ball = "sphere = { center = [0, 0, 0], radius = 1 }";
@@ -65,7 +65,7 @@ fn every_branch_together_makes_each_pixel_of_a_furnace_1() {
     for index in INDICES {
         for (name, bodies) in bodies(index).into_iter().take(3) {
             let (film, report) = image(&outside(&bodies, 1), Transport::Deterministic { cutoff: 1e-9, most: u64::MAX });
-            // Chains of total reflection inside the cube end at the last surface; what they carry is counted.
+            // Chains of total reflection inside the cube end at the last surface, and what they carry is counted.
             for (at, pixel) in film.pixels.iter().enumerate() {
                 for x in pixel.rgb {
                     assert!((x - 1.0).abs() <= 1e-5, "{name} of index {index}: pixel {at} is {x}");
@@ -80,7 +80,7 @@ fn every_branch_together_makes_each_pixel_of_a_furnace_1() {
 fn a_camera_inside_glass_sees_an_even_sky_n_squared_bright() {
     let indices = [1.2, 1.5, 2.4];
     let clear = format!("dielectric = {{ index = {{ rgb = {indices:?} }} }}");
-    // From the inner 40 % of the radius every direction leads out of a ball.
+    // From the inner 40 % of the radius, every direction leads out of the ball.
     for position in [[0.0; 3], [0.3, -0.1, 0.2], [-0.2, 0.25, 0.2]] {
         let ball = body("clear", &clear, &["sphere = { center = [0, 0, 0], radius = 1 }"]);
         let text = view(position, [0.4, 0.9, -0.7], 120.0, 100) + &ball + &environment(1.0);

@@ -1,4 +1,4 @@
-//! Bodies in bodies: rows M1, M3 and M4 of the stability catalog.
+//! Nested bodies: rows M1, M3 and M4 of the stability catalog.
 
 use abbe::math::DVec3;
 
@@ -6,21 +6,21 @@ use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, GROUND, SINGLE_PATH, SPLITTING, body, environment, image, view};
 use abbe::trace::{MOST_MEDIA, Transport};
 
-/// Reflectance over transmittance of one interface at normal incidence.
+/// Returns reflectance over transmittance of one interface at normal incidence.
 fn lost(n1: f64, n2: f64) -> f64 {
     let r = (n1 - n2) / (n1 + n2);
     r * r / (1.0 - r * r)
 }
 
-/// What a row of interfaces lets through at normal incidence with all reflections between them, which adds up
-/// R / T (Stokes 1862, the pile of plates).
+/// Returns the transmittance of a row of interfaces at normal incidence, with all reflections between them. The
+/// interfaces' R / T add up (Stokes 1862, the pile of plates).
 fn transmitted(indices: &[f64]) -> f64 {
     1.0 / (1.0 + indices.windows(2).map(|pair| lost(pair[0], pair[1])).sum::<f64>())
 }
 
-/// A box as a mesh, or as a hollow in one: its faces look inward then.
+/// Returns the faces of a box, or of a hollow, whose faces point inward.
 fn faces(first: u32, hollow: bool) -> String {
-    // Corner i lies at x, y, z = +-1 by its bits 0, 1 and 2.
+    // Bits 0, 1 and 2 of i give the signs of x, y and z = +-1 of corner i.
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let turn = |[a, b, c]: [u32; 3]| if hollow { [a, c, b] } else { [a, b, c] };
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
@@ -32,7 +32,7 @@ fn corners(half: f64) -> String {
     (0..8).map(|i| format!("{:?}, ", [side(i & 1 > 0), side(i & 2 > 0), side(i & 4 > 0)])).collect()
 }
 
-/// A glass vessel with a hollow of half width 0.9.
+/// Returns a glass vessel with a hollow of half width 0.9.
 fn vessel() -> String {
     let (points, faces) = (corners(1.0) + &corners(0.9), faces(0, false) + &faces(8, true));
     let mesh = format!("mesh = {{ points = [{points}], faces = [{faces}] }}");
@@ -44,11 +44,11 @@ fn water(half: f64, priority: i32) -> String {
     body("water", &format!("dielectric = {{ index = 1.333, priority = {priority} }}"), &[&cube])
 }
 
-/// Straight through the middle onto a shining plane, all reflections counted.
+/// Returns what is seen straight through the middle of bodies of a plane of radiance 1, with all reflections.
 fn seen_through(bodies: &str) -> f64 {
     let plane = "plane = { point = [0, 0, -5], normal = [0, 0, 1] }";
     let lamp = body("lamp", "emissive = { radiance = 1 }", &[plane]);
-    // Off the diagonals of the faces; so narrow that its rays count as one.
+    // Off the diagonals of the faces, and so narrow that its rays count as one.
     let text = view([0.31, 0.17, 5.0], [0.31, 0.17, 0.0], 1e-6, 1) + bodies + &lamp;
     let (film, report) = image(&text, Transport::Deterministic { cutoff: 1e-12, most: u64::MAX });
     assert_eq!(report.unmatched, 0);
@@ -67,7 +67,7 @@ fn m1_water_that_overlaps_its_vessel_lets_through_what_labelled_interfaces_would
     for (name, bodies) in ways {
         let found = seen_through(&bodies);
         println!("M1: {name} {:.1e}", found / expected - 1.0);
-        // A weight is rounded to 2^-24 at each of a few dozen surfaces that matter.
+        // A weight is rounded to 2^-24 at each of the few dozen surfaces that matter.
         assert!((found / expected - 1.0).abs() <= 1e-6, "{name}: {found} for {expected}");
     }
     // The naive vessel, with a film of air between water and glass, differs by more than any rounding.
@@ -78,7 +78,7 @@ fn m1_water_that_overlaps_its_vessel_lets_through_what_labelled_interfaces_would
 
 #[test]
 fn m3_overlap_and_displacement_bend_light_the_same_way() {
-    // At 30 degrees through vessel, water and vessel onto stripes; the same picture whichever body yields.
+    // Stripes seen at 30 degrees through vessel, water and vessel. The picture is the same whichever body yields.
     let stripes: String = (0..40)
         .map(|i| {
             let quad = format!(
@@ -103,7 +103,7 @@ fn m3_overlap_and_displacement_bend_light_the_same_way() {
 /// Glass that water of a higher priority displaces.
 const SOLID: &str = "dielectric = { index = 1.5168, priority = 1 }";
 
-/// Balls (center, radius, index, priority), some within and some across each other.
+/// Balls (center, radius, index, priority), some nested and some overlapping.
 const BALLS: [([f64; 3], f64, f64, i32); 5] = [
     ([0.0, 0.0, 0.0], 2.0, 1.6, 1),
     ([0.3, 0.1, 0.0], 1.2, 1.333, 2),
@@ -112,10 +112,10 @@ const BALLS: [([f64; 3], f64, f64, i32); 5] = [
     ([1.4, -0.9, 0.5], 0.8, 1.25, 4),
 ];
 
-/// Absorption of each ball's medium; each tells them apart over a short way.
+/// Absorption of each ball's medium. Even a short path tells them apart.
 const ABSORPTIONS: [f64; 5] = [2.0, 5.0, 0.0, 9.0, 14.0];
 
-/// The ball that a place is in, the one of highest priority; none if there is none.
+/// Returns the ball of highest priority that contains a point, or none.
 fn ball_around(place: DVec3) -> Option<usize> {
     let within = |&i: &usize| (place - DVec3::from(BALLS[i].0)).length() < BALLS[i].1;
     (0..BALLS.len()).filter(within).max_by_key(|&i| BALLS[i].3)
@@ -137,7 +137,7 @@ fn m4_a_camera_finds_the_media_around_it() {
     let mut found = [0; BALLS.len() + 1];
     let mut number = 0;
     while number < 3000 {
-        // Every other ray starts away from the camera, maybe in another medium than the camera's.
+        // Every other ray starts away from the camera, possibly in another medium.
         let near = if number % 2 == 0 { 0.0 } else { random.between(0.0, 3.0) };
         let (center, radius, ..) = BALLS[number % BALLS.len()];
         let start = DVec3::from(center) + random.direction() * random.between(0.0, 1.3 * radius);
@@ -148,7 +148,7 @@ fn m4_a_camera_finds_the_media_around_it() {
             continue;
         }
         number += 1;
-        // A small lamp before the start: its light comes through the first medium alone.
+        // A small lamp in front of the start of the ray. Its light crosses only the first medium.
         let lamp = format!("sphere = {{ center = {:?}, radius = 0.02 }}", (start + direction * 0.12).to_array());
         let text = format!(
             "camera = {{ position = {:?}, look_at = {:?}, vertical_fov = 0.001, near = {near:?} }}\n\
@@ -175,20 +175,21 @@ fn m4_a_camera_finds_the_media_around_it() {
 fn overlapping_bodies_of_one_material_are_one_body() {
     let pair = ["cube = { center = [0, 0, 0.5], size = [9, 9, 1] }", "cube = { center = [0, 0, 1], size = [8, 8, 1] }"];
     let bodies = body("glass", "dielectric = { index = 1.5, absorption = 0.5 }", &pair);
-    // A slab of thickness 1.5 with all its reflections: T = (1 - R)^2 a / (1 - R^2 a^2), a = e^(-absorption d).
+    // A slab of thickness 1.5 with all its internal reflections: T = (1 - R)^2 a / (1 - R^2 a^2), a = e^(-absorption
+    // d).
     let (r, a) = (0.04, libm::exp(-0.5 * 1.5));
     let expected = (1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a);
     let found = seen_through(&bodies);
     assert!((found / expected - 1.0).abs() <= 1e-6, "{found} for {expected}");
 }
 
-/// Half spaces have no outside at infinity one way, and slabs of two planes have one both ways.
+/// In one direction, a half space has no outside at infinity. A slab of two planes has one in both directions.
 #[test]
 fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
     let plane = |x: f64, normal: f64| format!("plane = {{ point = [{x:?}, 0, 0], normal = [{normal:?}, 0, 0] }}");
     let (half, slab) = (vec![plane(0.0, 1.0)], vec![plane(0.0, 1.0), plane(-4.0, -1.0)]);
     let inside = (-1_f64).exp();
-    // The camera's place, the lamp's, 1 away, and what is left of its light.
+    // Position of the camera, position of the lamp at a distance of 1, and the fraction of its light that arrives.
     let cases =
         [(&half, -2.0, -3.0, inside), (&half, -2.0, -1.0, inside), (&half, 1.0, 2.0, 1.0), (&slab, 1.0, 2.0, 1.0)];
     let more = [(&slab, -5.0, -6.0, 1.0), (&slab, -2.0, -3.0, inside), (&slab, -2.0, -1.0, inside)];
@@ -205,17 +206,17 @@ fn m4_a_camera_knows_whether_it_is_in_a_half_space_whichever_way_it_looks() {
     for (planes, camera, lamp, expected) in cases.into_iter().chain(more) {
         look(planes, [[camera, 0.0, 0.0], [lamp, 0.0, 0.0]], "u = [0, 1, 0], v = [0, 0, 1]", expected);
     }
-    // In two half spaces at once, of which the way to the lamp leaves one.
+    // The camera is in two half spaces at once, and the path to the lamp leaves one of them.
     let wedge = vec![plane(0.0, 1.0), GROUND.to_owned()];
     let ways = [[-1.0, -1.0, 0.0], [1.0, -3.0, 0.0]];
     look(&wedge, ways, "u = [1, 1, 0], v = [0, 0, 1]", (-8_f64.sqrt()).exp());
-    // Exactly along the surface.
+    // The view is exactly along the surface.
     for (planes, camera, expected) in [(&half, -2.0, inside), (&half, 1.0, 1.0), (&slab, -2.0, inside)] {
         look(planes, [[camera, 0.0, 0.0], [camera, 0.0, 1.0]], "u = [1, 0, 0], v = [0, 1, 0]", expected);
     }
 }
 
-/// A corner of an outline, met exactly, is no surface that leads out of the body.
+/// A ray that hits a corner of the silhouette exactly does not find a surface that leads out of the body.
 #[test]
 fn m4_a_camera_that_looks_exactly_at_a_corner_of_a_glass_mesh_is_outside_of_it() {
     let octahedron =
@@ -232,7 +233,8 @@ fn m4_a_camera_that_looks_exactly_at_a_corner_of_a_glass_mesh_is_outside_of_it()
     }
 }
 
-/// Shells of a lens of varying index: balls in balls, each of a material of its own that absorbs and bends nothing.
+/// Returns the shells of a lens with varying index: nested balls, each of its own material, which absorbs but does not
+/// refract.
 fn shells(count: u32) -> String {
     let shell = |i: u32| {
         let material = format!("dielectric = {{ index = 1, absorption = 0.02, priority = {i} }}");
@@ -260,7 +262,7 @@ fn as_many_bodies_as_there_is_room_for_lie_in_one_another_and_more_are_told_of()
     }
 }
 
-/// A camera in a sea sees a lamp through bodies that the sea has taken the place of.
+/// A camera in a sea sees a lamp through bodies that the sea displaces.
 #[test]
 fn hidden_bodies_are_no_surfaces_of_what_is_seen_through_them() {
     let lamp = "quad = { center = [0, 0, -5], u = [3, 0, 0], v = [0, 3, 0] }";
@@ -287,7 +289,7 @@ fn hidden_bodies_are_no_surfaces_of_what_is_seen_through_them() {
                     for pixel in &film.pixels {
                         let told = format!("{hidden} {max_bounces} {seen}: {pixel:?}");
                         if seen {
-                            // As far as light goes, the factor of radiance aside.
+                            // All light arrives, apart from the factor of radiance.
                             assert!((pixel.rgb[0] - 1.0).abs() < 1e-5, "{told}");
                             assert!((pixel.depth - 10.0).abs() < 1e-3 && pixel.alpha == 1.0, "{told}");
                         } else if max_bounces == 0 {

@@ -1,4 +1,4 @@
-//! Lanes that stay together share a direction; what a surface reflects and lets through is each lane's own.
+//! Lanes that stay together share a direction. Their reflectance and transmittance differ from lane to lane.
 
 use abbe::film::Film;
 use abbe::material::{
@@ -26,7 +26,8 @@ fn named(kind: fn(&str) -> Option<CurveKind>, name: &str) -> Curve {
     kind(name).expect("it is in the catalog").into()
 }
 
-/// R and T of a plate in vacuum with all reflections inside, unpolarized at every surface, from Fresnel's equations.
+/// Returns R and T of a plate in vacuum with all internal reflections, for light that is unpolarized at every surface,
+/// from Fresnel's equations.
 fn plate(n: f64, cos: f64) -> [f64; 2] {
     let r = 0.5 * reflectances(n, cos).iter().sum::<f64>();
     [2.0 * r / (1.0 + r), (1.0 - r) / (1.0 + r)]
@@ -58,7 +59,8 @@ fn clear(basis: &Basis, index: Table) -> Material<Table> {
 
 type Draws = Draw<MAX_LANES>;
 
-/// What a smooth surface sends on, by reflection and across: each lane's shares, and the direction.
+/// Returns the reflected and the transmitted branch of a smooth surface, with the shares of each lane and the
+/// direction.
 fn met(material: &Material<Table>, context: &ScatterContext<MAX_LANES>) -> [Option<Branch<MAX_LANES>>; 2] {
     let mut branches = Vec::new();
     material.scatter(context, [0.5; 2], &mut branches);
@@ -93,7 +95,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
                 assert!((t.eta_scale * out.eta_scale - 1.0).abs() < 1e-14);
                 let Some(forward) = leaves.forward() else { panic!("{} at {degrees}", glass.key) };
                 for lane in (0..MAX_LANES).filter(|&lane| enters.present[lane] != 0.0) {
-                    // A photon out of the glass brings what a path into it would find, solid angle for solid angle.
+                    // A photon that leaves the glass contributes what a path into it would find, per solid angle.
                     let photon = f64::from(out.share[lane] * forward[lane]) / out.eta_scale;
                     assert!((photon / (f64::from(t.share[lane]) / t.eta_scale) - 1.0).abs() < 1e-6);
                     let [r, t, inner, out] = [&r, &t, &inner, &out].map(|branch| f64::from(branch.share[lane]));
@@ -111,7 +113,7 @@ fn d16_every_lane_of_every_glass_of_the_catalog_has_its_own_plate() {
     assert!(worst < 1e-6, "{worst}");
 }
 
-/// Rays at 0 to 85 degrees onto a plate, a plane of radiance 1 before or behind it.
+/// Returns a view with rays at 0 to 85 degrees onto a plate, and a plane of radiance 1 in front of it or behind it.
 fn before_or_behind(glass: &str, reflected: bool) -> String {
     let (sin, cos) = libm::sincos(42.5_f64.to_radians());
     let (y, facing) = if reflected { (30, -1) } else { (-5, 1) };
@@ -142,7 +144,7 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
             for lane in (0..basis.lanes()).step_by(if basis.lanes() > 12 { 5 } else { 1 }) {
                 let own = index.bins()[lane];
                 let (film, _) = render(&world().with_responses(|response| comparison::only(response, lane)), &|_| ());
-                // What the lane is worth: the channel that has most of it, before nothing.
+                // The color of the lane by itself, and the channel that has most of it.
                 let light = Curve::from(1.0);
                 let alone = {
                     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
@@ -168,7 +170,7 @@ fn d16_plates_of_glass_are_rendered_as_bright_in_every_lane_as_they_are() {
     println!("rendered plates are at most {worst:.1e} off");
 }
 
-/// Liquids and glasses within each other, met at any angle: what light finds one way it finds the other, and R + T = 1.
+/// Liquids and glasses inside each other, hit at any angle: light in both directions agrees, and R + T = 1.
 #[test]
 fn d16_lanes_of_one_direction_lose_nothing_between_any_two_media() {
     let indices = |name: &str| {
@@ -186,7 +188,7 @@ fn d16_lanes_of_one_direction_lose_nothing_between_any_two_media() {
             let other = shared_transmittance([&beyond.0, &here.0], [beyond.1, here.1], back);
             for lane in 0..16 {
                 assert!((0.0..=1.0 + 1e-15).contains(&t[lane]), "{}", t[lane]);
-                // Where a medium ends at a grazing angle, the angle on the other side has lost digits.
+                // Where the direction grazes one medium, the angle on the other side has lost digits.
                 let ends = [here.1, here.0[lane], beyond.1, beyond.0[lane]];
                 let near_end = k > 0.999 * ends.into_iter().fold(f64::INFINITY, f64::min);
                 assert!(near_end || (t[lane] - other[lane]).abs() < 1e-9, "{} and {}", t[lane], other[lane]);
@@ -195,8 +197,9 @@ fn d16_lanes_of_one_direction_lose_nothing_between_any_two_media() {
     }
 }
 
-/// A camera in a liquid looks at glass: where the ray grazes it every lane does, and each has its own share before,
-/// bare or under a layer. A lane whose index is below that of the ray was reflected in full within 8 degrees.
+/// A camera in a liquid looks at glass. Every lane is at grazing incidence where the ray is. Before that, each lane has
+/// its own share, bare or under a layer. Lanes with an index below that of the ray used to be totally reflected within
+/// 8 degrees.
 #[test]
 fn d16_lanes_in_a_dispersive_liquid_meet_denser_glass_as_if_each_were_alone() {
     let [liquid, flint] = ["liquid/carbon disulfide", "N-SF66"]
@@ -236,7 +239,7 @@ fn d16_lanes_in_a_dispersive_liquid_meet_denser_glass_as_if_each_were_alone() {
     assert!(worst[0] < 6e-3 && worst[1] < 6e-3, "{worst:?}");
 }
 
-/// Where a ray grazes the rarer medium nothing crosses in any lane, nor does anything jump before.
+/// Where a ray grazes the rarer medium, no lane is transmitted. Before that, the shares have no jumps.
 #[test]
 fn d16_shares_of_lanes_of_one_direction_are_continuous() {
     let media = ["liquid/carbon disulfide", "N-BK7", "N-SF66", "N-SF11", "liquid/water"].map(|name| {
@@ -250,7 +253,7 @@ fn d16_shares_of_lanes_of_one_direction_are_continuous() {
             continue;
         }
         let least = here.1.min(beyond.1);
-        // Even steps of the cosine in the rarer medium, of which the shares are smooth.
+        // Even steps of the cosine in the rarer medium, in which the shares are smooth.
         let at = |step: u32| {
             let cos = f64::from(step) / 1000.0;
             let k = least * (1.0 - cos * cos).sqrt() / here.1;
@@ -268,7 +271,8 @@ fn d16_shares_of_lanes_of_one_direction_are_continuous() {
     }
 }
 
-/// A cube of glass within a ball of another under an even sky of 1, smooth and rough; lanes also part at the cube.
+/// A cube of one glass inside a ball of another, under a uniform sky of 1, smooth and rough. Lanes may also part at the
+/// cube.
 #[test]
 fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
     const PARTS: &str = "{ rgb = [1.70, 1.72, 1.76] }";
@@ -317,7 +321,7 @@ fn d16_glass_whose_lanes_stay_together_is_invisible_in_an_even_sky() {
     }
 }
 
-/// A ball of glass that swallows what enters it, under a sky of D65: each pixel's CIE XYZ.
+/// Renders a glass ball that absorbs what enters it, under a D65 sky. The film is in CIE XYZ.
 fn mirror_ball(model: &str) -> (abbe::plan::Plan, Film, Vec<f64>) {
     let text = view([0.0, 0.0, 8.0], [0.0; 3], 14.0, 9)
         + &format!(
@@ -394,8 +398,8 @@ fn the_plan_counts_the_color_of_glass_and_keeps_three_lanes_where_they_do() {
     assert!(words.contains("all lanes are refracted by 1.5168, so lanes stay together"), "{words}");
 }
 
-/// A floor within dense flint that a lamp lights, once by photons and once by chance: both bring every lane as much,
-/// though solid angles change by the index of the direction and radiance by each lane's own.
+/// A lamp lights a floor inside dense flint, once by photons and once by random paths. Both contribute the same in
+/// every lane, although solid angles change by the index of the direction and radiance by each lane's own index.
 #[test]
 fn photons_and_paths_bring_the_same_color_through_glass_whose_lanes_stay_together() {
     let color = |caustics: &str, samples: u32| {
@@ -428,6 +432,6 @@ fn photons_and_paths_bring_the_same_color_through_glass_whose_lanes_stay_togethe
     };
     let (photons, chance) = (color("auto", 64), color("off", 512));
     println!("X / Y and Z / Y: {photons:?} by photons, {chance:?} by chance");
-    // Where one follows the other's factor Z is 10 % off; noise is the same in all lanes.
+    // If one followed the other's factor, Z would be 10 % off. The noise is the same in all lanes.
     assert!((0..2).all(|i| (photons[i] / chance[i] - 1.0).abs() < 2e-3), "{photons:?} and {chance:?}");
 }

@@ -1,10 +1,10 @@
-//! A pane without thickness shows what a plate of glass shows: all reflections between its two sides.
+//! A pane without thickness looks like a plate of glass with all reflections between its two sides.
 
 use crate::support::fresnel::reflectances;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 
-/// What comes straight through a pane that is turned by an angle from a screen of radiance 1, or back from one behind
-/// the camera.
+/// Returns the light of a screen of radiance 1 that arrives straight through a pane turned by an angle, or that the
+/// pane reflects if the screen is behind the camera.
 fn through(material: &str, shape: &str, degrees: f64, wall_behind: bool) -> f64 {
     let (z, facing) = if wall_behind { (-9.0, 1) } else { (9.0, -1) };
     let wall = body(
@@ -26,7 +26,7 @@ fn cosine(degrees: f64) -> f64 {
 
 const PANE: &str = "quad = { center = [0, 0, 0], u = [50, 0, 0], v = [0, 50, 0] }";
 
-/// (1 - R) / (1 + R) of s and of p, by the exact Fresnel equations for n = 1.5 and N-BK7's n_d.
+/// The pane transmits (1 - R) / (1 + R) of s and of p, by the exact Fresnel equations for n = 1.5, 2.5 and N-BK7's n_d.
 #[test]
 fn a_pane_lets_through_what_all_its_reflections_leave_of_each_polarization() {
     for n in [1.5, 1.5168, 2.5] {
@@ -37,11 +37,11 @@ fn a_pane_lets_through_what_all_its_reflections_leave_of_each_polarization() {
             assert!((found - 0.5 * (s + p)).abs() < 1e-6, "{n} at {degrees} degrees: {found}");
         }
     }
-    // A pile of plates of N-BK7 at 75 degrees, as it is printed: T_s = 0.421958, T_p = 0.808685.
+    // Published for a pile of plates of N-BK7 at 75 degrees: T_s = 0.421958, T_p = 0.808685.
     assert!((through("thin = { index = 1.5168 }", PANE, 75.0, true) - 0.615_321).abs() < 1e-6);
 }
 
-/// The series of each polarization with what one way takes, term by term.
+/// The reflections of each polarization, with absorption on every pass, are summed term by term.
 #[test]
 fn a_tinted_pane_at_any_angle_is_the_sum_of_its_reflections() {
     for (t, degrees) in [(0.9, 60.0), (0.5, 75.0), (0.05, 45.0), (0.999, 85.0)] {
@@ -54,7 +54,7 @@ fn a_tinted_pane_at_any_angle_is_the_sum_of_its_reflections() {
         let material = format!("thin = {{ index = 1.52, transmittance = {t} }}");
         let found = through(&material, PANE, degrees, true);
         assert!((found - 0.5 * (s + p)).abs() < 1e-6, "{t} at {degrees} degrees: {found} for {}", 0.5 * (s + p));
-        // In an even sky what comes back, r + r t T, is added.
+        // In a uniform sky, the reflected light r + r t T is added.
         let pane = body("pane", &material, &[PANE]);
         let angle: f64 = f64::to_radians(degrees);
         let eye = [0.0, 5.0 * libm::sin(angle), 5.0 * libm::cos(angle)];
@@ -68,7 +68,7 @@ fn a_tinted_pane_at_any_angle_is_the_sum_of_its_reflections() {
 
 #[test]
 fn a_tinted_pane_loses_light_on_every_way() {
-    // Straight on, R = 0.04, t = 0.8: T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T comes back.
+    // At normal incidence with R = 0.04 and t = 0.8: T = (1 - R)^2 t / (1 - R^2 t^2), and R + R t T is reflected.
     let transmitted = 0.96 * 0.96 * 0.8 / (1.0 - 0.04 * 0.04 * 0.64);
     let material = "thin = { index = 1.5, transmittance = 0.8 }";
     assert!((through(material, PANE, 0.0, true) - transmitted).abs() < 1e-6);

@@ -7,7 +7,7 @@ use crate::support::scenes::{
     EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, films_of, image, method, scene, standard_errors, view,
 };
 
-/// A ball and a prism of some glass among other things: what the scenes of this folder share.
+/// A ball and a prism of glass among other objects, shared by the scenes of this folder.
 pub const BALL_AND_PRISM: &str = r#"[[object]]
 shape.plane = { point = [0, 0, 0], normal = [0, 1, 0] }
 material = "floor"
@@ -37,7 +37,7 @@ environment.radiance = 0.01
 
 const INDICES: [f64; 3] = [1.5, 1.57, 1.66];
 
-/// A ball and a prism of some glass among glowing, reflecting and, if asked for, diffuse things.
+/// Returns a ball and a prism of some glass among glowing and reflecting objects, on a floor that may be diffuse.
 fn text(index: &str, floor: &str, filter: &str, side: u32) -> String {
     let view = view([0.3, 1.0, 6.0], [0.1, 0.7, 0.0], 30.0, side);
     format!(
@@ -57,7 +57,7 @@ fn index_per_band() -> String {
     format!("{{ rgb = {INDICES:?} }}")
 }
 
-/// Renders with lanes that part and with a flat index for each band, in this order.
+/// Renders a scene whose lanes part, and one with a flat index for each band.
 fn parted_and_flat(floor: &str, filter: &str, transport: Transport) -> (Film, [Film; 3]) {
     let film = |index: &str| image(&text(index, floor, filter, 44), transport).0;
     (film(&index_per_band()), INDICES.map(|index| film(&index.to_string())))
@@ -75,7 +75,7 @@ fn parted_lanes_equal_one_render_for_each_index_bit_for_bit() {
     assert!(differing > 300, "the glass disperses only {differing} pixels");
 }
 
-/// One of the blocks of pixels that a film is cut into.
+/// Returns one of the blocks of pixels that a film is divided into.
 pub fn block(film: &Film, column: u32, row: u32) -> Film {
     let places = (0..BLOCK * BLOCK).map(|i| (column * BLOCK + i % BLOCK, row * BLOCK + i / BLOCK));
     let pixels = places.map(|(x, y)| *film.at(x, y)).collect();
@@ -96,7 +96,7 @@ fn parted_lanes_equal_one_render_for_each_index_in_the_mean() {
         };
         let parted = films(&index_per_band(), 0);
         for (band, index) in INDICES.into_iter().enumerate() {
-            // Other seeds, so that the two are independent.
+            // With other seeds, so that the two sides are independent.
             let flat = films(&index.to_string(), SEEDS);
             for place in 0..BLOCKS * BLOCKS {
                 let of = |films: &[Film]| {

@@ -1,4 +1,5 @@
-//! Interpolated lanes read a reflectance so that it has its color under the lights of a scene, against sums over 1 nm.
+//! Interpolated lanes sample a reflectance so that its color is right under the lights of a scene. The reference is a
+//! sum over 1 nm.
 
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ fn emissions(lights: &[Curve]) -> Vec<Emission> {
     lights.iter().map(|light| Emission::new(light, SPACE)).collect()
 }
 
-/// The reflectances of the ColorChecker.
+/// Returns the reflectances of the ColorChecker.
 fn patches() -> Vec<Curve> {
     let curve = |patch: data::Grid| {
         CurveKind::Reflectance(Named { name: patch.name.to_owned(), entry: Arc::new(patch) }).into()
@@ -30,7 +31,7 @@ fn read(basis: &Basis, reflectance: &Curve) -> Vec<f64> {
     basis.tabulate(Quantity::Reflectance, reflectance).bins().to_vec()
 }
 
-/// The film color of a light after as many reflections by each of some surfaces: in lanes, and by sums over 1 nm.
+/// Returns the film color of a light after a reflection by each of the surfaces: in lanes, and by sums over 1 nm.
 fn colors(basis: &Basis, light: &Curve, surfaces: &[&Curve]) -> [[f64; 3]; 2] {
     let draw = Draw::<MAX_LANES>::fixed(basis.fixed_lanes());
     let mut lanes = draw.read(&basis.tabulate(Quantity::Emission, light));
@@ -50,7 +51,7 @@ fn colors(basis: &Basis, light: &Curve, surfaces: &[&Curve]) -> [[f64; 3]; 2] {
     [basis.response(light).sensor(&draw, lanes, false), exact]
 }
 
-/// By how much the first color is off, of the largest channel of the second.
+/// Returns the error of the first color relative to the largest channel of the second.
 fn missed([found, exact]: [[f64; 3]; 2]) -> f64 {
     let largest = |color: [f64; 3]| color.into_iter().fold(0.0_f64, |most, x| larger(most, x.abs()));
     largest(std::array::from_fn(|c| found[c] - exact[c])) / largest(exact)

@@ -1,5 +1,5 @@
-//! Wavelengths travel together as if each were alone, heroes find what any other wavelengths find, and three bands are
-//! nothing but three lanes.
+//! Wavelengths travel together as if each were alone, heroes give the same result as any other wavelengths, and three
+//! bands are nothing but three lanes.
 
 use abbe::film::Film;
 use abbe::scene::Scene;
@@ -9,7 +9,7 @@ use abbe::trace::{Method, Transport, prepare, render};
 use super::parting::{BALL_AND_PRISM, BLOCK, block};
 use crate::support::scenes::{EVERY_BRANCH, Mean, SPLITTING, method, scene, standard_errors, view};
 
-/// A ball and a prism of glass among colored things, on a floor.
+/// Returns a ball and a prism of glass among colored objects, on a floor.
 fn text(glass: &str, floor: &str, filter: &str, side: u32) -> String {
     let view = view([0.3, 1.0, 6.0], [0.1, 0.7, 0.0], 30.0, side);
     format!(
@@ -54,7 +54,7 @@ fn each_of_many_lanes_has_the_bits_it_has_alone() {
 
 const BLOCKS: u32 = 4;
 
-/// Two ways to render a scene agree in the mean of every block and channel.
+/// Asserts that two ways to render a scene agree in the mean of every block and channel.
 fn assert_alike(first: &[Film], second: &[Film], what: &str) {
     let limit = standard_errors((BLOCKS * BLOCKS * 3) as usize);
     for place in 0..BLOCKS * BLOCKS {
@@ -85,8 +85,8 @@ fn a_lane_among_others_has_the_mean_it_has_alone() {
     }
 }
 
-/// Fixed lanes end where heroes part and count everywhere else: together they see what wavelengths see that are drawn
-/// for every path and never change.
+/// Fixed lanes end where heroes part and count everywhere else. Together they give the same result as wavelengths that
+/// are drawn for each path and never change.
 #[test]
 fn heroes_and_fixed_lanes_together_find_what_single_wavelengths_find() {
     for glass in

@@ -1,4 +1,4 @@
-//! Directions against the density with which they are said to be drawn.
+//! Sampled directions are compared with their stated pdf.
 
 use std::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ const TEXTS: [&str; 6] = [
     "mix = { materials = [\"rough\", \"silver\"], amount = { rgb = [0.1, 0.5, 0.6] } }",
     "mask = { material = \"rough\", opacity = 0.3 }",
 ];
-/// Materials of a narrow lobe and another one.
+/// Materials that combine a narrow lobe with another one.
 const APART: [&str; 3] = [
     "plastic = { reflectance = { rgb = [0.9, 0.1, 0.5] }, roughness = 0.31 }",
     "mix = { materials = [\"satin\", \"white\"], amount = { rgb = [0.1, 0.5, 0.6] } }",
@@ -26,11 +26,11 @@ const APART: [&str; 3] = [
 ];
 const VIEWS: [f64; 3] = [0.95, 0.5, 0.1];
 const CELLS: [usize; 2] = [12, 16];
-/// How many times as fine the density is summed, that of narrow lobes alone finer.
+/// Refinement of the grid on which the pdf is summed. It is finer for narrow lobes alone.
 const FINER: [usize; 2] = [24, 60];
 const DRAWS: u64 = 100_000;
 
-/// The share of directions in every cell of cosine and azimuth by their density.
+/// Returns the probability of every cell of cosine and azimuth, from the pdf.
 fn probabilities(material: &Material<Table>, context: &ScatterContext<4>) -> Vec<f64> {
     let finer = FINER[usize::from(context.lobes == Lobes::NARROW_REFLECTION)];
     let [up, around] = CELLS.map(|cells| cells * finer);
@@ -71,14 +71,15 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
                 counts[place(local.z, CELLS[0]) * CELLS[1] + place(azimuth, CELLS[1])] += 1;
                 let (light, pdf) = material.evaluate(&context, branch.wi).expect("it was drawn");
                 let drawn = branch.pdf.expect("it is wide");
-                // Near a mirror image the density keeps the digits of the direction, less the facets' narrowness.
+                // Near a mirror direction, the pdf keeps the digits of the direction, less those lost to the narrow
+                // facet distribution.
                 assert!((pdf / drawn - 1.0).abs() < 1e-6, "{text}: {pdf}, {drawn}");
                 for lane in 0..3 {
                     let [one, other] = [f64::from(branch.share[lane]) * drawn, f64::from(light[lane])];
                     assert!((one - other).abs() <= 3e-6 * (one + other), "{text}: {one}, {other}");
                 }
             }
-            // What lies below the surface is the last cell.
+            // The last cell holds what lies below the surface.
             let mut expected = probabilities(&material, &context);
             let sum: f64 = expected.iter().sum();
             assert!(sum < 1.0 + 1e-3, "{text}, cos {cos}: the density sums to {sum}");
@@ -93,7 +94,7 @@ fn directions_follow_their_density_and_bring_what_is_sent_along_them() {
     }
 }
 
-/// What lobes scatter that are asked for one by one is what all of them scatter.
+/// Lobes that are evaluated one by one add up to what all of them scatter.
 #[test]
 fn lobes_told_apart_make_up_the_whole() {
     let draw = Draw::<4>::fixed(3);

@@ -1,4 +1,4 @@
-//! In an even environment, what reflects all light cannot be told from it; and light goes both ways alike.
+//! In a uniform environment, a body that reflects all light is invisible. Scattering is reciprocal.
 
 use abbe::material::{Interface, Material, Scatter, diffuse_transmittance};
 use abbe::spectrum::{Draw, Table};
@@ -10,7 +10,7 @@ use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, e
 const COSINES: [f64; 12] = [0.001, 0.003, 0.01, 0.03, 0.06, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0];
 const DRAWS: u32 = 1 << 14;
 
-/// What a material shows of an even environment of radiance 1.
+/// Returns what each band shows of a uniform environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
     arrivals::furnace(material, &context(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
@@ -19,7 +19,7 @@ fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
 #[test]
 fn the_closed_form_of_diffuse_transmittance_agrees_with_a_quadrature() {
     for m in [0.4, 0.75, 0.9999, 1.0, 1.0005, 1.001, 1.1, 1.33, 1.5, 2.5, 6.0] {
-        // Cosine v^3: dense where reflectance changes most.
+        // Cosine v^3: points are dense where the reflectance changes most.
         const STEPS: u32 = 200_000;
         let exact: f64 = (0..STEPS)
             .map(|i| (f64::from(i) + 0.5) / f64::from(STEPS))
@@ -60,7 +60,7 @@ fn under_water_a_white_base_reflects_all_light_to_half_a_percent_even_under_a_co
         let material = material(&text);
         for cos in COSINES {
             for shown in furnace(&material, cos, 1.333) {
-                // Where total reflection sets in, the coat's table cuts a corner.
+                // The coat's table cuts a corner where total reflection sets in.
                 assert!((0.995..=1.005).contains(&shown), "{roughness}, cos {cos}: {shown}");
             }
         }
@@ -69,7 +69,7 @@ fn under_water_a_white_base_reflects_all_light_to_half_a_percent_even_under_a_co
 
 #[test]
 fn a_colored_base_shows_the_series_of_its_inner_reflections() {
-    // From all around a smooth coat: R + T r (1 - R') / (1 - r R'), with R' from inside.
+    // A smooth coat lit from all around returns R + T r (1 - R') / (1 - r R'), with R' from inside.
     for r in [0.0, 0.2, 0.5, 0.9] {
         let material = material(&format!("plastic = {{ reflectance = {r:?} }}"));
         let all = diffuse_transmittance(1.5);
@@ -102,7 +102,7 @@ fn light_goes_both_ways_alike() {
                 .map(|(wo, wi)| material.evaluate(&context(&draw, wo, 1.0), wi).expect("both lie above the surface").0);
             for lane in 0..3 {
                 let [there, back] = [f64::from(there[lane]) / b, f64::from(back[lane]) / a];
-                // A cosine near the horizon keeps 12 digits of 16, and lanes keep 7.
+                // A cosine near the horizon keeps 12 of 16 digits, and lanes keep 7.
                 assert!((there - back).abs() <= 2e-6 * (there + back), "{text}: {there}, {back} at {a}, {b}");
             }
         }
@@ -148,7 +148,7 @@ fn lossless_balls_are_invisible_in_an_even_environment() {
             }
         }
     }
-    // Nothing that is left to chance: white and mirror in equal parts, lit from nowhere else.
+    // Without random choices: a mix of mirror and pane, lit only by the environment.
     let mirrors = "mix = { materials = [\"mirror\", \"pane\"], amount = 0.25 }";
     let text = view([0.0, 0.0, 9.0], [0.0; 3], 10.0, 8) + PARTS + &body("tested", mirrors, &[ball]);
     let (film, report) = image(&(text + &environment(1.0)), EVERY_BRANCH);

@@ -1,4 +1,4 @@
-//! Lamps over plastic and mixes: aiming at them and meeting them agree.
+//! Lamps above plastic and mixes: next-event estimation and random hits agree.
 
 use crate::support::arrivals::PARTS;
 use crate::support::scenes::{GROUND, Mean, SPLITTING, assert_aimed_at_as_met, body, lamps, view};
@@ -30,7 +30,8 @@ fn aiming_at_a_lamp_and_meeting_it_show_the_same() {
 
 #[test]
 fn a_smooth_coat_still_mirrors_where_diffuse_light_has_ended() {
-    // Above the mirror image of a lamp, with no diffuse bounce left, the coat shows it and the base its irradiance.
+    // At the mirror image of a lamp, with no diffuse bounce left, the coat shows the lamp and the base shows its
+    // irradiance.
     let [lamp, _] = lamps(&[LAMP]);
     let shown = |bounces: &str| {
         let text = floor("plastic = { reflectance = 0.5 }", &lamp, 512)
@@ -39,7 +40,7 @@ fn a_smooth_coat_still_mirrors_where_diffuse_light_has_ended() {
         Mean::rendered(&text, SPLITTING, 4)
     };
     let (all, none) = (shown(""), shown("diffuse_bounces = 0\n"));
-    // A floor alone sends nothing back to itself.
+    // A lone floor sends no light back to itself.
     let off = none.beside(&all);
     assert!(off.worst_error(all.value) < 0.01, "{off:?}");
     off.assert_near(all.value, 1, "without diffuse bounces");

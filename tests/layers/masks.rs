@@ -1,4 +1,4 @@
-//! What masks let through: rays from the camera, light from lamps, and paths between surfaces.
+//! Light that masks let through: rays from the camera, light from lamps, and paths between surfaces.
 
 use abbe::film::Film;
 
@@ -14,7 +14,7 @@ const LAMP: &str = "[material.lamp]\nemissive = { radiance = { rgb = [10, 20, 5]
     [[object]]\nshape.quad = { center = [0, 2, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }\nmaterial = \"lamp\"\n";
 const SKY: &str = "[[light]]\nenvironment = { radiance = 2 }\n";
 
-/// A floor under a sheet, seen from below the sheet.
+/// Returns a floor under a sheet, seen from below the sheet.
 fn under(sheet: &str, lights: &str, samples: u32) -> String {
     view([3.0, 0.8, 0.5], [0.0, 0.0, 0.0], 20.0, 12)
         + &format!("[render]\nsamples = {samples}\n[material.black]\ndiffuse = {{ reflectance = 0 }}\n")
@@ -27,7 +27,7 @@ fn masked(material: &str, opacity: &str) -> String {
     body("sheet", &format!("mask = {{ material = \"{material}\", opacity = {opacity} }}"), &[SHEET])
 }
 
-/// Largest difference of two films, relative to their brightest number.
+/// Returns the largest difference of two films, relative to their brightest number.
 fn apart(a: &Film, b: &Film) -> f32 {
     let numbers = |film: &Film| film.pixels.iter().flat_map(|pixel| pixel.rgb).collect::<Vec<_>>();
     let (a, b) = (numbers(a), numbers(b));
@@ -41,7 +41,8 @@ fn a_sheet_of_opacity_0_is_not_there_and_one_of_opacity_1_is_its_material() {
         for transport in [SINGLE_PATH, SPLITTING] {
             let without = image(&under("", lights, 16), transport).0;
             let clear = image(&under(&masked("black", "0"), lights, 16), transport).0;
-            // The same random numbers: only where a ray starts anew beyond a hole is rounded differently.
+            // The random numbers are the same. Only the start of the continued ray beyond a hole is rounded
+            // differently.
             assert!(apart(&without, &clear) < 1e-5, "{lights}: {}", apart(&without, &clear));
             let white = body("sheet", "diffuse = { reflectance = 0.7 }", &[SHEET]);
             let inner = "[material.inner]\ndiffuse = { reflectance = 0.7 }\n".to_owned() + &masked("inner", "1");
@@ -78,7 +79,7 @@ fn two_sheets_let_through_the_product() {
 
 #[test]
 fn aiming_through_a_mask_and_meeting_the_lamp_beyond_show_the_same() {
-    // The mask scatters light itself, and the floor is rough: both ways of finding the lamp count.
+    // The mask scatters light itself and the floor is rough, so both ways of finding the lamp count.
     let sheet = |lamp: &str| {
         let rough = "[material.gold]\nconductor = { metal = \"Au\", roughness = 0.4 }\n\
             [material.inner]\ndiffuse = { reflectance = 0.7 }\n";
@@ -102,9 +103,9 @@ fn a_hole_before_the_camera_leaves_no_trace_in_alpha_and_depth() {
     for transport in [SINGLE_PATH, SPLITTING, EVERY_BRANCH] {
         assert_eq!([0.0, 1.0].map(|opacity| alpha(opacity, transport).0), [0.0, 1.0]);
     }
-    // Both walls of the ball have to be passed: 1 - 0.7^2. Of 4096 samples a standard error is 0.008.
+    // Light has to pass both walls of the ball: 1 - 0.7^2. The standard error of 4096 samples is 0.008.
     assert!((alpha(0.3, SINGLE_PATH).0 - 0.51).abs() < 0.03);
-    // Nothing but two holes is left of the sky, however few bounces there may be.
+    // The sky is seen through two holes and nothing else, however few bounces are allowed.
     let (_, film) = alpha(0.3, EVERY_BRANCH);
     assert!(film.pixels.iter().all(|pixel| (pixel.rgb[0] / 2.0 - 0.49).abs() < 1e-6), "{:?}", film.pixels[0]);
 }

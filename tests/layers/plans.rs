@@ -1,4 +1,4 @@
-//! What the plan makes of plastic, mixes and masks.
+//! How the plan treats plastic, mixes and masks.
 
 use abbe::plan::plan;
 use abbe::trace::Transport;
@@ -50,7 +50,7 @@ fn only_what_scatters_widely_is_left_to_chance() {
         let left_out = plan.because.iter().any(|line| line.starts_with("left out"));
         assert_eq!(left_out, material.contains("white") || material.starts_with("plastic"), "{:?}", plan.because);
     }
-    // With no bounce between diffuse surfaces, a smooth coat and its base leave nothing to chance under a point light.
+    // With no bounce between diffuse surfaces, a smooth coat and its base need no random choices under a point light.
     let plan = planned("plastic = { reflectance = 0.5 }", "[render]\ndiffuse_bounces = 0\n");
     assert!(matches!(plan.method.transport, Transport::Deterministic { .. }), "{:?}", plan.because);
     let plan = planned("plastic = { reflectance = 0.5, roughness = 0.3 }", "[render]\ndiffuse_bounces = 0\n");

@@ -1,4 +1,4 @@
-//! Light vertices of skies, whose paths start through openings of a room.
+//! Light vertices of skies, whose light paths start through the openings of a room.
 
 use abbe::light::Opening;
 use abbe::math::{Bounds, DVec3};
@@ -11,7 +11,7 @@ use abbe::trace::{
 use super::{LAMP, WHITE, assert_same, ball, lamp, walls};
 use crate::support::scenes::{SPLITTING, body, environment, method, quad, scene, view};
 
-/// The box with a window in its right wall, seen from inside.
+/// Returns the box with a window in its right wall, seen from inside.
 fn room_by([height, width]: [f64; 2], render: &str, more: &[String]) -> String {
     let walls = walls();
     let [above, beside] = [0.25 * (3.0 - height), 0.25 * (5.0 - width)];
@@ -28,12 +28,12 @@ fn room_by([height, width]: [f64; 2], render: &str, more: &[String]) -> String {
         + &more.concat()
 }
 
-/// A window 1 high and 1.2 wide.
+/// Returns a room with a window 1 high and 1.2 wide.
 fn room(render: &str, more: &[String]) -> String {
     room_by([1.0, 1.2], render, more)
 }
 
-/// A rectangle across x, so that light enters toward -x.
+/// Returns a rectangle perpendicular to x, through which light enters toward -x.
 fn opening(center: [f64; 3], height: f64, width: f64) -> Opening {
     let half = [DVec3::new(0.0, 0.0, 0.5 * width), DVec3::new(0.0, 0.5 * height, 0.0)];
     Opening { center: DVec3::from(center), half }
@@ -43,7 +43,7 @@ fn window() -> Opening {
     opening([2.0, 1.5, 0.0], 1.0, 1.2)
 }
 
-/// Bounces are aimed at the window, so that little noise is left beside that of light vertices.
+/// Aims bounces at the window, so that little noise is left besides that of light vertices.
 fn aim(method: &mut Method) {
     let Opening { center, half } = window();
     method.bright = Some(BrightPlaces {
@@ -69,8 +69,8 @@ fn sky_with_a_bright_part(folder: &std::path::Path) -> String {
     )
 }
 
-/// Quarters of images have the same means with light paths that start through openings and without: whatever lies
-/// before and behind them, wherever they are, and however much light comes beside them.
+/// Quarters of images have the same means with and without light paths that start through openings: whatever lies in
+/// front of the openings and behind them, wherever they are, and however much light enters elsewhere.
 #[test]
 fn light_paths_through_openings_change_no_mean() {
     let folder = tempfile::tempdir().unwrap();
@@ -122,8 +122,8 @@ fn light_paths_through_openings_change_no_mean() {
         ("two diffuse bounces", room("diffuse_bounces = 2", &[sky.clone(), cubes.clone()]), vec![window()], 0.0),
         ("three bounces", room("max_bounces = 3", &[sky, cubes]), vec![window()], 0.0),
     ];
-    // Photons bring what comes over the ball from what is bright in the sky, or from all that half of the window lets
-    // in. The rest of it leaves vertices.
+    // Photons contribute the light that the ball focuses, either of the bright parts of the sky or of all that enters
+    // through half of the window. The rest of that light leaves vertices.
     let text = room("", &[image, ball("glass", "dielectric = { index = 1.5 }")]);
     for of_pass in [Vec::new(), vec![half]] {
         let change = |method: &mut Method| {
@@ -149,7 +149,7 @@ fn light_paths_through_openings_change_no_mean() {
     }
 }
 
-/// Of the patch that a sun lights through a small hole, bounces find too little to tell where it is.
+/// A sun lights a patch through a small hole. Bounces find too little of its light to locate the patch.
 #[test]
 fn light_paths_of_suns_start_through_openings_that_bounces_find_no_light_of() {
     let sun = "[[light]]\nsun = { toward = [1, 0.7, 0.1], irradiance = 10 }\n".to_owned();
@@ -166,7 +166,7 @@ fn light_paths_of_suns_start_through_openings_that_bounces_find_no_light_of() {
     assert!(of_window.len() == 1 && !is_at(&of_window[0]) && of_window[0].radius > 0.3, "{of_window:?}");
 }
 
-/// A room by a window takes light vertices where its image is large enough, with the opening that was found.
+/// A room with a window uses light vertices if its image is large enough, with the opening that was found.
 #[test]
 fn the_plan_starts_light_paths_of_skies_through_openings() {
     let text = room("", &[environment(1.0)]).replace("width = 12\nheight = 12", "width = 384\nheight = 384");

@@ -19,12 +19,12 @@ const METAL: &str = "conductor = { metal = \"Au\", roughness = 0.3 }";
 const GLOSSY: &str = "plastic = { reflectance = 0.6, index = 1.5, roughness = 0.3 }";
 const PLASTIC: &str = "plastic = { reflectance = 0.6, index = 1.5 }";
 
-/// Mirrors throw its light to where paths from the camera find it by chance often enough to tell a mean.
+/// Returns a sun so wide that paths from the camera hit its mirror reflections often enough to estimate a mean.
 fn wide() -> String {
     sun("angular_diameter = 40")
 }
 
-/// The box without its right wall, but for a strip at its lower edge.
+/// Returns the box without its right wall, except for a strip at its lower edge.
 fn open(render: &str, more: &[String]) -> String {
     let walls = walls();
     let strip = quad([2.0, 0.3, 0.0], [0.0, 0.0, 2.5], [0.0, 0.3, 0.0]);
@@ -90,7 +90,7 @@ fn rooms() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Quarters of images have the same means with light vertices and without, whatever lights there are beside those that
+/// Quarters of images have the same means with and without light vertices, whatever lights there are besides those that
 /// light paths start from.
 #[test]
 fn light_vertices_of_some_lights_change_no_mean() {
@@ -101,7 +101,8 @@ fn light_vertices_of_some_lights_change_no_mean() {
     }
 }
 
-/// Light of a sun beside the disc from which paths start is left to paths from the camera, wherever the disc lies.
+/// A sun's light outside the disc from which light paths start is left to paths from the camera, wherever the disc
+/// lies.
 #[test]
 fn paths_may_start_in_any_part_of_a_suns_light() {
     let text = open("", &[SUN.into(), environment(0.5), cubes(), pane()]);
@@ -126,8 +127,9 @@ fn paths_may_start_in_any_part_of_a_suns_light() {
     }
 }
 
-/// Paths from an image of the sky start at what is bright in it: here two lamps, before a sky that changes from side to
-/// side. The rest of its light, and that beside the disc from which they start, is left to paths from the camera.
+/// Light paths from an image of the sky start at its bright parts, here two lamps in front of a sky that varies from
+/// side to side. The rest of its light, and the light outside the disc from which they start, is left to paths from the
+/// camera.
 #[test]
 fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
     let folder = tempfile::tempdir().unwrap();
@@ -174,7 +176,7 @@ fn l12_what_is_bright_in_an_image_of_the_sky_lights_a_room() {
     }
 }
 
-/// Photons bring what smooth surfaces throw, light vertices the rest.
+/// Photons contribute the caustics of smooth surfaces, and light vertices contribute the rest.
 #[test]
 fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
     let map = MapPasses { count: 2, photons: 8192, radius: 0.5, chance: 0.5 };
@@ -185,7 +187,7 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
         let cube = "cube = { center = [0.9, 0.5, 0.2], size = 0.8 }";
         body("frosted", "dielectric = { index = 1.5, roughness = 0.3 }", &[cube])
     };
-    // What is gathered is blurred, which light at vertices is not.
+    // Gathered photons are blurred, light at vertices is not.
     let sharp = MapPasses { radius: 0.3, chance: 1.0, ..map };
     let globe = |render: &str| {
         let sphere = |radius: f64| format!("sphere = {{ center = [0, 2, 0], radius = {radius:?} }}");
@@ -235,9 +237,9 @@ fn light_vertices_of_some_lights_leave_to_photons_what_is_theirs() {
     }
 }
 
-/// A disc of radius R in the sun has the radiosity B = rho E cos t. What comes from there to a small disc at the height
-/// h above its middle is B R^2 / (R^2 + h^2): Howell, Menguc, Daun & Siegel 2020, *Thermal Radiation Heat
-/// Transfer*, configuration factor of an element parallel to a disk.
+/// A disc of radius R in the sun has the radiosity B = rho E cos t. On a small disc at the height h above its center,
+/// its irradiance is B R^2 / (R^2 + h^2): Howell, Menguc, Daun & Siegel 2020, *Thermal Radiation Heat Transfer*,
+/// configuration factor of an element parallel to a disk.
 #[test]
 fn what_a_sunlit_disc_sends_has_its_closed_form() {
     for (radius, height) in [(1.0, 1.0), (3.0, 0.5), (0.4, 2.0)] {
@@ -262,8 +264,8 @@ fn what_a_sunlit_disc_sends_has_its_closed_form() {
     }
 }
 
-/// Hardly any path from a lamp that is as far away as a sun lands in the room. Without vertices of them a pilot had no
-/// noise, and a quarter of the light was lost.
+/// Hardly any path from a lamp that is as far away as a sun lands in the room. A pilot without vertices from it used to
+/// find no noise, and a quarter of the light was lost.
 #[test]
 fn a_lamp_far_away_has_no_light_vertices() {
     for (distance, expected) in [(3.0, true), (1e4, false)] {
@@ -276,8 +278,8 @@ fn a_lamp_far_away_has_no_light_vertices() {
     }
 }
 
-/// Of the paths from a lamp in a black box, 3 of 1000 leave it by a hole of a tenth of its side. All pixels share them:
-/// an image was brighter or darker by 4 %.
+/// Of the paths from a lamp in a black box, 3 of 1000 leave through a hole of a tenth of its side. All pixels share
+/// them: an image used to be brighter or darker by 4 %.
 #[test]
 fn a_lamp_behind_a_small_hole_has_no_light_vertices() {
     for (half, expected) in [(0.2, true), (0.03, false)] {

@@ -1,4 +1,4 @@
-//! Files that are cut off, changed or boastful: none stops the program, and none is believed.
+//! Files that are truncated, changed or claim too much: none stops the program, and none is trusted.
 
 #[allow(dead_code)]
 #[path = "../fuzz/corpus.rs"]
@@ -16,7 +16,7 @@ use super::files::{Exr, ramp};
 use crate::support::pictures;
 use crate::support::run::Folder;
 
-/// Reads damaged bytes; looks at all that a file says where they are still one.
+/// Reads damaged bytes. If they are still a valid file, looks at everything in it.
 fn look(folder: &Folder, bytes: &[u8]) -> Result<(), String> {
     folder.write("case.exr", bytes);
     match ExrFile::read(&folder.path_of("case.exr")) {
@@ -67,7 +67,7 @@ fn files_with_changed_bytes_are_read_or_refused() {
     }
 }
 
-/// Scan lines and tiles of every compression, damaged as the fuzzer of scenes damages them.
+/// Scan lines and tiles of every compression, damaged as the fuzzer damages scenes.
 #[test]
 fn damaged_files_of_every_kind_are_read_or_refused() {
     let (folder, files) = (Folder::new(), corpus::exr());
@@ -79,7 +79,7 @@ fn damaged_files_of_every_kind_are_read_or_refused() {
     assert!((50..950).contains(&read), "{read}");
 }
 
-/// The first numbers of a block are a version, and how many bytes its parts have packed and unpacked.
+/// A block starts with a version and the packed and unpacked sizes of its parts in bytes.
 #[test]
 fn a_block_that_claims_more_than_the_image_is_refused_before_memory_is_asked_for() {
     let folder = Folder::new();
@@ -100,26 +100,27 @@ fn a_block_that_claims_more_than_the_image_is_refused_before_memory_is_asked_for
     }
 }
 
-/// A ramp whose first channel says that it has half the size.
+/// Returns a ramp whose first channel claims to have half the size.
 pub fn subsampled() -> Vec<u8> {
     let mut bytes = ramp().bytes();
     let name = b"channels\0chlist\0";
     let list = bytes.windows(name.len()).position(|window| window == name).expect("channels") + name.len() + 4;
-    // Behind the first channel's name of one letter: its type, 4 bytes, and steps along both axes.
+    // The one-letter name of the first channel is followed by its type, 4 bytes, and the sampling steps along both
+    // axes.
     for axis in [0, 4] {
         bytes[list + 10 + axis..list + 14 + axis].copy_from_slice(&2_i32.to_le_bytes());
     }
     bytes
 }
 
-/// Luminance in full size beside chroma in half of it, as other programs write it.
+/// Luminance at full size and chroma at half the size, as other programs write them.
 #[test]
 fn channels_in_half_the_size_are_told_of_as_what_they_are() {
     let said = look(&Folder::new(), &subsampled()).expect_err("not every pixel has a number");
     assert!(said.starts_with("it is an OpenEXR image of a kind that is not read: channel subsampling"), "{said}");
 }
 
-/// A window of 16000 x 8000 pixels would be 1.5 GB.
+/// A window of 16000 x 8000 pixels would take 1.5 GB.
 #[test]
 fn a_size_that_no_such_file_can_have_is_refused_before_memory_is_asked_for() {
     let folder = Folder::new();

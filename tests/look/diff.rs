@@ -8,7 +8,7 @@ use crate::support::pictures::read_png;
 use crate::support::run::{Answer, Folder, render};
 use crate::support::scenes::{films_of, moments, scene};
 
-/// A lamp above matte balls: noise in nearly every pixel, and a sky without any.
+/// A lamp above matte balls: noise in nearly every pixel, and a sky without noise.
 const SCENE: &str = r#"
 camera = { position = [0, 1, 6], look_at = [0, 1, 0], vertical_fov = 35 }
 film = { width = 32, height = 24 }
@@ -29,7 +29,7 @@ environment = { radiance = 0.2 }
 const COLORS: [&str; 3] = ["R", "G", "B"];
 const VARIANCES: [&str; 3] = ["variance.R", "variance.G", "variance.B"];
 
-/// The mean of 16 renders of 2 samples each, with the variance that it has by their spread.
+/// Returns the mean of 16 renders of 2 samples each, with its variance from their spread.
 fn with_variance(first_seed: u64) -> Exr {
     let mut scene = scene(SCENE);
     scene.render.samples = Some(2);
@@ -49,7 +49,7 @@ fn with_variance(first_seed: u64) -> Exr {
     Exr::new([32, 24], channels)
 }
 
-/// An even gray of 20 x 10 pixels whose variance is known, but for the last row, which has none.
+/// Returns an even gray of 20 x 10 pixels with a known variance, except in the last row, which has none.
 fn gray() -> Exr {
     let mut channels: Vec<_> = COLORS.map(|name| (name, vec![0.5; 200])).to_vec();
     let variance: Vec<f32> = (0..200).map(|i| if i < 180 { 1e-4 } else { 0.0 }).collect();
@@ -85,7 +85,7 @@ fn renders_of_a_scene_with_other_seeds_agree_and_one_of_a_brighter_lamp_does_not
     let noise = difference(&a, &b).noise.expect("both files say their variance");
     assert!(noise.worst != 0.0 && noise.agrees(), "{noise:?}");
     assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree", "relMSE ", "z worst "]);
-    // One percent more light is far below the noise of a pixel, and beyond that of the image's mean.
+    // One percent more light is far below the noise of a pixel, but above that of the image's mean.
     for name in COLORS {
         b.channel(name).iter_mut().for_each(|x| *x *= 1.01);
     }
@@ -110,7 +110,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
         "worst pixel (7, 3): 0.5 0.5 0.5 and 0.5 0.35858 0.5",
     ];
     assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
-    // Photons that many samples share make more of it.
+    // Photons that many samples share add noise that is only partly stated.
     let mut gathered = b.clone();
     gathered.texts.push(("render/photonRadius", "4.000 pixels".into()));
     assert_says(
@@ -118,7 +118,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
         1,
         &["a.exr and b.exr differ", "photon map its noise is known in part"],
     );
-    // Four are within what the largest of so many is by chance.
+    // Four deviations are within the largest of so many values by chance.
     b.channel("G")[67] = 0.5 - 4.0 * 2e-4_f32.sqrt();
     assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree"]);
 }
@@ -149,8 +149,8 @@ fn few_samples_know_their_own_spread_badly() {
     }
 }
 
-/// A disc that shines, so that its edge alone is noisy: samples of a pixel there may all be the same by chance. With a
-/// stop rule the variance is that of eight renders, whose samples are spread so well that they may differ by one.
+/// A glowing disc, of which only the edge is noisy. All samples of a pixel there may agree by chance. With a stop rule,
+/// the variance is that of eight renders, whose samples are so evenly spread that they may differ by one.
 #[test]
 fn edges_agree_whatever_tells_their_variance() {
     let scene = Scene::parse(
@@ -177,8 +177,8 @@ fn edges_agree_whatever_tells_their_variance() {
     }
 }
 
-/// Glass under an even sky: most samples of a pixel are all but the same, and few of them, the rare one left out, tell
-/// a thousandth of the variance.
+/// Glass under a uniform sky: most samples of a pixel are nearly the same. A few samples without a rare different one
+/// show a thousandth of the variance.
 #[test]
 fn glass_agrees_with_itself_however_few_samples_there_are() {
     let scene = Scene::parse(
@@ -203,7 +203,8 @@ fn glass_agrees_with_itself_however_few_samples_there_are() {
     };
     let alarms = [4, 8, 16, 32].map(|samples| (0..20).filter(|&seed| differ(samples, seed)).count());
     println!("false alarms of 20 at 4, 8, 16 and 32 samples: {alarms:?}");
-    // At most one in a hundred each; more than three of 80 by chance once in 100 times.
+    // Each has a false alarm with a chance of at most one in a hundred. More than three of 80 occur by chance once in
+    // 100 times.
     assert!(alarms.iter().sum::<usize>() <= 3, "{alarms:?}");
 }
 
@@ -215,14 +216,14 @@ fn values_without_variance_differ_only_beyond_rounding() {
     b.channel("R")[190] = 0.5 * (1.0 + 2e-5);
     let noise = difference(&a, &b).noise.expect("variance");
     assert!(noise.changed == 1 && !noise.agrees());
-    // A variance that is no number is none, and hides nothing.
+    // A variance that is NaN counts as missing and hides nothing.
     let mut c = gray();
     c.channel("variance.R")[190] = f32::NAN;
     c.channel("R")[190] = 0.6;
     assert!(!difference(&a, &c).agrees(None));
 }
 
-/// A shadow pass has nothing else.
+/// A shadow pass has nothing but alpha.
 #[test]
 fn images_whose_alpha_alone_differs_do_not_agree() {
     let folder = Folder::new();
@@ -237,7 +238,7 @@ fn images_whose_alpha_alone_differs_do_not_agree() {
     assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
     assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.1"]), 1, &lines);
     assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.4"]), 0, &["a.exr and b.exr agree"]);
-    // Beside colors that differ by their noise, its own noise is allowed.
+    // If the colors differ by their noise, noise in alpha is allowed as well.
     let mut noisy = b.clone();
     noisy.channel("G")[67] += 2e-4_f32.sqrt();
     assert_says(&diff(&folder, &a, &noisy, &[]), 0, &["a.exr and b.exr agree", "alpha up to 0.4 apart"]);
@@ -245,8 +246,8 @@ fn images_whose_alpha_alone_differs_do_not_agree() {
     assert_eq!((same.code, &*same.stdout), (Some(0), "a.exr and b.exr agree: all values are equal\n"));
 }
 
-/// Four samples of a half covered pixel are all empty and four others all full in 2 of 256 cases; no image of 200
-/// pixels has more than 100 times the 1.6 that this makes.
+/// In a half-covered pixel, four samples are all empty and four others all full in 2 of 256 cases. No image of 200
+/// pixels has more than 100 times the 1.6 pixels that this makes.
 #[test]
 fn alpha_that_is_empty_here_and_full_there_is_no_noise() {
     let folder = Folder::new();
@@ -277,7 +278,7 @@ fn without_variance_equality_or_a_tolerance_decides() {
     let equal = diff(&folder, &a, &b, &[]);
     assert_eq!((equal.code, &*equal.stdout), (Some(0), "a.exr and b.exr agree: all values are equal\n"));
     b.channel("B")[3] = 0.4;
-    // (0.3 - 0.4)^2 / (0.4^2 + 0.01) over 24 values; all others have the brightness 2.8.
+    // (0.3 - 0.4)^2 / (0.4^2 + 0.01) over 24 values. The brightness of all the others is 2.8.
     let lines = [
         "a.exr and b.exr differ",
         "relMSE 0.002451",
@@ -331,7 +332,7 @@ fn layers_in_windows_of_their_own_are_compared_where_both_have_pixels() {
     let mut b = Exr { later_corner: [1, 0], ..a.clone() };
     let apart = "a.exr and b.exr differ: the image is equal, the layer Z is not; --layer Z compares it";
     assert_says(&diff(&folder, &a, &b, &[]), 1, &[apart]);
-    // Its columns 1 to 4, of which the other one has 3.
+    // It has the columns 1 to 4, of which the other image has 3.
     *b.channel("Z") = vec![1.0, 2.0, 3.0, 9.0, 5.0, 6.0, 7.0, 9.0];
     assert_says(&diff(&folder, &a, &b, &[]), 0, &["a.exr and b.exr agree: all values are equal"]);
 }

@@ -9,27 +9,27 @@ use exr::prelude::{
     Layer, LayerAttributes, Layers, Text, Vec2, WritableImage, f16,
 };
 
-/// Names and values.
+/// Names of channels, with their values.
 type Channels = Vec<(&'static str, Vec<f32>)>;
 
-/// A file that is to be written.
+/// A file to be written.
 #[derive(Clone)]
 pub struct Exr {
     pub size: [usize; 2],
     pub corner: [i32; 2],
-    /// The same of the parts behind the first one.
+    /// Corner of the parts after the first one.
     pub later_corner: [i32; 2],
     pub full: [usize; 2],
     pub half: bool,
     pub compression: Compression,
     pub chromaticities: Option<Chromaticities>,
     pub texts: Vec<(&'static str, String)>,
-    /// Name of the part, and its channels.
+    /// Name of each part, with its channels.
     pub parts: Vec<(&'static str, Channels)>,
 }
 
 impl Exr {
-    /// One part of 32-bit floats.
+    /// Creates a file with one part of 32-bit floats.
     pub fn new(size: [usize; 2], channels: Channels) -> Self {
         let (texts, parts) = (Vec::new(), vec![("", channels)]);
         Self {
@@ -45,7 +45,7 @@ impl Exr {
         }
     }
 
-    /// The values of a channel.
+    /// Returns the values of a channel.
     pub fn channel(&mut self, name: &str) -> &mut Vec<f32> {
         let mut channels = self.parts.iter_mut().flat_map(|(_, channels)| channels);
         &mut channels.find(|(own, _)| *own == name).expect("there is such a channel").1
@@ -55,7 +55,7 @@ impl Exr {
         std::fs::write(path, self.bytes()).expect("an image can be written");
     }
 
-    /// The file.
+    /// Encodes the file.
     pub fn bytes(&self) -> Vec<u8> {
         let layers = self.parts.iter().enumerate().map(|(number, (name, channels))| {
             let list = channels.iter().map(|(name, values)| AnyChannel {
@@ -91,7 +91,7 @@ impl Exr {
     }
 }
 
-/// A gray ramp of 4 x 2 pixels from 0 to 0.7.
+/// Returns a gray ramp of 4 x 2 pixels from 0 to 0.7.
 pub fn ramp() -> Exr {
     let values: Vec<f32> = (0..8).map(|i| i as f32 / 10.0).collect();
     Exr::new([4, 2], ["R", "G", "B"].map(|name| (name, values.clone())).to_vec())

@@ -14,7 +14,7 @@ material = "white"
 environment = { radiance = 1 }
 "#;
 
-/// The lines of an answer, with one space between words.
+/// Returns the lines of the output, with one space between words.
 fn lines(folder: &Folder, file: &str) -> Vec<String> {
     let answer = render(folder, &["info", file]);
     assert_eq!((answer.code, &*answer.stderr), (Some(0), ""));
@@ -93,7 +93,7 @@ fn overscan_and_parts_of_other_programs_are_told() {
             "part 1 rgba",
             "overscan 4 x 3 pixels are there, (-1, -1) to (2, 1)",
             "storage not compressed, scan lines from the top",
-            // Nothing in a file can steer the terminal.
+            // Nothing in a file can control the terminal.
             "comments2 two\u{fffd}lines \u{fffd}[31m and \u{e9}",
             "beauty R half 0.5 0.5 0.5",
             "part 2 albedo",
@@ -103,7 +103,7 @@ fn overscan_and_parts_of_other_programs_are_told() {
     );
 }
 
-/// The deep image is written by OpenEXR 3.5.3.
+/// The deep image was written by OpenEXR 3.5.3.
 #[test]
 fn of_a_file_whose_values_are_not_read_all_else_is_told() {
     let folder = Folder::new();

@@ -4,12 +4,13 @@ use super::files::Exr;
 use super::view::pixels;
 use crate::support::run::{Folder, render};
 
-/// Four pixels: all ball, half ball and a quarter each of floor and nothing, all of what no name is of, and nothing.
+/// Writes four pixels: one all ball, one half ball, a quarter floor and a quarter empty, one covered by an object that
+/// no name belongs to, and one empty.
 fn mattes(folder: &Folder) {
     mattes_with(folder, "a.exr", 0.5);
 }
 
-/// The same, of whose second pixel the ball covers so much in the first rank.
+/// Writes the pixels of [`mattes`], with a given coverage of the ball in the first rank of the second pixel.
 fn mattes_with(folder: &Folder, file: &str, covered: f32) {
     let of = |name: &str| f32::from_bits(id(name));
     let (ball, floor, other) = (of("ball"), of("floor.left"), of("another"));
@@ -56,7 +57,7 @@ fn all_mattes_have_colors_of_their_own_by_their_coverage() {
     };
     let [ball, edge, other, nothing] = [0, 1, 2, 3].map(|at| linear(shown[at]));
     assert!(ball != other && nothing == [0.0; 3], "{shown:?}");
-    // What the ball has of it, and at most a quarter of something else.
+    // The ball's share of it, plus at most a quarter of something else.
     assert!((0..3).all(|i| (-0.01..=0.26).contains(&(edge[i] - 0.5 * ball[i]))), "{shown:?}");
     assert!((0..3).any(|i| edge[i] - 0.5 * ball[i] > 0.02), "{shown:?}");
 }
@@ -68,7 +69,7 @@ fn mattes_of_a_render_are_shown_by_the_names_of_its_objects() {
     let made = render(&folder, &[&["balls.toml", "--exr", "a.exr"], &set[..]].concat());
     assert_eq!(made.code, Some(0), "{}", made.stderr);
     let (ball, _) = pixels(&folder, &["CryptoObject.object 1"]);
-    // The ball fills the middle of the image, and no corner of it.
+    // The ball fills the middle of the image but none of its corners.
     assert_eq!([ball[8], ball[0]], [[255; 3], [0; 3]]);
     let (all, _) = pixels(&folder, &["CryptoObject"]);
     assert_eq!(pixels(&folder, &["CryptoObject00"]).0, all);
@@ -106,10 +107,10 @@ fn mattes_are_compared_by_what_they_cover() {
     let plain = render(&folder, &["diff", "a.exr", "b.exr"]);
     assert!(plain.code == Some(1) && plain.stdout.contains(hint), "{}", plain.stdout);
     let worst = "worst pixel (1, 0): 0.5 and 0.25";
-    // The numbers of names are no colors: what holds some of them is compared alike.
+    // The numbers that stand for names are not colors. All layers that hold some of them are compared in the same way.
     for layer in ["CryptoObject", "CryptoObject00", "CryptoObject01", "CryptoObject.ball"] {
         let (code, said, _) = diff(layer, &[]);
-        // 0.25^2 / (0.25^2 + 0.01), of four pixels.
+        // 0.25^2 / (0.25^2 + 0.01), over four pixels.
         assert!(code == Some(1) && said.contains("relMSE 0.21552") && said.ends_with(worst), "{layer}: {said}");
         assert_eq!(diff(layer, &["--tolerance", "0.216"]).0, Some(0));
     }

@@ -19,7 +19,7 @@ material = "red"
 environment = { radiance = 1 }
 "#;
 
-/// The pixels of a PNG that is written of a layer, and what is said of it.
+/// Writes a layer as a PNG. Returns its pixels and the messages.
 pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     let answer = render(folder, &[&["view", "a.exr", "--png", "look.png"], arguments].concat());
     assert_eq!((answer.code, &*answer.stdout), (Some(0), ""), "{}", answer.stderr);
@@ -27,7 +27,7 @@ pub fn pixels(folder: &Folder, arguments: &[&str]) -> (Vec<[u8; 3]>, String) {
     (read_png(&folder.path_of("look.png")).pixels, said)
 }
 
-/// Color, two normals, a position, a depth and a label of two pixels.
+/// Writes color, alpha, two normals, a position, a depth and an albedo of two pixels.
 fn layers(folder: &Folder) {
     let mut channels: Vec<_> = ["R", "G", "B"].map(|name| (name, vec![0.5, 2.0])).to_vec();
     channels.push(("A", vec![1.0, 0.0]));
@@ -52,7 +52,7 @@ fn a_picture_of_an_image_is_the_one_that_its_render_writes() {
 fn each_layer_is_shown_as_what_it_is() {
     let folder = Folder::new();
     layers(&folder);
-    // sRGB of 0.5 is 188; what is brighter than white is white.
+    // sRGB of 0.5 is 188. Anything brighter than white is white.
     assert_eq!(pixels(&folder, &[]), (vec![[188; 3], [255; 3]], String::new()));
     assert_eq!(pixels(&folder, &["beauty", "--exposure", "-2"]).0[1], [188; 3]);
     assert_eq!(pixels(&folder, &["albedo"]).0, [[255, 0, 0], [0; 3]]);
@@ -60,7 +60,7 @@ fn each_layer_is_shown_as_what_it_is() {
         assert_eq!(pixels(&folder, &[normals]), (vec![[128, 128, 255], [0, 255, 128]], String::new()));
     }
     let span = "the 1st and 99th percentile of the finite values below 1e9\n";
-    // One depth is finite: it is the middle, and nothing is white.
+    // Only one depth is finite. It is shown in the middle of the range, and empty pixels are white.
     assert_eq!(pixels(&folder, &["Z"]), (vec![[128; 3], [255; 3]], format!("Z: black is 3.0, white 3.0, {span}")));
     assert_eq!(pixels(&folder, &["A"]).0, [[255; 3], [0; 3]]);
     assert_eq!(pixels(&folder, &["albedo.R"]).0, [[255; 3], [0; 3]]);
@@ -114,7 +114,7 @@ fn a_gray_comes_before_its_alpha_and_small_letters_are_colors() {
     assert_eq!(pixels(&folder, &[]), (vec![[255, 188, 0]], String::new()));
 }
 
-/// Hable's curve of 1: (0.704 / 1.66 - 1 / 15) / (19.38 / 24.476 - 1 / 15) = 0.49292, in sRGB 186.3.
+/// Hable's curve at 1: (0.704 / 1.66 - 1 / 15) / (19.38 / 24.476 - 1 / 15) = 0.49292, in sRGB 186.3.
 #[test]
 fn a_tone_is_chosen_by_name() {
     let folder = Folder::new();
@@ -131,7 +131,7 @@ fn a_tone_is_chosen_by_name() {
 fn colors_of_any_space_are_brought_to_rec709() {
     let folder = Folder::new();
     let path = folder.path_of("a.exr");
-    // A green of Rec.2020 is outside of Rec.709: all but green is clipped to 0.
+    // A green of Rec.2020 is outside of Rec.709: all channels but green are clipped to 0.
     let green = Exr::new([1, 1], vec![("R", vec![0.0]), ("G", vec![0.2]), ("B", vec![0.0])]);
     let rec2020 = Chromaticities {
         red: Vec2(0.708, 0.292),
@@ -139,7 +139,7 @@ fn colors_of_any_space_are_brought_to_rec709() {
         blue: Vec2(0.131, 0.046),
         white: Vec2(0.3127, 0.3290),
     };
-    // ITU-R BT.2087: green is 1.1329 of Rec.709's, in sRGB 131.5 where 0.2 is 123.6.
+    // ITU-R BT.2087: it has 1.1329 times as much of Rec.709's green, in sRGB 131.5 instead of the 123.6 of 0.2.
     let text = |id: &str| vec![("colorInteropID", id.to_owned())];
     Exr { chromaticities: Some(rec2020), ..green.clone() }.write(&path);
     assert_eq!(pixels(&folder, &[]), (vec![[0, 131, 0]], String::new()));
@@ -171,7 +171,7 @@ fn without_a_terminal_pixels_are_halves_of_characters_in_so_many_columns() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     let output = command.current_dir(folder.path()).env("COLUMNS", "2").args(["view", "a.exr"]).output();
     let text = String::from_utf8(output.expect("the command can be started").stdout).expect("UTF-8");
-    // Two columns of a single row; the mean of all four pixels in linear light is (0 + 0.1 + 0.4 + 0.5) / 4.
+    // Two columns in a single row. The mean of all four pixels in linear light is (0 + 0.1 + 0.4 + 0.5) / 4.
     assert_eq!(text.matches('▀').count(), 2);
     let sixels = render(&folder, &["view", "a.exr", "--sixel"]).stdout;
     assert!(sixels.starts_with("\x1bP0;1q\"1;1;4;2#0;2;0;0;0") && sixels.ends_with("\x1b\\\n"), "{sixels:?}");
@@ -207,7 +207,7 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     assert_eq!(folder.listing(), ["a.exr", "a.png"]);
 }
 
-/// A sky of 2^9 or of 2^-11 on a ball that reflects 0.7, 0.2 and 0.1 of it.
+/// A sky of 2^9 or 2^-11 on a ball with reflectances of 0.7, 0.2 and 0.1.
 #[test]
 fn a_picture_of_which_nearly_all_is_white_or_black_is_told_with_the_exposure_that_shows_more() {
     for (radiance, what, stops) in [("512", "brighter than white", -11), ("0.00048828125", "too dark to be seen", 9)] {

@@ -1,4 +1,4 @@
-//! PLY and OBJ files, and what becomes of their triangles.
+//! PLY and OBJ files, and the triangles that are made of them.
 
 use std::path::{Path, PathBuf};
 
@@ -9,26 +9,26 @@ use crate::support::random::Random;
 use crate::support::run::Folder;
 use crate::support::scenes::{rendered, scene, scene_in};
 
-/// A pyramid over a square, its base cut into two triangles. No coordinate is exact in 32 bits.
+/// A pyramid over a square, whose base is divided into two triangles. No coordinate is exact in 32 bits.
 pub const POINTS: [[f64; 3]; 5] =
     [[-0.9, 0.1, 0.7], [0.8, 0.1, 0.7], [0.8, 0.1, -1.1], [-0.9, 0.1, -1.1], [0.05, 1.3, -0.2]];
 pub const FACES: [[u32; 3]; 6] = [[0, 3, 2], [0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
 const INSIDE: DVec3 = DVec3::new(0.0, 0.4, -0.2);
 
-/// The pyramid's corners, as exactly as 32 bits or 64 hold them.
+/// Returns the pyramid's triangles with the precision of 32 or 64 bits.
 pub fn triangles(single: bool) -> Vec<[DVec3; 3]> {
     let round = |x: f64| if single { f64::from(x as f32) } else { x };
     FACES.map(|face| face.map(|corner| DVec3::from(POINTS[corner as usize].map(round)))).to_vec()
 }
 
-/// A folder with one file in it, and its path.
+/// Creates a folder with one file in it. Returns the folder and the path of the file.
 pub fn file(name: &str, bytes: impl AsRef<[u8]>) -> (Folder, PathBuf) {
     let folder = Folder::with(name, bytes);
     let path = folder.path_of(name);
     (folder, path)
 }
 
-/// The triangles of a file, and whether it names materials.
+/// Reads the triangles of a file, and whether it names materials.
 pub fn read(name: &str, bytes: &[u8]) -> (Vec<[DVec3; 3]>, bool) {
     let (_folder, path) = file(name, bytes);
     let mesh = read_mesh(&path, false).unwrap_or_else(|message| panic!("{name}: {message}"));
@@ -43,7 +43,7 @@ fn ply_header(format: &str, number: &str, corners: &str) -> String {
     )
 }
 
-/// The base as a square, as a fan cuts it: the triangles of `FACES`.
+/// The base as a square, which a fan divides into the triangles of `FACES`.
 const POLYGONS: [&[u32]; 5] = [&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]];
 
 fn ply_text() -> String {
@@ -55,7 +55,7 @@ fn ply_text() -> String {
     ply_header("ascii", "float", "int") + &vertices + &faces.concat()
 }
 
-/// Numbers as bytes, from the lowest or from the highest.
+/// Returns the bytes of a number in little-endian or big-endian order.
 fn ordered<const N: usize>(little: [u8; N], big: bool) -> Vec<u8> {
     if big { little.into_iter().rev().collect() } else { little.to_vec() }
 }
@@ -102,7 +102,7 @@ fn every_kind_of_ply_gives_the_same_triangles() {
 #[test]
 fn a_ply_in_lines_may_write_numbers_and_comments_in_any_way() {
     let text = ply_text();
-    // A comment that is no UTF-8.
+    // A comment that is not UTF-8.
     let latin = |bytes: &[u8]| {
         let at = bytes.windows(7).position(|part| part == b"pyramid").expect("its comment");
         [&bytes[..at], b"r\xe4t", &bytes[at + 7..]].concat()
@@ -121,7 +121,7 @@ fn a_ply_in_lines_may_write_numbers_and_comments_in_any_way() {
     ] {
         assert_eq!(read("a.ply", &bytes).0, triangles(true), "{}", String::from_utf8_lossy(&bytes));
     }
-    // Programs write normals that are no numbers for faces without area.
+    // Programs write NaN normals for faces without area.
     let header = "ply\nformat ascii 1.0\nelement vertex 3\n".to_owned()
         + &["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
     let header = header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
@@ -135,7 +135,7 @@ fn a_ply_in_lines_may_write_numbers_and_comments_in_any_way() {
 fn strips_of_a_ply_are_cut_into_triangles() {
     let header = ply_header("ascii", "float", "int").replace("element face 5", "element tristrips 2");
     let vertices = POINTS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
-    // The second one goes back to where it was without a triangle.
+    // The second strip returns to where it was without a triangle.
     let strips = "8 0 3 2 -1 2 1 0 4\n13 1 2 4 3 -1 -7 0 4 3 -1 4 4 0\n";
     let (_folder, path) = file("a.ply", header.replace("uchar int", "int int") + &vertices + strips);
     let expected = [[0, 3, 2], [2, 1, 0], [0, 1, 4], [1, 2, 4], [4, 2, 3], [0, 4, 3]];
@@ -206,7 +206,7 @@ fn all_that_an_obj_may_hold_besides_is_read_or_passed_over() {
         plain.replace(' ', "\t  ") + "l 1 2 3\np 4\nf 1 2\nf 3\nf\nvp 0.5\ncurv 0 1 1 2\n",
         format!("{faces}{vertices}"),
         format!("vt 0.5\nvt 1 2 3\n{}", plain.replace(" 5\n", " 5/2\n").replace("f 2 ", "f 2/1 ")),
-        // What texture coordinates are asked for is not there.
+        // The texture coordinates that it refers to do not exist.
         plain.replace(" 5\n", " 5/7\n"),
         format!("{colors}{faces}"),
         format!("{}{faces}", weighed.concat()),
@@ -215,7 +215,7 @@ fn all_that_an_obj_may_hold_besides_is_read_or_passed_over() {
     }
 }
 
-/// What lies far from the origin for its size keeps all digits, and what does not takes half the memory.
+/// Points that are far from the origin for their size keep all digits. Others take half the memory.
 #[test]
 fn an_obj_far_from_the_origin_is_as_exact_as_near_it() {
     let faces = "f 1 4 3 2\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
@@ -255,16 +255,16 @@ fn broken_obj_files_are_refused_with_the_line() {
     ] {
         let (_folder, path) = file("a.obj", good.replace(old, new));
         assert_eq!(read_mesh(&path, true).err().unwrap_or_default(), message, "{new}");
-        // Normals that are not used may be anything, as for faces without area.
+        // Unused normals may be anything, as for faces without area.
         let is_of_normal = message.starts_with("the normal");
         assert_eq!(read_mesh(&path, false).is_err(), !message.is_empty() && !is_of_normal, "{new}");
     }
 }
 
-/// The corners of an L, from one of which a fan does not stay inside.
+/// The corners of an L. A fan from one of them does not stay inside.
 const CORNERS: [[i32; 2]; 6] = [[2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 0]];
 
-/// Twice the area of triangles that look the same way, whichever they are.
+/// Returns twice the total area of triangles in a plane of constant z, whichever way they face.
 fn doubled_area(triangles: &[[DVec3; 3]]) -> f64 {
     triangles.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).z.abs()).sum()
 }
@@ -275,7 +275,7 @@ fn faces_that_are_not_convex_cover_their_area_once() {
     let header = ply_header("ascii", "float", "int").replace("property uchar red\n", "");
     let header = header.replace("vertex 5", "vertex 6").replace("face 5", "face 1");
     let ply = format!("{header}{points}6 0 1 2 3 4 5\n");
-    // An L of which the faces are listed before the vertices is cut as well.
+    // An L whose faces are listed before its vertices is divided as well.
     let (vertices, faces) = header.split_once("element face").expect("it has faces");
     let (faces, _) = faces.split_once("end_header").expect("it ends");
     let (first, vertices) = vertices.split_once("element vertex").expect("it has vertices");
@@ -287,7 +287,7 @@ fn faces_that_are_not_convex_cover_their_area_once() {
     }
 }
 
-/// A scene that writes an L as one face has the mesh of a file that does.
+/// A scene that writes an L as one face has the same mesh as a file that does.
 #[test]
 fn faces_of_many_corners_that_a_scene_writes_are_cut_as_those_of_a_file() {
     let obj = CORNERS.map(|[x, y]| format!("v {x} {y} 0\n")).concat() + "f 1 2 3 4 5 6\n";
@@ -304,12 +304,12 @@ fn faces_of_many_corners_that_a_scene_writes_are_cut_as_those_of_a_file() {
     };
     let (count, image) = of(&format!("points = {points:?}, faces = [[0, 1, 2, 3, 4, 5]]"));
     assert!((count, &image) == (4, &of(&format!("file = {path:?}")).1), "{count} triangles");
-    // The face fills 3 of the (10 tan 20 degrees)^2 that are seen.
+    // The face covers 3 of the visible area of (10 tan 20 degrees)^2.
     let share = image.iter().map(|rgb| f64::from(rgb[1])).sum::<f64>() / 256.0;
     assert!((share - 0.2264).abs() < 0.01, "{share}");
 }
 
-/// The warnings of a scene that holds nothing but a mesh file of some material.
+/// Returns the warnings of a scene whose only object is a mesh file with some material.
 fn warnings(name: &str, bytes: &[u8], material: &str) -> Vec<String> {
     let folder = Folder::with(name, bytes);
     let text = format!(
@@ -372,7 +372,7 @@ fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
     assert_eq!(said, ["pyramid: 1 triangle without area was dropped"]);
 }
 
-/// A corner on an edge of another triangle, between which a triangle without area lies.
+/// A corner lies on the edge of another triangle, and a triangle without area lies between them.
 #[test]
 fn triangles_without_area_close_what_is_beside_them() {
     let points =
@@ -384,7 +384,7 @@ fn triangles_without_area_close_what_is_beside_them() {
         assert_eq!((mesh.open_edges(), mesh.degenerate()), expected);
         assert_eq!(Shape::Mesh(mesh.into()).is_closed(), expected.0 == 0);
     }
-    // One that lies alone opens nothing.
+    // A triangle without area that lies alone opens nothing.
     let alone = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3], [0, 1, 4]].to_vec();
     let mesh = Mesh::new(Vertices::Double(points()), alone).expect("faces with area");
     assert_eq!((mesh.open_edges(), mesh.degenerate()), (0, 1));
@@ -437,7 +437,7 @@ fn a_mesh_keeps_its_front_and_its_points_under_every_transform() {
         let mesh = Shape::Mesh(mesh.into()).transformed(&map);
         assert!(mesh.is_closed());
         for _ in 0..2000 {
-            // From inside every ray leaves once, through the back of a face, where the map puts that face.
+            // From inside, every ray leaves exactly once, through the back of a face, where the map puts that face.
             let ray = Ray::new(map.point(INSIDE), random.direction());
             let intersection = mesh.intersect(&ray, f64::INFINITY).expect("a closed body");
             let there = mesh.point(&ray, &intersection);

@@ -1,4 +1,4 @@
-//! glTF files: every way to store triangles, nodes that place them, and files that are broken on purpose.
+//! glTF files: every way to store triangles, nodes that place them, and files that are deliberately broken.
 
 use abbe::math::{DVec3, Transform};
 use abbe::shape::{Mesh, read_mesh};
@@ -7,14 +7,14 @@ use base64::prelude::*;
 use super::files::{FACES, POINTS, file, read, triangles};
 use crate::support::random::Random;
 
-/// The pyramid's corners and faces as bytes, the faces' numbers of some bytes each; the faces begin at byte 60.
+/// Returns the pyramid's corners and faces as bytes. The vertex indices have `width` bytes each and begin at byte 60.
 fn binary(width: usize) -> Vec<u8> {
     let points = POINTS.iter().flatten().flat_map(|&x| (x as f32).to_le_bytes());
     let corners = FACES.iter().flatten().flat_map(|corner| corner.to_le_bytes()[..width].to_vec());
     points.chain(corners).collect()
 }
 
-/// A document of the pyramid, with `uri` as the address of its buffer and further text for its nodes.
+/// Returns a document of the pyramid, with `uri` as the address of its buffer and more text for its node.
 fn document(uri: &str, width: usize, node: &str) -> String {
     let kind = [5121, 5123, 0, 5125][width - 1];
     let length = binary(width).len();
@@ -78,7 +78,7 @@ fn places_may_be_whole_numbers() {
         json.replace(r#""byteLength":78"#, &format!(r#""byteLength":{}"#, 20 * width + 18))
     };
     let corners: Vec<u8> = FACES.iter().flatten().map(|&corner| corner as u8).collect();
-    // Each kind of numbers, how many bytes they have, and what stands for 1.
+    // Type of the numbers, their size in bytes, and the number that stands for 1.
     for (kind, width, one) in [(5120, 1, 127), (5121, 1, 255), (5122, 2, 32767), (5123, 2, 65535)] {
         for normalized in [true, false] {
             let place = |point: usize, axis: usize| (point as i64 + 2 * axis as i64) * (one / 9);
@@ -97,7 +97,7 @@ fn places_may_be_whole_numbers() {
             }
         }
     }
-    // The lowest number of a byte is -1, as the next one is.
+    // The lowest number of a byte stands for -1, and so does the next one.
     let numbers = [[-128_i8, -127, 127, 0], [0; 4], [127, 0, 0, 0], [0, 127, 0, 0], [0; 4]].concat();
     let numbers: Vec<u8> = numbers.into_iter().map(|number| number as u8).collect();
     let (_folder, path) = file("a.glb", glb(&text(5120, 1, true), &[&numbers[..], &corners].concat()));
@@ -141,7 +141,7 @@ fn strips_fans_and_bare_points_become_triangles() {
 
 #[test]
 fn sparse_entries_replace_those_of_the_view() {
-    // Corners 1 and 4 are those of corners 4 and 1.
+    // Corners 1 and 4 are swapped.
     let swapped = [POINTS[4], POINTS[1]].into_iter().flatten().flat_map(|x| (x as f32).to_le_bytes());
     let bytes: Vec<u8> = binary(1).into_iter().chain([1, 4]).chain(swapped).collect();
     let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode(&bytes));
@@ -158,7 +158,7 @@ fn sparse_entries_replace_those_of_the_view() {
 
 #[test]
 fn sparse_entries_without_a_view_replace_zeros() {
-    // The base stays where it is, and the tip is at 0.
+    // The base stays where it is, and the tip moves to 0.
     let points = POINTS[..4].iter().flatten().flat_map(|&x| (x as f32).to_le_bytes());
     let bytes: Vec<u8> = binary(1).into_iter().chain([0, 1, 2, 3]).chain(points).collect();
     let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode(&bytes));
@@ -216,7 +216,7 @@ fn nodes_place_their_meshes_and_mirrored_ones_keep_their_front() {
             assert!((*found - map.point(expected)).length() < 1e-14, "{found} for {}", map.point(expected));
         }
     }
-    // Without a scene, the nodes that are no node's children are shown.
+    // Without a scene, the nodes that are no children of other nodes are shown.
     let unnamed = text.replace(r#""scene":0,"scenes":[{"nodes":[1]}],"#, "");
     assert_eq!(read("a.gltf", unnamed.as_bytes()).0, found);
 }
@@ -270,7 +270,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
 
 #[test]
 fn a_small_file_cannot_ask_for_much_memory() {
-    // 3000 nodes that each place one mesh of 300 000 triangles would be 900 million.
+    // 3000 nodes that each place one mesh of 300 000 triangles would give 900 million.
     let corners = vec![0_u8; 900_000];
     let uri = format!(r#""uri":"data:;base64,{}","#, BASE64_STANDARD.encode([&binary(1)[..60], &corners].concat()));
     let text = document(&uri, 1, "").replace(r#""count":18"#, r#""count":900000"#);
@@ -302,7 +302,7 @@ fn no_bytes_make_the_gltf_reader_panic() {
             let at = (random.number() * bytes.len() as f64) as usize;
             match (random.number() * 4.0) as u32 {
                 0 => bytes[at] = (random.number() * 256.0) as u8,
-                // Numbers grow, shrink and change their signs where a digit stands.
+                // Numbers grow, shrink and change their signs where there is a digit.
                 1 => bytes[at] = b"0123456789-e.\"[]{},"[(random.number() * 19.0) as usize],
                 2 => drop(bytes.remove(at)),
                 _ => bytes.insert(at, b"90"[(random.number() * 2.0) as usize]),

@@ -1,4 +1,4 @@
-//! Meshes that are placed many times and kept once.
+//! Meshes that are placed many times and stored once.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use abbe::shape::{Mesh, Shape};
 use crate::support::bodies::ball;
 use crate::support::scenes::{Mean, SPLITTING, environment, image_in, refusal_in, scene_in, view};
 
-/// A folder with `ball.obj`, a ball of radius 1, and `same.obj`, which is not shared.
+/// Creates a folder with `ball.obj`, a ball of radius 1, and `same.obj`, which is not shared.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let (points, faces) = ball();
@@ -19,12 +19,12 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// An object of a mesh file.
+/// Returns an object of a mesh file.
 fn object(file: &str, material: &str, steps: &str) -> String {
     format!("[[object]]\nshape.mesh.file = \"{file}\"\nmaterial = \"{material}\"\ntransform = [{steps}]\n")
 }
 
-/// The mesh of an object and whether it is an instance.
+/// Returns the mesh of an object and whether it is an instance.
 fn mesh_of(shape: &Shape) -> (Arc<Mesh>, bool) {
     match shape {
         Shape::Mesh(mesh) => (mesh.clone(), false),
@@ -44,7 +44,7 @@ fn a_matrix_is_the_map_of_its_columns_and_their_shift() {
     let text = start + &ball("{ scale = [3, 5, 2] }, { translate = [0, -4, 1] }") + &ball(matrix);
     let objects = scene_in(folder().path(), &text).objects;
     let [steps, matrix] = [0, 1].map(|i| objects[i].shape.bounds().expect("finite"));
-    // Its rows are those of the steps, turned by one: x becomes y, y becomes z, and z becomes x.
+    // The matrix has the rows of the steps, turned by one: x becomes y, y becomes z, and z becomes x.
     for (of_steps, of_matrix) in [(steps.min, matrix.min), (steps.max, matrix.max)] {
         assert!((of_matrix - abbe::math::DVec3::new(of_steps.z, of_steps.x, of_steps.y)).length() < 1e-6);
     }
@@ -74,7 +74,7 @@ fn objects_of_one_mesh_file_share_it_in_memory() {
     assert!((center(6) - abbe::math::DVec3::new(2.0, 0.0, 4.0)).length() < 1e-9);
 }
 
-/// The same scene with a shared mesh and with baked ones, and their images' mean colors.
+/// Compares the mean colors of a scene's images with a shared mesh and with baked ones.
 fn compared(text: impl Fn(&str) -> String, what: &str) {
     let folder = folder();
     let means = [("ball.obj", 3), ("same.obj", 4)].map(|(file, seed)| {
@@ -91,7 +91,7 @@ fn compared(text: impl Fn(&str) -> String, what: &str) {
 
 #[test]
 fn a_shared_mesh_shines_as_a_baked_one_does() {
-    // A floor under a lamp: every pixel sees the same point, by directions to the lamp and by chance.
+    // A floor under a lamp: every pixel sees the same point, by next-event estimation and by random hits.
     compared(
         |file| {
             let elsewhere = object("ball.obj", "black", "{ translate = [0, -50, 0] }");

@@ -10,7 +10,7 @@ use crate::support::scenes::{body, quad, scene, view};
 
 const RAYS: u32 = 100_000;
 
-/// The nearest crossing of all, of equally near ones the first.
+/// Returns the nearest crossing of all. If several are equally near, it is the first.
 fn search(shapes: impl Iterator<Item = (u32, Option<Intersection>)>) -> Option<(u32, Intersection)> {
     shapes
         .filter_map(|(number, intersection)| Some((number, intersection?)))
@@ -25,7 +25,7 @@ fn assert_found(scene: &Scene<Curve>, ray: &Ray) -> bool {
     nearest.is_some()
 }
 
-/// A ray between two random points of a cube about the origin.
+/// Returns a ray between two random points of a cube about the origin.
 fn ray(random: &mut Random, half: f64) -> Ray {
     let mut place = || DVec3::from([(); 3].map(|()| random.between(-half, half)));
     let (from, to) = (place(), place());
@@ -67,7 +67,7 @@ fn the_tree_of_a_scene_finds_what_a_search_finds() {
 
 #[test]
 fn of_objects_in_one_place_the_first_is_met() {
-    // Walls of overlapping squares and cubes, each there three times; their boxes are flat.
+    // Walls of overlapping parallelograms and discs, with several in each place. Their bounding boxes are flat.
     let mut random = Random::new(22);
     let mut shapes = Vec::new();
     for i in 0..36 {
@@ -80,7 +80,7 @@ fn of_objects_in_one_place_the_first_is_met() {
         }
         shapes.push(format!("disc = {{ center = {center:?}, normal = [0, 0, 1], radius = 0.45 }}"));
     }
-    // An order that has nothing to do with the places.
+    // The order does not depend on the places.
     for i in (1..shapes.len()).rev() {
         shapes.swap(i, (random.number() * (i + 1) as f64) as usize);
     }
@@ -93,7 +93,7 @@ fn of_objects_in_one_place_the_first_is_met() {
     }
 }
 
-/// Triangles about random places, some of them twice and some of them in the plane of an axis.
+/// Returns triangles around random places. Some of them appear twice, and some lie in a plane of constant y.
 fn soup(random: &mut Random) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for i in 0..1500 {
@@ -123,7 +123,8 @@ fn the_tree_of_a_mesh_finds_what_a_search_finds() {
 
 #[test]
 fn boxes_that_begin_at_a_hit_hide_no_equally_near_triangle() {
-    // Triangles that overlap in planes whose boxes are exact in 32 bits: no rounding outward gives them thickness.
+    // Overlapping triangles in planes whose boxes are exact in 32 bits, so that rounding outward gives them no
+    // thickness.
     let mut random = Random::new(24);
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for i in 0..400 {
@@ -139,7 +140,7 @@ fn boxes_that_begin_at_a_hit_hide_no_equally_near_triangle() {
     assert!(met > RAYS / 8, "only {met} rays meet anything");
 }
 
-/// Asserts that the tree finds what a search finds; answers how many rays met anything.
+/// Asserts that the tree finds what a search finds. Returns how many rays hit anything.
 fn assert_mesh_finds(points: &[DVec3], faces: &[[u32; 3]], rays: u32, half: f64, random: &mut Random) -> u32 {
     let triangle = |face: &[u32; 3]| Shape::Triangle(Triangle::new(face.map(|corner| points[corner as usize])));
     let triangles: Vec<Shape> = faces.iter().map(triangle).collect();

@@ -1,4 +1,4 @@
-//! Small objects share a tree, and rays find in it what they find object by object.
+//! Small objects share a tree, in which rays find the same as object by object.
 
 use std::cell::Cell;
 
@@ -8,8 +8,8 @@ use abbe::scene::{Hit, RayEnds};
 use crate::support::random::Random;
 use crate::support::scenes::{body, environment, scene, view};
 
-/// Blocks that touch, a roof of single triangles, a lamp, a ball and a floor, on whole numbers so that many crossings
-/// tie.
+/// Returns blocks that touch, a roof of single triangles, a lamp, a ball and a floor. Coordinates are whole numbers, so
+/// that many crossings tie.
 fn village() -> String {
     let block = |x: i32, z: i32| {
         let corner = |i: i32| format!("[{}, {}, {}]", x + (i & 1), i >> 1 & 1, z + (i >> 2));
@@ -38,7 +38,7 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
     let mut random = Random::new(31);
     let (mut met, mut ties) = (0, 0);
     for i in 0..40_000 {
-        // Every other ray starts on whole and half numbers and aims at such, through edges and corners.
+        // Every other ray starts on whole and half numbers and aims at them, through edges and corners.
         let mut place = || {
             let x = random.between(-3.0, 3.0);
             if i % 2 == 0 { (2.0 * x).round() / 2.0 } else { x }
@@ -57,7 +57,7 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
         let Some(hit) = nearest else { continue };
         met += 1;
         ties += usize::from(intersections().filter(|other| other.intersection.t == hit.intersection.t).count() > 1);
-        // A light at the distance of a crossing, as an object of its own or none.
+        // A light at the distance of a crossing, which is an object of the scene or none.
         let distance = if i % 3 == 0 { hit.intersection.t } else { random.between(0.0, 5.0) };
         for light in [None, Some(hit.object), Some(0), Some(5), Some(7)] {
             let hides = |other: &Hit| {
@@ -76,7 +76,8 @@ fn rays_find_in_a_shared_tree_what_they_find_object_by_object() {
     assert!(met > 20_000 && ties > 1000, "{met} rays meet something, {ties} two things at once");
 }
 
-/// A village of blocks that stand in a tree of their own each if `large`, for they have too many triangles.
+/// Returns a village of blocks. If `large`, the blocks have too many triangles for the shared tree, and each has a tree
+/// of its own.
 fn blocks(large: bool) -> String {
     let more: String = (0..1100).map(|i| format!(", [{i}, 99, 0], [{i}, 99, 1], [{}, 99, 0]", i + 1)).collect();
     let faces: String = (0..1100).map(|i| format!(", [{}, {}, {}]", 3 * i + 8, 3 * i + 9, 3 * i + 10)).collect();

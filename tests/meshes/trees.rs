@@ -1,5 +1,5 @@
-//! The tree of a large mesh: nothing slips through it, at any scale and place, and a search for any crossing finds one
-//! where there is a nearest.
+//! The tree of a large mesh: no ray slips through it, at any scale and place, and a search for any crossing finds one
+//! exactly where there is a nearest one.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,7 +12,7 @@ use crate::support::random::Random;
 const AROUND: u32 = 180;
 const RINGS: u32 = 90;
 
-/// Points and faces of a closed ball of 32,040 triangles, radius 1 times a scale, about a center.
+/// Returns points and faces of a closed ball of 32,040 triangles about a center, with radius 1 times a scale.
 fn ball(center: DVec3, scale: f64) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let place = |p: DVec3| (center + p * scale).to_array().map(|x| x as f32);
     let mut points = vec![place(DVec3::Z), place(-DVec3::Z)];
@@ -32,7 +32,7 @@ fn mesh(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Shape {
     Shape::Mesh(mesh.into())
 }
 
-/// A point well inside the ball.
+/// Returns a point well inside the ball.
 fn inside(random: &mut Random, center: DVec3, scale: f64) -> DVec3 {
     center + random.direction() * (0.9 * scale * random.number())
 }
@@ -41,7 +41,7 @@ fn inside(random: &mut Random, center: DVec3, scale: f64) -> DVec3 {
 fn of_a_million_rays_at_edges_and_corners_none_slips_through_a_tree() {
     let mut random = Random::new(31);
     let far = DVec3::new(1000.0, -300.0, 77.0);
-    // Powers of two keep the shape of the ball; in 32 bits, its vertices lie on a coarse lattice far away.
+    // Powers of two keep the shape of the ball. Far away, its 32-bit vertices lie on a coarse lattice.
     let places = [(DVec3::ZERO, -40), (DVec3::ZERO, 0), (DVec3::ZERO, 40), (far, 0)];
     for (center, power) in places {
         let scale = libm::exp2(f64::from(power));
@@ -67,7 +67,7 @@ fn rays_along_the_axes_in_planes_of_vertices_do_not_slip_through_a_tree() {
     for i in 0..60_000 {
         let (axis, other) = (i % 3, (i + 1) % 3);
         let mut from = inside(&mut random, DVec3::ZERO, 0.4);
-        // A coordinate of a vertex, so that the ray runs in the sides of boxes.
+        // The coordinate of a vertex, so that the ray runs along the sides of boxes.
         let mut level = || f64::from(points[(random.number() * points.len() as f64) as usize][other]);
         from[other] = std::iter::repeat_with(&mut level).find(|x| x.abs() < 0.8).expect("a vertex near the middle");
         let mut direction = DVec3::ZERO;

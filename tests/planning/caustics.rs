@@ -1,4 +1,4 @@
-//! The plan asks for a light pass where that lowers the time to an error, and says why where not.
+//! The plan asks for a light pass where that lowers the time to an error, and otherwise says why not.
 
 use abbe::plan::{Plan, plan};
 use abbe::trace::{LightPass, Smoothness, World, photons_within};
@@ -7,7 +7,7 @@ use super::ordinary;
 use super::twenty::{Room, rooms};
 use crate::support::scenes::{GROUND, SPLITTING, body, environment, method, quad, scene, view};
 
-/// What is right for each was measured: `cargo bench --bench rooms`, the table in `benches/README.md`.
+/// The right choice for each room was measured: `cargo bench --bench rooms`, the table in `benches/README.md`.
 #[test]
 fn of_twenty_rooms_the_plan_asks_for_photons_in_those_that_gain_and_says_why_not_in_the_others() {
     let rooms = rooms();
@@ -15,8 +15,8 @@ fn of_twenty_rooms_the_plan_asks_for_photons_in_those_that_gain_and_says_why_not
     assert_as_measured(rooms);
 }
 
-/// In the mean of all pixels, noise is mostly that of a lamp's edge, which no photon mends. Counted so, photons did not
-/// pay in most of these rooms.
+/// In the mean over all pixels, most noise is that of a lamp's edge, which photons do not reduce. By that measure,
+/// photons did not pay off in most of these rooms.
 #[test]
 fn photons_are_weighed_by_what_most_pixels_gain() {
     assert_as_measured(ordinary::rooms());
@@ -36,9 +36,9 @@ fn assert_as_measured(rooms: Vec<Room>) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A dial of metal under a dome of sapphire. Photons make most of its pixels less noisy for the time, which are dark:
-/// measured in small, an equal error of each takes 1.3 times as long without. That of the whole takes 0.3 times as long
-/// without, as it is made where the metal shows the lamp.
+/// A metal dial under a dome of sapphire. Photons make most of its pixels, which are dark, less noisy for the time:
+/// measured at a small size, an equal error of each pixel takes 1.3 times as long without them. An equal error of the
+/// whole image takes 0.3 times as long without them, because it arises where the metal reflects the lamp.
 const DIAL: &str = "[camera]\nposition = [0, 5, 4]\nlook_at = [0, 0, 0]\nvertical_fov = 28\n\
     [film]\nwidth = 80\nheight = 80\n\
     [material]\ngold.conductor = { metal = \"Au\", roughness = 0.15 }\ndial.diffuse.reflectance = 0.6\n\
@@ -68,7 +68,7 @@ fn an_error_of_the_whole_image_counts_beside_that_of_its_pixels() {
     }
 }
 
-/// Numbers of photons come from counts of rays and values of pixels, never from a clock.
+/// The number of photons is derived from counts of rays and values of pixels, never from a clock.
 #[test]
 fn the_plan_asks_for_the_same_photons_every_time_and_on_any_number_of_threads() {
     for room in rooms().into_iter().filter(|room| room.asks).step_by(4) {
@@ -83,7 +83,8 @@ fn the_plan_asks_for_the_same_photons_every_time_and_on_any_number_of_threads() 
     }
 }
 
-/// By 0.25 for each, as beside the noise of paths alone, the room below took twice as long to an equal error.
+/// With 0.25 photons per camera sample, the number that suits the noise of paths alone, this room took twice as long to
+/// an equal error.
 #[test]
 fn photons_that_light_a_room_are_counted_beside_the_noise_that_all_else_leaves() {
     let text = "camera = { position = [0, 1.5, 2.4], look_at = [0, 1.4, 0], vertical_fov = 60 }\n\
@@ -102,8 +103,8 @@ fn photons_that_light_a_room_are_counted_beside_the_noise_that_all_else_leaves()
     assert!(method.light_vertices && (0.7..=4.0).contains(&photons), "{photons} for each camera sample");
 }
 
-/// By a window of a square meter, photons through it do not pay beside bounces alone. Light vertices, which take images
-/// of a million samples, leave so little noise that they do.
+/// With a window of a square meter, photons through it do not pay off beside bounces alone. Light vertices, which are
+/// used for images of a million samples, leave so little noise that photons pay off.
 #[test]
 fn photons_are_weighed_beside_light_vertices() {
     let walls = [
@@ -152,12 +153,12 @@ fn photons_that_meet_a_mirror_and_a_floor_follow_two_rays() {
     let pass =
         LightPass { photons: 1 << 20, lights: vec![0], openings: Vec::new(), to: vec![Smoothness::Whole], map: None };
     let world = World::new(&scene, method(&scene, SPLITTING)).with_light_pass(Some(pass));
-    // Those that are sent beside the spot's cone follow none.
+    // Photons that are sent outside of the spot's cone trace no rays.
     let photons = photons_within(&world, 4096.0);
     assert!((2048..2300).contains(&photons), "{photons}");
 }
 
-/// A clear coat mirrors a small light onto the floor, which chance finds too rarely, and never if it is a point.
+/// A clear coat reflects a small light onto the floor. Random paths find it too rarely, and never if it is a point.
 #[test]
 fn photons_are_sent_to_clear_coats() {
     let text = |material: &str, light: &str| {
@@ -186,14 +187,14 @@ fn photons_are_sent_to_clear_coats() {
         );
     }
     assert!(said("plastic = { reflectance = 0.5, roughness = 0.4 }", &sun).starts_with("no caustics: no surface is"));
-    // What lies in a box throws nothing that is seen.
+    // A body inside a box throws no visible caustic.
     let hidden = body("box", "diffuse = { reflectance = 0.5 }", &["cube = { center = [0, 2, 60], size = 3 }"])
         + &body("hidden", coat, &["sphere = { center = [0, 2, 60], radius = 0.8 }"]);
     let glass = plan(&scene(&(text("dielectric = { index = 1.5 }", &sun) + &hidden)));
     let left = "left to chance: caustics of object 4, which is smooth only in part";
     assert!(glass.because.iter().any(|line| line == left), "{:?}", glass.because);
     assert!(glass.method.light_pass.is_some_and(|pass| !pass.to.contains(&Smoothness::Partial)));
-    // A sheet that only lets light straight on throws none.
+    // A sheet that only lets light pass straight through throws none.
     let sheet = body(
         "sheet",
         "polarizer = { axis = [1, 0, 0] }",

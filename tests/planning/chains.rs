@@ -1,5 +1,5 @@
-//! Chains of filters, mirrors, metals and panes between the camera and a lamp: what the plan and the render say of
-//! color and of polarization holds.
+//! Chains of filters, mirrors, metals and panes between the camera and a lamp: what the plan and the render state about
+//! color and polarization holds.
 
 use abbe::math::DVec3;
 use abbe::plan::plan;
@@ -12,14 +12,14 @@ use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{body, object, quad, scene, view};
 
-/// What a chain is made of.
+/// A link of a chain.
 #[derive(Clone)]
 enum Link {
-    /// A pane that light goes through, with the way's transmittance.
+    /// A pane that light crosses, with its transmittance along the path.
     Filter(Vec<f64>),
     Mirror(Vec<f64>),
     Metal(&'static str),
-    /// A metal of one n and k in every lane.
+    /// A metal with the same n and k in every lane.
     Plain([f64; 2]),
     IdealMirror,
     Through(f64),
@@ -49,7 +49,7 @@ impl Link {
     }
 }
 
-/// A link, the direction in which the camera's ray comes to it, and its unit normal on that side.
+/// A link, the direction in which the camera's ray arrives, and the unit normal on that side.
 struct Met {
     link: Link,
     coming: DVec3,
@@ -72,7 +72,8 @@ impl Met {
 
 const STEP: f64 = 4.0;
 
-/// Links one behind the other, met under angles up to `steepest` degrees, all in one plane or turned at random.
+/// Returns a chain of links and its scene. The links are hit at angles of up to `steepest` degrees, all in one plane or
+/// turned at random.
 fn chain(random: &mut Random, links: &[Link], steepest: f64, in_plane: bool) -> (Vec<Met>, String) {
     loop {
         let (mut at, mut coming) = (DVec3::ZERO, DVec3::new(0.0, 0.0, -1.0));
@@ -96,7 +97,7 @@ fn chain(random: &mut Random, links: &[Link], steepest: f64, in_plane: bool) -> 
     }
 }
 
-/// Whether nothing stands in the way between two links.
+/// Returns whether nothing blocks the path between two links.
 fn is_free(places: &[DVec3]) -> bool {
     let distance = |point: DVec3, a: DVec3, b: DVec3| {
         let along = ((point - a).dot(b - a) / (b - a).dot(b - a)).clamp(0.0, 1.0);
@@ -119,7 +120,8 @@ fn text(met: &[Met], places: &[DVec3]) -> String {
     text + &object("lamp", &format!("sphere = {{ center = {lamp:?}, radius = 0.03 }}"))
 }
 
-/// The transmittance of a filter or the reflectance of a mirror: a paint of the chart, or an edge as of colored glass.
+/// Returns the transmittance of a filter or the reflectance of a mirror: a paint of the chart, or an edge like that of
+/// colored glass.
 fn tint(random: &mut Random) -> Vec<f64> {
     let patches: Vec<_> = data::reflectances().collect();
     let patch = patches[(random.number() * 24.0) as usize].clone();
@@ -134,7 +136,7 @@ fn tint(random: &mut Random) -> Vec<f64> {
     visible::wavelengths().map(of).collect()
 }
 
-/// What is left of light after a chain: by 1 nm, and in lanes.
+/// Returns the light that is left after a chain, in steps of 1 nm or in the lanes of a basis.
 fn left(met: &[Met], scene: &Scene<Curve>, basis: Option<&Basis>) -> Vec<f64> {
     use abbe::material::{Material, Thin, conductor_reflectance};
     let read = |rgb: &Basis, quantity: Quantity, curve: &Curve| match basis {
@@ -215,7 +217,7 @@ fn colors_through_chains_of_filters_mirrors_and_metals_are_missed_by_no_more_tha
     println!("stated over true error of color: least {:.2}, median {:.2}, 95 % {:.1}", at(0.0), at(0.5), at(0.95));
 }
 
-/// The light of a chain by Mueller's calculus, over what it is without polarization.
+/// Returns the light of a chain by Mueller calculus, relative to the light without polarization.
 fn exact_over_averaged(met: &[Met]) -> f64 {
     let (mut light, mut averaged) = (Stokes::unpolarized(), 1.0);
     for met in met.iter().rev() {
@@ -233,8 +235,8 @@ fn exact_over_averaged(met: &[Met]) -> f64 {
     light.intensity() / averaged
 }
 
-/// What is stated of averaging, what tracing polarization makes of the light that averaging finds, and what the plan
-/// says.
+/// Returns the stated error of averaging, the light with traced polarization relative to the light with averaging, and
+/// the reasons of the plan.
 fn rendered(text: &str) -> (f64, f64, Vec<String>) {
     let scene = scene(&format!("{text}[material.lamp]\nemissive = {{ radiance = 1 }}\n"));
     let plan = plan(&scene);
@@ -265,7 +267,7 @@ fn polarization_changes_the_light_of_chains_by_no_more_than_the_report_says() {
         let change = (exact - 1.0).abs();
         let (stated, traced, because) = rendered(&text);
         assert!((traced - exact).abs() < 1e-5 * exact.max(1.0), "scene {number}: {traced} for {exact}");
-        // Single lanes are f32.
+        // Lanes are f32.
         let links: Vec<String> = met.iter().map(|met| format!("{} at {:.3}", met.link.material(), met.cos())).collect();
         assert!(change <= stated + 1e-5, "scene {number}: changes {change:.6}, stated {stated:.6}: {links:?}");
         let says =

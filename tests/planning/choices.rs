@@ -1,4 +1,4 @@
-//! What the plan chooses for scenes whose needs are known.
+//! The choices of the plan for scenes with known needs.
 
 use abbe::plan::{Plan, plan};
 use abbe::spectrum::Basis;
@@ -6,7 +6,7 @@ use abbe::trace::{Method, ROUTES_NM, Route, RouteEvent, Step, Transport, World, 
 
 use crate::support::scenes::{body, environment, scene, view};
 
-/// A thing of glass before a painted wall, by default lit by a lamp of plain white.
+/// Plans a scene with a glass object in front of a painted wall, under a lamp with the given radiance.
 fn behind(glass: &str, shape: &str, wall: &str, light: &str, render: &str) -> Plan {
     let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 40.0, 200);
     plan(&scene(&format!(
@@ -66,7 +66,7 @@ fn dispersion_too_small_to_be_seen_is_not_modelled() {
     assert!(forced.method.basis.draws_wavelengths());
 }
 
-/// Three images of a white lamp are what three numbers say; of the light of one wavelength there is but one.
+/// Three numbers describe the three images of a white lamp. Light of a single wavelength has only one image.
 #[test]
 fn an_rgb_index_asks_for_heroes_under_light_that_is_not_white() {
     let of = |light: &str| behind("{ rgb = [1.5, 1.55, 1.6] }", PRISM, RGB, light, "");
@@ -93,7 +93,7 @@ fn a_prism_out_of_sight_that_lamps_shine_through_is_noticed() {
 
 #[test]
 fn a_drop_out_of_sight_that_throws_a_rainbow_is_noticed() {
-    // The sun shines from behind the screen, whose hole is as wide as the drop.
+    // The sun shines from behind the screen, which has a hole as wide as the drop.
     let screen = |center: &str, half: &str| {
         format!(
             "[[object]]\nshape.quad = {{ center = {center}, u = [{half}, 0, 0], v = [0, 5, 0] }}\nmaterial = \"wall\"\n"
@@ -122,7 +122,7 @@ fn measured_colors_get_as_many_lanes_as_the_tolerance_asks() {
     assert_eq!(found[0], 3, "half of everything may be missed");
 }
 
-/// A film of an index and so many nm under an even sky, whose colors are to be off by a thousandth at most.
+/// Plans a film with an index and a thickness in nm under a uniform sky. Its colors may be off by a thousandth at most.
 fn film(index: f64, nm: u32, of_film: &str) -> Plan {
     let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 30.0, 16);
     plan(&scene(&format!(
@@ -177,7 +177,7 @@ fn what_the_scene_asks_for_is_done() {
     }
 }
 
-/// Otherwise an animation whose seed is its frame would change its colors from frame to frame.
+/// Otherwise, an animation whose seed is its frame would change its colors from frame to frame.
 #[test]
 fn the_seed_decides_nothing() {
     let text = view([0.0, 1.5, 6.0], [0.0, 0.7, 0.0], 35.0, 48)
@@ -197,7 +197,7 @@ fn the_seed_decides_nothing() {
     (1..5).for_each(|seed| assert_eq!(decided(seed), first, "seed {seed}"));
 }
 
-/// Light comes to the camera straight, without being scattered, where it sees the lamp or the sky.
+/// Where the camera sees the lamp or the sky, light reaches it straight, without being scattered.
 #[test]
 fn lamps_and_skies_that_the_camera_does_not_see_are_not_seen_through_holes_and_panes_either() {
     let view = view([0.0, 0.0, 6.0], [0.0, 0.0, 0.0], 30.0, 64);
@@ -256,7 +256,7 @@ fn routes_are_no_longer_than_paths() {
     }
 }
 
-/// With `diffuse_bounces` of 0 light leaves matte surfaces for the camera alone.
+/// With `diffuse_bounces` of 0, light that leaves matte surfaces only reaches the camera.
 #[test]
 fn the_surface_is_named_that_leaves_light_to_chance() {
     for (render, name) in [("", "object 1"), ("diffuse_bounces = 0", "object 2")] {

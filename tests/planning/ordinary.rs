@@ -1,8 +1,8 @@
-//! Ordinary rooms with glass, mirrors, clear coats and lamps, where most of the noise is in few pixels or in few rays.
+//! Ordinary rooms with glass, mirrors, clear coats and lamps, where most of the noise is in a few pixels or a few rays.
 
 use super::twenty::Room;
 
-/// As many pixels as a plan must have to look for light at light vertices.
+/// The number of pixels that a plan needs to use light vertices.
 const FILM: &str = "[film]\nwidth = 80\nheight = 54\n";
 const OUTDOORS: &str = "[camera]\nposition = [0, 2.2, 5]\nlook_at = [0, 0.5, 0]\nvertical_fov = 40\n";
 const INDOORS: &str = "[camera]\nposition = [0, 1.5, 2.4]\nlook_at = [0, 1.1, 0]\nvertical_fov = 65\n";
@@ -24,14 +24,14 @@ fn bulb(center: [f64; 3], radius: f64) -> String {
     object("bulb", "lamp", &format!("sphere = {{ center = {center:?}, radius = {radius:?} }}"))
 }
 
-/// On a floor under a dim sky.
+/// Returns objects on a floor under a dim sky.
 fn outdoors(floor: &str, things: &[String]) -> String {
     let floor = object("floor", floor, "plane = { point = [0, 0, 0], normal = [0, 1, 0] }");
     let sky = "[[light]]\nenvironment = { radiance = 0.1 }\n";
     format!("{OUTDOORS}{FILM}{MATERIALS}{floor}{}{sky}", things.concat())
 }
 
-/// In a closed white room, 4 wide, 3 high and 5 deep.
+/// Returns objects in a closed white room, 4 wide, 3 high and 5 deep.
 fn indoors(floor: &str, things: &[String]) -> String {
     let walls = [
         object("floor", floor, &quad([0.0; 3], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5])),
@@ -44,8 +44,8 @@ fn indoors(floor: &str, things: &[String]) -> String {
     format!("{INDOORS}{FILM}{MATERIALS}{}{}", walls.concat(), things.concat())
 }
 
-/// All of them; in all, photons gain where they are counted relative to the brightness of each pixel, as `cargo bench
-/// --bench rooms` measures it.
+/// Returns all rooms. In each of them, photons gain if errors are counted relative to the brightness of each pixel, as
+/// `cargo bench --bench rooms` measures it.
 pub fn rooms() -> Vec<Room> {
     let mut rooms = Vec::new();
     let mut room = |name, text| rooms.push(Room { name, text, asks: true, words: "photons from" });

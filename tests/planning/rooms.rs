@@ -13,7 +13,7 @@ use crate::support::scenes::scene;
 /// Reflectance of a wall at a wavelength in nm.
 type Paint = Box<dyn Fn(f64) -> f64>;
 
-/// Form factors between the walls of a closed box, numbered -x +x -y +y -z +z.
+/// Returns the form factors between the walls of a closed box, numbered -x +x -y +y -z +z.
 ///
 /// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, C-11 (opposite) and C-14 (adjacent
 /// rectangles).
@@ -41,7 +41,7 @@ fn opposite(x: f64, y: f64) -> f64 {
     2.0 / (PI * x * y) * (log + arcs - x * x.atan() - y * y.atan())
 }
 
-/// From a wall of height w to one of height h, both over the edge that has length 1.
+/// Returns the form factor from a wall of height w to one of height h. They share an edge of length 1.
 fn adjacent(h: f64, w: f64) -> f64 {
     let (h2, w2) = (h * h, w * w);
     let arcs = w * (1.0 / w).atan() + h * (1.0 / h).atan() - (h2 + w2).sqrt() * (1.0 / (h2 + w2).sqrt()).atan();
@@ -60,8 +60,7 @@ fn every_wall_sees_all_others() {
     }
 }
 
-/// Radiosities of six walls by their reflectances: the first is lit straight by a lamp, the others as the lamp sees
-/// them.
+/// Returns the radiosities of six walls from their reflectances and from the light that each of them receives directly.
 fn solve(reflectances: [f64; 6], factors: &[[f64; 6]; 6], direct: [f64; 6]) -> [f64; 6] {
     let mut radiosity = [0.0; 6];
     for _ in 0..400 {
@@ -73,7 +72,7 @@ fn solve(reflectances: [f64; 6], factors: &[[f64; 6]; 6], direct: [f64; 6]) -> [
     radiosity
 }
 
-/// One room in which everything is known.
+/// A room in which everything is known.
 struct Room {
     scene: Scene<Curve>,
     paints: Vec<Paint>,
@@ -82,7 +81,8 @@ struct Room {
     direct: [f64; 6],
 }
 
-/// As in the measurements that the safety factors come from: a third of the rooms pale, a third nearly gray.
+/// Returns a random room like those of the measurements behind the safety factors: a third of the rooms are pale, a
+/// third nearly gray.
 fn room(number: usize) -> Room {
     let mut random = Random::new(number as u64 + 40);
     let patches: Vec<_> = data::reflectances().collect();
@@ -118,7 +118,7 @@ fn room(number: usize) -> Room {
     Room { scene: scene(&text), paints, names, factors: form_factors(size), direct }
 }
 
-/// The largest relative error of a wall's color that a model makes.
+/// Returns the largest relative error of a wall's color under a model.
 fn true_error(room: &Room, basis: &Basis) -> f64 {
     let curve = room.scene.lights[0].emission();
     let light = Emission::new(curve, basis.color_space());

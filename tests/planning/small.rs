@@ -1,4 +1,4 @@
-//! Dispersion is noticed however small it is in the picture, and wherever it is seen.
+//! Dispersion is noticed however small it is in the picture and wherever it is seen.
 
 use abbe::plan::{Plan, plan};
 use abbe::scene::Scene;
@@ -6,9 +6,9 @@ use abbe::spectrum::Curve;
 
 use crate::support::scenes::{GROUND, object, quad, scene};
 
-/// The picture is so many pixels wide and high, under 40 degrees.
+/// Width and height of the picture in pixels, for a field of view of 40 degrees.
 const SIDE: f64 = 400.0;
-/// How wide a pixel is at a distance of 1.
+/// Returns the width of a pixel at a distance of 1.
 fn pixel() -> f64 {
     2.0 * libm::tan(20.0_f64.to_radians()) / SIDE
 }
@@ -21,8 +21,8 @@ const MATERIALS: &str = "[material.flint]\ndielectric = { index = \"N-SF11\", pr
     [material.wall]\ndiffuse = { reflectance = { rgb = [0.7, 0.5, 0.3] } }\n[material.stripe]\ndiffuse = { reflectance = 0.1 }\n\
     [material.lamp]\nemissive = { radiance = 10 }\n";
 
-/// A camera at the origin that looks along -z, a striped wall, a lamp behind the camera. Photons, which have no say in
-/// whether wavelengths part, are not weighed.
+/// Plans a scene with a camera at the origin that looks along -z, a striped wall, and a lamp behind the camera. Photons
+/// are left out, since they do not affect whether wavelengths part.
 fn plan_of(things: &str, width: f64) -> Plan {
     plan(&scene_of(things, width))
 }
@@ -37,7 +37,7 @@ fn scene_of(things: &str, width: f64) -> Scene<Curve> {
     ))
 }
 
-/// A wedge of three sides, or an eight-sided gem, of a width around a place.
+/// Returns a three-sided wedge or an eight-sided gem with a given width at a given place.
 fn body(gem: bool, material: &str, width: f64, [x, y, z]: [f64; 3]) -> String {
     let (points, faces) = if gem {
         (
@@ -64,10 +64,10 @@ fn parts(plan: &Plan) -> bool {
     plan.method.basis.draws_wavelengths()
 }
 
-/// Each place: what is around, and the body as many pixels wide as it is to be seen.
+/// Returns a body in one of the places, with what surrounds it. The body is sized to be seen `pixels` wide.
 fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
     let at = |distance: f64| pixels * pixel() * distance;
-    // Off the middle, so that no ray of a grid meets it by luck.
+    // Off center, so that no ray of a grid hits it by luck.
     let aside = |distance: f64| [0.137 * distance, 0.071 * distance, -distance];
     let cube = |material: &str, z: f64, size: [f64; 3]| {
         object(material, &format!("cube = {{ center = [0, 0, {z:?}], size = {size:?} }}"))
@@ -84,11 +84,11 @@ fn placed(place: &str, gem: bool, material: &str, pixels: f64) -> String {
         }
         "in a flat mirror" => {
             let mirror = quad("mirror", [0.0, 0.0, -6.0], [2.0, 0.0, 2.0], [0.0, 3.0, 0.0]);
-            // The mirror turns -z to -x: as far aside as it would be ahead.
+            // The mirror turns -z to -x: the body is as far to the side as it would be ahead.
             body(gem, material, at(12.0), [-6.5, 0.9, -5.5]) + &mirror
         }
         "in a mirror ball" => {
-            // A ball of radius 2 shows what is 8 before it some 8.6 times as small as a flat mirror would.
+            // A ball of radius 2 shows an object 8 in front of it some 8.6 times smaller than a flat mirror would.
             let ball = object("mirror", "sphere = { center = [0, 0, -10], radius = 2 }");
             body(gem, material, at(8.0) * 9.0, [2.5, 1.5, -1.0]) + &ball
         }
@@ -116,7 +116,7 @@ const PLACES: [&str; 10] = [
     "in a mirror behind a pane",
 ];
 
-/// Sizes and places in which a body is missed.
+/// Returns the sizes and places in which a body is missed.
 fn missed(gem: bool, material: &str) -> Vec<String> {
     let mut missed = Vec::new();
     for place in PLACES {
@@ -196,7 +196,7 @@ fn dispersion_before_an_even_sky_with_nothing_behind_keeps_lanes_together() {
 fn glass_that_no_path_comes_through_keeps_lanes_together() {
     let body = |place| placed(place, false, "flint", 30.0);
     let floor = body("in the open") + &object("wall", "plane = { point = [0, -8, 0], normal = [0, 1, 0] }");
-    // Two surfaces of the glass, the wall, and the mirror.
+    // Paths meet two surfaces of the glass, the wall, and the mirror.
     for (things, fewest) in [(body("in the open"), 3), (body("in a flat mirror"), 4), (floor, 3)] {
         for most in [0, 1, fewest - 1, fewest] {
             let mut scene = scene_of(&things, SIDE);
@@ -211,7 +211,7 @@ fn glass_that_no_path_comes_through_keeps_lanes_together() {
 fn light_through_a_gem_counts_where_paths_are_long_enough_to_show_it() {
     let gem = body(true, "flint", 0.05, [0.1, 2.7, -6.0]);
     let mirror = object("mirror", &quad([0.0, 0.0, 3.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]));
-    // Three surfaces of the gem and the floor, which the camera sees straight or in a mirror.
+    // Three surfaces of the gem and the floor, which the camera sees directly or in a mirror.
     for (looks, fewest) in [("0, 0, -6", 4), ("0, 0, 15", 5)] {
         for most in [fewest - 1, fewest] {
             let mut scene = scene(&format!(
@@ -265,7 +265,7 @@ fn sunlight_through_a_small_gem_out_of_sight_is_noticed() {
         object("wall", GROUND)
     );
     let sun = "[[light]]\nsun = { toward = [0, 1, 0.2], irradiance = 3, angular_diameter = 0.53 }\n";
-    // Above the top of the picture.
+    // A place above the top of the picture.
     let place = [0.1, 2.7, -6.0];
     for (material, width) in [("flint", 0.05), ("crown", 0.02), ("diamond", 0.03)] {
         let found = plan(&scene(&(head.clone() + sun + &body(true, material, width, place))));
@@ -318,7 +318,7 @@ fn light_of_small_lamps_through_a_small_gem_out_of_sight_is_noticed() {
 
 #[test]
 fn a_rainbow_that_a_small_prism_out_of_sight_throws_on_a_wall_is_noticed() {
-    // The least deviation of N-BK7, by some 37 degrees, leads from the sun to the middle of the picture.
+    // The minimum deviation of N-BK7, some 37 degrees, leads from the sun to the middle of the picture.
     let text = |material: &str| {
         format!(
             "[camera]\nposition = [0, 0.6, 0]\nlook_at = [2, 0.6, -4.36]\nvertical_fov = 40\n[film]\nwidth = 400\nheight = 400\n{MATERIALS}\

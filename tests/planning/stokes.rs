@@ -1,4 +1,4 @@
-//! A small calculus of Stokes and Mueller, of its own: light with its frame, surfaces by their complex amplitudes.
+//! A small, independent calculus of Stokes and Mueller: light with its frame, surfaces by their complex amplitudes.
 
 use abbe::math::DVec3;
 
@@ -13,14 +13,14 @@ fn quotient(a: Complex, b: Complex) -> Complex {
     product(a, [b[0] / square, -b[1] / square])
 }
 
-/// The root whose imaginary part is not positive.
+/// Returns the square root whose imaginary part is not positive.
 fn root(a: Complex) -> Complex {
     let modulus = a[0].hypot(a[1]);
     [((modulus + a[0]) / 2.0).max(0.0).sqrt(), -((modulus - a[0]) / 2.0).max(0.0).sqrt()]
 }
 
-/// What a surface does with the intensities of s and p, and with the product of the amplitude of s and the conjugate of
-/// that of p, in frames whose second axis is the direction of travel x s.
+/// The effect of a surface on the intensities of s and p, and on the product of the amplitude of s and the conjugate of
+/// that of p. The second axis of its frames is the direction of travel x s.
 #[derive(Clone, Copy)]
 pub struct Event {
     s: f64,
@@ -29,13 +29,13 @@ pub struct Event {
 }
 
 impl Event {
-    /// What is left of unpolarized light.
+    /// Returns the share that is left of unpolarized light.
     pub fn mean(&self) -> f64 {
         0.5 * (self.s + self.p)
     }
 }
 
-/// Amplitudes of light reflected by a medium of index n - ik (Born & Wolf 1999, sections 1.5.2 and 14.2).
+/// Returns the amplitudes of light reflected by a medium of index n - ik (Born & Wolf 1999, sections 1.5.2 and 14.2).
 fn amplitudes(n: f64, k: f64, cos: f64) -> [Complex; 2] {
     let square = product([n, -k], [n, -k]);
     let beyond = root([square[0] - (1.0 - cos * cos), square[1]]);
@@ -50,22 +50,22 @@ fn reflected([s, p]: [Complex; 2]) -> Event {
     Event { s: square(s), p: square(p), both: product(s, [p[0], -p[1]]) }
 }
 
-/// Reflection by a metal.
+/// Returns the reflection by a metal.
 pub fn metal(n: f64, k: f64, cos: f64) -> Event {
     reflected(amplitudes(n, k, cos))
 }
 
-/// Reflection by the surface of a clear body.
+/// Returns the reflection by the surface of a transparent body.
 pub fn surface(n: f64, cos: f64) -> Event {
     reflected(amplitudes(n, 0.0, cos))
 }
 
-/// Reflection that turns the phase of one polarization by half a wave.
+/// Returns a reflection that shifts the phase of one polarization by half a wave.
 pub fn mirror() -> Event {
     Event { s: 1.0, p: 1.0, both: [-1.0, 0.0] }
 }
 
-/// What a pane lets through and what it reflects, with all reflections inside it and without interference.
+/// Returns the transmission and the reflection of a pane, with all reflections inside it and without interference.
 pub fn pane(n: f64, cos: f64) -> [Event; 2] {
     let [s, p] = amplitudes(n, 0.0, cos).map(|amplitude| amplitude[0]);
     let series = |a: f64, b: f64| (1.0 - a * a) * (1.0 - b * b) / (1.0 - a * a * b * b);
@@ -74,7 +74,7 @@ pub fn pane(n: f64, cos: f64) -> [Event; 2] {
     [through, Event { s: back(s, s), p: back(p, p), both: [back(s, p), 0.0] }]
 }
 
-/// Light with the axis to which its Stokes vector refers.
+/// Light, with the axis that its Stokes vector refers to.
 pub struct Stokes {
     vector: [f64; 4],
     axis: Option<DVec3>,
@@ -89,7 +89,7 @@ impl Stokes {
         self.vector[0]
     }
 
-    /// Light that traveled in a direction to a surface of a normal.
+    /// Returns the light after an event at a surface with the given normal, which it reaches in the direction `from`.
     pub fn after(self, event: &Event, from: DVec3, normal: DVec3) -> Self {
         let Some(s) = from.cross(normal).try_normalize() else {
             unreachable!("no link is met straight on");

@@ -1,13 +1,13 @@
 //! Twenty rooms with and without caustics.
 
-/// A room, and what the plan is to make of it.
+/// A room, with the expected decision of the plan.
 pub struct Room {
     pub name: &'static str,
-    /// What stands on the floor, and what shines.
+    /// The objects on the floor and the lights.
     pub text: String,
-    /// Whether a light pass lowers the time to an error, as `cargo bench --bench rooms` measures it.
+    /// Whether a light pass lowers the time to an error, as measured by `cargo bench --bench rooms`.
     pub asks: bool,
-    /// What the plan says.
+    /// Words that the plan must state.
     pub words: &'static str,
 }
 
@@ -39,7 +39,7 @@ fn bulb(radius: f64) -> String {
     object("bulb", "lamp", &format!("sphere = {{ center = [-1, 3.5, 0], radius = {radius:?} }}"))
 }
 
-/// All rooms, those that gain by a light pass first.
+/// Returns all rooms, starting with those that gain from a light pass.
 pub fn rooms() -> Vec<Room> {
     let ball = || object("ball", "glass", BALL);
     let on = |material: &str, things: &[&str]| floor(material) + &things.concat();
@@ -64,7 +64,7 @@ pub fn rooms() -> Vec<Room> {
     );
     let block = object("block", "silver", "cube = { center = [-0.5, 0.5, 0], size = [0.6, 1, 0.6] }");
     room("a block of polished silver in the sun", on("white", &[&block, SUN, SKY]), true, "photons from the sun");
-    // Light goes straight through a pane, and is aimed at; what it mirrors goes up.
+    // Light passes straight through a pane, so next-event estimation finds it. What the pane reflects goes up.
     let pane = object("pane", "pane", "quad = { center = [0, 1, 0], u = [0.8, 0, 0], v = [0, 0, 0.8] }");
     room("a pane of window glass in the sun", on("white", &[&pane, SUN, SKY]), false, "no caustic of the sun");
     let glass = object("glass", "glass", "cube = { center = [0, 0.6, 0], size = [0.8, 1, 0.8] }")

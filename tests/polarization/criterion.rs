@@ -1,4 +1,4 @@
-//! Whether the plan leaves polarization out only where that may be.
+//! The plan leaves polarization out only where that is allowed.
 
 use std::fmt::Write;
 
@@ -10,7 +10,8 @@ use abbe::trace::{Method, Polarizing, Transport, most_changed, polarization_erro
 use crate::support::random::Random;
 use crate::support::scenes::{film_of, scene};
 
-/// What the plan tolerates of it: a third of one percent of each error that a scene may have, see `plan`.
+/// Error that the plan tolerates without polarization: a third of the error that a scene may have by default, see
+/// `plan`.
 const TOLERATED: f64 = 0.01;
 const SCENES: u64 = 80;
 
@@ -18,7 +19,8 @@ fn vector(random: &mut Random, from: f64, to: f64) -> [f64; 3] {
     [0, 1, 2].map(|_| random.between(from, to))
 }
 
-/// Panes, mirrors, prisms, glass balls, metals and rough glass before lamps and a gray sky.
+/// Returns a random scene of panes, mirrors, prisms, glass balls, metals and rough glass in front of lamps and a gray
+/// sky.
 fn random_scene(number: u64) -> String {
     let mut random = Random::new(number + 31_000);
     let mut text = String::from(
@@ -72,8 +74,8 @@ fn random_scene(number: u64) -> String {
     text
 }
 
-/// The relative RMS error of averaging: of every pixel where nothing is random, else by 8 times as many samples as the
-/// plan looks at. Answers whether it is the former.
+/// Returns the relative RMS error of averaging polarization. It is that of every pixel if nothing is random, and
+/// otherwise taken from 8 times as many samples as the plan looks at. The second result is true in the first case.
 fn error_of_averaging(scene: &Scene<Curve>, method: &Method) -> (f64, bool) {
     if let Transport::Random { .. } = method.transport {
         let squares = (1..=8).map(|seed| {
@@ -91,8 +93,8 @@ fn error_of_averaging(scene: &Scene<Curve>, method: &Method) -> (f64, bool) {
     ((off / traced.iter().map(|x| square(*x)).sum::<f64>()).sqrt(), true)
 }
 
-/// Of many random scenes the error is below what is tolerated in at least 95 of 100 in which the plan stayed off, and
-/// exactly 0 where no light met two surfaces that polarize.
+/// In at least 95 of 100 random scenes in which the plan leaves polarization off, the error is within the tolerance. It
+/// is exactly 0 if no light hits two surfaces that polarize.
 #[test]
 fn polarization_stays_off_only_where_that_changes_little() {
     let (mut off, mut kept, mut on, mut needless) = (0, 0, 0, 0);

@@ -1,4 +1,4 @@
-//! The layer `polarization`: degrees and an angle, made of the sums of Stokes vectors.
+//! The layer `polarization`: degrees and an angle, computed from the sums of Stokes vectors.
 
 use abbe::Image;
 use abbe::math::DVec3;
@@ -6,7 +6,7 @@ use abbe::math::DVec3;
 use super::{BLACK_GLASS, ROUNDING, SKY, mirrors, polarizer, retarder, sheets};
 use crate::support::scenes::{one_pixel, rendered};
 
-/// Degree, linear degree and angle of one pixel.
+/// Renders one pixel. Returns its degree, linear degree and angle.
 fn degrees(rest: &str) -> [f64; 3] {
     let image = rendered(&(one_pixel("", ", layers = [\"polarization\"]") + rest));
     let one = |channel: &str| f64::from(image.layer(&format!("polarization.{channel}")).expect("it is there")[0]);
@@ -15,11 +15,11 @@ fn degrees(rest: &str) -> [f64; 3] {
 
 fn assert_near(found: [f64; 3], expected: [f64; 3], what: &str) {
     let near = |i: usize, within: f64| (found[i] - expected[i]).abs() <= within;
-    // An angle of f32 components in degrees.
+    // The angle is in degrees, computed from f32 components.
     assert!(near(0, ROUNDING) && near(1, ROUNDING) && near(2, 1e-4), "{what}: {found:?} for {expected:?}");
 }
 
-/// s lies across the plane of incidence, which is turned about the view.
+/// s is perpendicular to the plane of incidence, which is turned about the view direction.
 #[test]
 fn black_glass_polarizes_across_its_plane_of_incidence() {
     for (incidence, degree) in [(30.0_f64, 0.391918), (45.0, 0.831479), (56.309932474, 1.0), (75.0, 0.578105)] {
@@ -47,7 +47,7 @@ fn sheets_have_their_degrees_and_angles() {
     assert!((degree - 1.0).abs() <= ROUNDING && linear <= ROUNDING, "circular light: {degree}, {linear}");
 }
 
-/// Shadow catchers show no light, and so none that is polarized: what they would show is polarized by their coat.
+/// Shadow catchers show no light, and so no polarized light. Without the catcher, their coat polarizes what they show.
 #[test]
 fn shadow_catchers_leave_no_stokes_vectors() {
     let coated = |keys: &str| {
@@ -69,7 +69,7 @@ fn shadow_catchers_leave_no_stokes_vectors() {
     }
 }
 
-/// The same of photons, which are shown on them.
+/// Photons that are splatted on shadow catchers leave no Stokes vectors either.
 #[test]
 fn photons_leave_no_stokes_vectors_on_shadow_catchers() {
     let text = r#"

@@ -1,11 +1,11 @@
-//! Light that a shading normal folds at the surface keeps a polarization of its own.
+//! Light that a shading normal folds at the surface keeps its own polarization.
 
 use abbe::math::DVec3;
 
 use super::stokes;
 use crate::support::scenes::assert_near;
 
-/// A surface of a material, and a sun of irradiance 1.
+/// Returns a surface of some material and a sun of irradiance 1.
 fn sunlit(material: &str, shape: &str, toward: DVec3) -> String {
     let DVec3 { x, y, z } = toward;
     format!(
@@ -14,8 +14,8 @@ fn sunlit(material: &str, shape: &str, toward: DVec3) -> String {
     )
 }
 
-/// A level triangle scatters by its tilted normal what a tilted surface does, from a low sun and from its mirror image
-/// in the level. Normals of a mesh are f32.
+/// A level triangle with a tilted shading normal scatters the light of a low sun and of its mirror image in the level
+/// like a tilted surface. Mesh normals are f32.
 #[test]
 fn both_lights_of_a_bent_surface_are_polarized_as_they_arrive() {
     let tilt = DVec3::new(0.4_f64.sin() * 0.8, 0.4_f64.sin() * 0.6, 0.4_f64.cos());

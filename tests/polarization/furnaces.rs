@@ -1,27 +1,28 @@
-//! Light from all around that is scattered without loss: as much of it as came, and as little polarized.
+//! Light from all around that is scattered without loss: its amount is preserved, and it stays unpolarized.
 
 use abbe::plan::plan;
 
 use super::{SKY, in_green, sheets};
 use crate::support::scenes::{films_of, moments, one_pixel, scene, standard_errors};
 
-/// What is seen of a surface that is turned from the viewer, in an even sky: S0 to S3, each its mean and variance, of
-/// renders by other seeds.
+/// Returns what is seen of a surface that is turned from the viewer under a uniform sky: S0 to S3, each as mean and
+/// variance over renders with different seeds.
 fn in_an_even_sky(material: &str, turned: f64) -> [(f64, f64); 4] {
     of_objects(&sheets(&[material.to_owned()], turned))
 }
 
-/// What is seen straight on of any objects and the sky: S0 to S3, each its mean and variance, of renders by other
-/// seeds.
+/// Returns what is seen of any objects in front of the sky: S0 to S3, each as mean and variance over renders with
+/// different seeds.
 fn of_objects(objects: &str) -> [(f64, f64); 4] {
     let mut scene = scene(&(one_pixel("", ", stokes = true") + objects));
     scene.render.samples = Some(SAMPLES);
-    // A plan takes longer than a pixel.
+    // Planning takes longer than rendering a pixel.
     let films = films_of(&scene, &plan(&scene).method, 0..SEEDS);
     std::array::from_fn(|part| moments(films.iter().map(|film| in_green(film)[part])))
 }
 
-/// Each wavelength leaves rough glass another way, and by its own density: as clear as in lanes that stay together.
+/// Each wavelength leaves rough glass in another direction, with its own pdf. The glass is as clear as with lanes that
+/// stay together.
 #[test]
 fn rough_glass_that_parts_wavelengths_leaves_even_light_unpolarized() {
     for (index, model) in [("{ rgb = [1.5, 1.6, 1.7] }", "rgb"), ("\"N-SF66\"", "hero")] {
@@ -50,17 +51,19 @@ fn rough_glass_that_parts_wavelengths_leaves_even_light_unpolarized() {
 const SAMPLES: u32 = 1024;
 const SEEDS: u64 = 16;
 
-/// Tables of facets are off by up to this much.
+/// Maximum error from the tables of facets.
 const TABLES: f64 = 3e-4;
 
-/// What a rough coat mirrors is polarized one way, and what leaves the base through it the other way by as much.
+/// A rough coat polarizes what it reflects one way, and what leaves the base through it the other way by the same
+/// amount.
 #[test]
 fn white_plastic_in_light_from_all_around_leaves_it_unpolarized() {
     for roughness in [0.0, 0.02, 0.2, 0.6, 1.0] {
         for turned in [30.0, 60.0, 80.0, 88.0] {
             let plastic = format!("plastic = {{ reflectance = 1, roughness = {roughness} }}");
             let found = in_an_even_sky(&plastic, turned);
-            // The 16 means of each have the tails of Student's t, 1.4 times those of the normal one so far out.
+            // Means of 16 have the tails of Student's t. So far out they are 1.4 times as wide as those of the normal
+            // distribution.
             let limit = 1.4 * standard_errors(5 * 4 * 4);
             for (part, (mean, variance)) in found.into_iter().enumerate() {
                 let expected = if part == 0 { 1.0 } else { 0.0 };
@@ -72,7 +75,7 @@ fn white_plastic_in_light_from_all_around_leaves_it_unpolarized() {
     }
 }
 
-/// A rough coat has no part in what a mirror beside it sends one way.
+/// A rough coat contributes nothing to the specular direction of a mirror that it is mixed with.
 #[test]
 fn a_mirror_mixed_with_rough_white_plastic_leaves_even_light_unpolarized() {
     for materials in [["bare", "coated"], ["coated", "bare"]] {

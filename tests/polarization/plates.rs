@@ -1,4 +1,5 @@
-//! Wave plates whose retardation is a length, between polarizers: sin^2 of half their phase at each wavelength.
+//! Wave plates whose retardation is given as a length, between polarizers: sin^2 of half their phase at each
+//! wavelength.
 
 use std::f64::consts::PI;
 
@@ -9,7 +10,7 @@ use abbe::trace::{Method, Polarizing, prepare, render};
 use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, film_of, method, one_pixel, scene};
 
-/// A sky seen straight through a polarizer along x, a plate at 45 degrees and one more polarizer.
+/// Returns a sky seen straight through a polarizer along x, a plate at 45 degrees and a second polarizer.
 fn between(plate: &str, second: [f64; 3], sky: &str) -> String {
     let mut text = one_pixel("", "") + &format!("[[light]]\nenvironment.radiance = {sky}\n");
     let sheets = [
@@ -29,7 +30,7 @@ fn between(plate: &str, second: [f64; 3], sky: &str) -> String {
 const CROSSED: [f64; 3] = [0.0, 1.0, 0.0];
 const PARALLEL: [f64; 3] = [1.0, 0.0, 0.0];
 
-/// What of an even sky is left in three lanes of a basis.
+/// Returns what is left of a uniform sky in three lanes of a basis.
 fn lanes(text: &str, basis: &Basis, three: [usize; 3]) -> [f64; 3] {
     let scene = scene(text);
     let columns: Vec<[f64; 3]> =
@@ -39,12 +40,12 @@ fn lanes(text: &str, basis: &Basis, three: [usize; 3]) -> [f64; 3] {
     render(&world, &|_| ()).0.pixels[0].rgb.map(f64::from)
 }
 
-/// Of unpolarized light.
+/// Returns the transmittance of a plate between crossed polarizers for unpolarized light.
 fn crossed(nm: f64, retardation: f64) -> f64 {
     0.5 * (PI * retardation / nm).sin().powi(2)
 }
 
-/// Lanes of lines stand for single wavelengths, at which fringes of any order are seen.
+/// Lanes of lines stand for single wavelengths, at which fringes of any order are visible.
 #[test]
 fn crossed_polarizers_let_through_sin_squared_of_half_the_phase() {
     let nm = [436.0, 546.0, 612.0];
@@ -75,7 +76,8 @@ fn a_retardation_is_a_retardance_at_its_wavelength() {
     assert_eq!([by_phase[0], by_phase[2]], [by_phase[1]; 2]);
 }
 
-/// Lanes of bands read the phase at their node, and of so many orders that they differ within a band its mean.
+/// Lanes of bands evaluate the phase at their node. At orders so high that the phase varies within a band, they take
+/// its mean.
 #[test]
 fn bands_of_many_orders_are_left_unpolarized() {
     let basis = Basis::bands(ColorSpace::Rec709, 16, &[]);
@@ -93,14 +95,15 @@ fn bands_of_many_orders_are_left_unpolarized() {
             );
         }
     }
-    // Neighbors are 17 to 28 nm apart: the mean over a band of half a phase of x is below 1 / x.
+    // Neighbors are 17 to 28 nm apart. If half the phase changes by x across a band, the mean cosine of the phase is
+    // below 1 / x.
     for (retardation, most) in [(30_000.0, 0.25 / 4.0), (1e6, 0.25 / 100.0)] {
         let found = lanes(&between(&format!("retardation_nm = {retardation:?}"), CROSSED, "1"), &basis, three);
         assert!(found.iter().all(|share| (share - 0.25).abs() < most), "{retardation} nm: {found:?}");
     }
 }
 
-/// The colors of Michel-Levy's chart under D65, against sums over 1 nm.
+/// The colors of the Michel-Levy chart under D65, compared with sums over 1 nm.
 #[test]
 fn plates_between_polarizers_have_their_colors_in_the_lanes_that_the_plan_chooses() {
     for retardation in [150.0, 560.0, 1100.0, 3000.0] {

@@ -2,10 +2,10 @@
 
 use super::{BALL, FILM, VIEW, around, mistakes, page, with};
 
-/// A scene with a number in it.
+/// Writes a scene that contains a number.
 type Asking = fn(&str) -> String;
 
-/// The beginning of each row of the first table, and a scene with a number there.
+/// The beginning of each row of the first table, and a scene that contains a number there.
 const NUMBERS: [(&str, Asking); 35] = [
     ("`film.width`", |x| around(&fov("30"), &format!("width = {x}, height = 1"), "", "")),
     ("`filter`: the `radius`", |x| film(&format!("filter = {{ tent = {{ radius = {x} }} }}"))),
@@ -48,7 +48,7 @@ const NUMBERS: [(&str, Asking); 35] = [
     }),
 ];
 
-/// The beginning of each row of the second table, the file in which the code has its number, and its name there.
+/// The beginning of each row of the second table, the file in which the code defines the number, and its name there.
 const COUNTS: [(&str, &str, &str); 17] = [
     ("pixels of the film", "src/film/guard.rs", "MOST_PIXELS"),
     ("bytes of the layers", "src/rendering/options.rs", "MOST_OF_LAYERS"),
@@ -69,7 +69,7 @@ const COUNTS: [(&str, &str, &str); 17] = [
     ("threads", "src/rendering/options.rs", "MOST_THREADS"),
 ];
 
-/// Rows that stand in the tables, and whose scene would need a file.
+/// Rows of the tables whose scenes would need a file.
 const OF_FILES: [&str; 1] = ["`strength` of a normal map"];
 
 fn fov(degrees: &str) -> String {
@@ -100,13 +100,13 @@ fn light(light: &str) -> String {
     with(&format!("[[light]]\n{light}\n"))
 }
 
-/// The cells of the rows of a table with such a head.
+/// Returns the cells of the rows of a table with the given head.
 fn table<'p>(page: &'p str, head: &str) -> Vec<Vec<&'p str>> {
     let rows = page.lines().skip_while(|line| !line.starts_with(head)).skip(2).take_while(|line| line.starts_with('|'));
     rows.map(|row| row.trim_matches(['|', ' ']).split(" | ").collect()).collect()
 }
 
-/// A number a little beyond one, as it stands in a scene; none beyond what has no end.
+/// Returns a number a little beyond another, as written in a scene, or none if that one is infinite.
 fn beyond(number: &str, up: bool) -> Option<String> {
     if let Some(number) = ["above ", "below "].into_iter().find_map(|word| number.strip_prefix(word)) {
         return Some(number.to_owned());
@@ -154,7 +154,7 @@ fn there_may_be_as_many_as_the_code_says() {
     }
 }
 
-/// What a whole number of the code is, such as `1 << 12;`.
+/// Evaluates a whole number of the code, such as `1 << 12;`.
 fn number(text: &str) -> u64 {
     let text = text.trim_end_matches(';').replace('_', "");
     let parts: Vec<u64> = text.split(" << ").map(|part| part.parse().expect("a number")).collect();

@@ -1,4 +1,4 @@
-//! Bodies of rough glass in an even environment cannot be told from it.
+//! Bodies of rough glass are invisible in a uniform environment.
 
 use abbe::film::Film;
 use abbe::spectrum::Basis;
@@ -12,7 +12,7 @@ const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 const SKY: &str = "[[light]]\nenvironment = { radiance = 0.1 }\n";
 const WATER: &str = "dielectric = { index = 1.333, priority = -1 }";
 
-/// Bodies, and what they show within a view that sees nothing else.
+/// Returns bodies for a view that sees nothing else, each with its name and its number of samples.
 fn scenes() -> Vec<(String, String, u32)> {
     let glass = |index: &str, roughness: f64| format!("dielectric = {{ index = {index}, roughness = {roughness:?} }}");
     let mut scenes = Vec::new();
@@ -45,8 +45,8 @@ fn rough_glass_is_invisible_in_an_even_environment() {
             assert_eq!((report.non_finite, report.unmatched), (0, 0), "{name}");
             let mean = Mean::of(&film);
             println!("{name}: {:.5?} +- {:.1e}", mean.value, mean.worst_error([1.0; 3]));
-            // At each of a few surfaces 3e-4 is lost or won by the tables: see `sides`. Whole surfaces or lanes are
-            // judged here.
+            // The tables lose or gain 3e-4 at each of a few surfaces: see `sides`. This test judges whole surfaces or
+            // lanes.
             for band in 0..3 {
                 let off = (mean.value[band] - 1.0).abs();
                 assert!(off <= 1e-3 + 3.5 * mean.error[band], "{name}: {mean:?}");
@@ -58,7 +58,7 @@ fn rough_glass_is_invisible_in_an_even_environment() {
 
 #[test]
 fn lanes_that_part_or_stay_together_at_rough_glass_lose_nothing() {
-    // N-SF11 parts at low roughness, and stays together at high roughness; heroes count where it parts.
+    // The lanes of N-SF11 part at low roughness and stay together at high roughness. Heroes count where they part.
     for roughness in [0.03, 0.3, 0.8] {
         let glass = format!("dielectric = {{ index = \"N-SF11\", roughness = {roughness:?} }}");
         let text = view([1.3, 0.9, 4.1], [0.05, 0.02, 0.1], 14.0, 16)
@@ -95,7 +95,7 @@ fn between_equal_indices_rough_glass_is_not_there() {
     let pool = body("water", WATER, &["cube = { center = [0, 0, 0], size = 2.4 }"]);
     let ball = body("ball", "dielectric = { index = 1.333, roughness = 0.6 }", &[BALL]);
     let [with, without] = [pool.clone() + &ball, pool].map(|bodies| image(&text(&bodies), EVERY_BRANCH).0);
-    // No ray turns, and none is lost: only the order of roundings may differ.
+    // No ray is deflected and none is lost. Only the order of roundings may differ.
     for (with, without) in with.pixels.iter().zip(&without.pixels) {
         for (a, b) in with.rgb.into_iter().zip(without.rgb) {
             assert!((a - b).abs() < 32.0 * f32::EPSILON * b, "{a} for {b}");
@@ -103,8 +103,8 @@ fn between_equal_indices_rough_glass_is_not_there() {
     }
 }
 
-/// Light leaves a body of n = 9.9 after some 170 surfaces on average. None may gain or lose on the way, and the spread
-/// of the pixels is the noise: no few of them carry it.
+/// Light leaves a body of n = 9.9 after some 170 surfaces on average. None of them may gain or lose light. The spread
+/// of the pixels has to reflect the noise, so more than a few of them must carry it.
 #[test]
 fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_inside() {
     let mut cases = Vec::new();
@@ -126,16 +126,16 @@ fn very_dense_rough_glass_neither_gains_nor_loses_seen_from_outside_and_from_ins
         let (value, error) = (mean.value[1] / expected, mean.error[1] / expected);
         let (z, carried, lost) = ((value - 1.0) / error, carried_by(&film), report.stopped);
         println!("{what}: {value:.5} +- {error:.1e}, z {z:.2}, by {carried:.0} pixels, {lost} stopped");
-        // A few hundred factors in 32 bits.
+        // The rounding of a few hundred factors in 32 bits.
         let limit = standard_errors(cases.len()) * error + 256.0 * f64::from(f32::EPSILON);
         assert!((value - 1.0).abs() <= limit && error < 0.05, "{what}: {mean:?}");
         assert!(error < 1e-5 || carried >= 4.0, "{what}: {carried} pixels carry the noise");
     }
 }
 
-/// How many pixels carry the noise, (sum d^2)^2 / sum d^4 for their deviations d: a third of them if it is normal, and
-/// few where a tail is so long that the spread of the pixels does not tell their error: with fewer than four, that is
-/// off by half.
+/// Returns how many pixels carry the noise: (sum d^2)^2 / sum d^4 for their deviations d. That is a third of them if
+/// the noise is normal. It is a few of them if a tail is so long that the spread of the pixels does not reflect their
+/// error. With fewer than four, the spread is off by half.
 fn carried_by(film: &Film) -> f64 {
     let green = || film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1]));
     let mean = green().sum::<f64>() / film.pixels.len() as f64;

@@ -1,4 +1,4 @@
-//! Lamps behind and inside rough glass: aiming at them and meeting them agree, in every transport.
+//! Lamps behind and inside rough glass: next-event estimation and random hits agree, with every transport.
 
 use abbe::plan::plan;
 use abbe::spectrum::{Basis, Emission};
@@ -49,7 +49,7 @@ fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
         let scene = scene(&text);
         let emission = Emission::new(scene.lights[0].emission(), scene.film.color_space);
         let bands = Basis::bands(scene.film.color_space, 12, &[]);
-        // Fixed wavelengths alone all count wherever they go.
+        // Without heroes, all fixed wavelengths count wherever they go.
         let shown = [bands.clone(), bands.with_heroes(4, &[emission])].map(|basis| {
             let method = Method { basis, ..method(&scene, SPLITTING) };
             Mean::over_seeds(&films_of(&scene, &method, 0..4))
@@ -57,7 +57,7 @@ fn fixed_lanes_and_heroes_show_the_same_lamp_behind_dispersive_rough_glass() {
         let [fixed, heroes] = shown;
         println!("roughness {roughness}: {heroes:.4?} for {fixed:.4?}");
         let mut heroes = heroes.beside(&fixed);
-        // Twelve wavelengths miss the color by less than 1 %.
+        // The color of twelve wavelengths is off by less than 1 %.
         (0..3).for_each(|band| heroes.error[band] += 0.003 * fixed.value[band]);
         heroes.assert_near(fixed.value, 2, &format!("roughness {roughness}"));
     }

@@ -1,4 +1,4 @@
-//! The boundary of two media: furnaces of its BSDF, its directions against their density, and light that goes back.
+//! The boundary of two media: furnaces of its BSDF, directions compared with their pdf, and reciprocity.
 
 use std::f64::consts::TAU;
 
@@ -12,12 +12,12 @@ use crate::support::random::Random;
 
 const ROUGHNESSES: [f64; 4] = [0.02, 0.3, 0.8, 1.0];
 const COSINES: [f64; 5] = [1e-6, 0.001, 0.05, 0.3, 1.0];
-/// From outside and from inside, next to each other and far apart; `tests/white_furnace.rs` has others.
+/// Indices from outside and from inside, close to each other and far apart. `tests/white_furnace.rs` has others.
 const INDICES: [f64; 3] = [1.001, 1.05, 2.2];
-/// With 2^14, the furnaces of nearly equal indices seen along the surface are off by 1 %.
+/// With 2^14 draws, furnaces of nearly equal indices at grazing angles are off by 1 %.
 const DRAWS: u32 = 1 << 17;
 
-/// The light that comes back and the light that crosses, of an even environment: radiance over n^2 is 1 everywhere.
+/// Returns the reflected and the transmitted light in a uniform environment, where radiance over n^2 is 1 everywhere.
 fn furnace(sides: &FacetSides, [n1, n2]: [f64; 2], cos: f64) -> [f64; 2] {
     let (wo, mut sum) = (at(cos, 0.3), [0.0; 2]);
     for u in points(DRAWS) {
@@ -62,8 +62,8 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
                             kept += flow.value / flow.pdf * square / f64::from(1 << 14);
                         }
                     }
-                    // Facets reflect all light below a cosine of sqrt(2 step / n), and turn it more than that a little
-                    // above.
+                    // Facets reflect all light below a cosine of sqrt(2 step / n), and deflect it by more than that a
+                    // little above.
                     let what = format!("roughness {roughness}, {indices:?}, cos {cos}");
                     println!("{what}: {kept:.5} goes nearly straight on");
                     assert!(kept > 1.0 - step.sqrt(), "{what}: only {kept} goes nearly straight on");
@@ -76,7 +76,7 @@ fn the_closer_two_indices_the_less_a_rough_boundary_turns_any_light() {
 #[test]
 fn what_facets_refract_once_is_what_mitsuba_refracts() {
     // The indices, alpha, the viewer's cosine at the azimuth 0.3, the direction below the surface, and the BSDF times
-    // cosine that `roughdielectric` of Mitsuba 3.9.1 has there: GGX with masking on each side by itself, in f32.
+    // cosine that `roughdielectric` of Mitsuba 3.9.1 has there: GGX with separate masking on each side, in f32.
     let rows = [
         ([1.0, 1.5], 0.1, 0.8, [-0.351531973, -0.118821055], 28.6894),
         ([1.0, 1.5], 0.1, 0.2, [-0.559467540, -0.208458706], 1.57772),
@@ -111,9 +111,10 @@ fn light_goes_the_same_way_back_through_and_off_a_rough_boundary() {
                 let [a, b] = [0; 2].map(|_| random.direction()).map(|w| DVec3 { z: w.z.abs(), ..w });
                 let [x, y] = [(a, b), (b, a)].map(|(wo, wi)| there.reflected(wo, wi, None).value / wi.z);
                 assert!((x - y).abs() <= 1e-10 * x.max(y), "{roughness}: {a} {b}: {x} and {y}");
-                // Beyond the surface the axis points down: both ways are seen from above, turned about x.
+                // On the other side, the axis points down. Both directions are seen from above there, turned about x.
                 let turn = |w: DVec3| DVec3::new(w.x, -w.y, -w.z);
-                // Veach 1997, section 5.2: f / n^2 of the side that light goes to is the same both ways.
+                // Veach 1997, section 5.2: f / n^2, with n of the side that light goes to, is the same in both
+                // directions.
                 let x = there.crossed(a, -b, None).value / b.z / (n1 * n1);
                 let y = back.crossed(turn(-b), turn(a), None).value / a.z / (n2 * n2);
                 assert!((x - y).abs() <= 1e-9 * x.max(y) + 1e-300, "{roughness}, {n1} {n2}: {a} {b}: {x} and {y}");
@@ -122,11 +123,11 @@ fn light_goes_the_same_way_back_through_and_off_a_rough_boundary() {
     }
 }
 
-/// Cells by height and by azimuth, and places along each side of one.
+/// Number of cells by height and by azimuth, and of points along each side of a cell.
 const CELLS: usize = 12;
 const FINER: usize = 64;
 
-/// Where a direction lies on its half sphere: all cells are as large.
+/// Returns the cell of a direction on its hemisphere. All cells have the same solid angle.
 fn cell(wi: DVec3) -> usize {
     let (up, around) = (wi.z.abs(), libm::atan2(wi.y, wi.x) / TAU + 0.5);
     let place = |x: f64| ((x * CELLS as f64) as usize).min(CELLS - 1);
@@ -136,7 +137,7 @@ fn cell(wi: DVec3) -> usize {
 #[test]
 fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
     const COUNT: u64 = 200_000;
-    // Each roughness with each cosine, and each of them with all indices.
+    // Each roughness occurs with each cosine, and each of these values with all indices.
     let cases = [
         ([1.0, 1.5], [(0.4, 0.95), (0.7, 0.5), (1.0, 0.1)]),
         ([1.5, 1.0], [(0.4, 0.5), (0.7, 0.1), (1.0, 0.95)]),
@@ -175,7 +176,8 @@ fn directions_on_both_sides_follow_their_density_and_the_rest_leads_nowhere() {
                 (inside - drawn).abs() < 1e-3 + 4.0 * (0.25 / COUNT as f64).sqrt(),
                 "{what}: {inside}, drawn {drawn}"
             );
-            // What leads nowhere is judged above: at the edge of what facets can send, the sums are good to 5e-4.
+            // Draws that lead nowhere are judged above. At the edge of the directions that facets reach, the sums are
+            // accurate to 5e-4.
             cells.iter_mut().for_each(|cell| *cell /= inside);
             let name = format!("{what}, side {side}");
             chi_squared::check(&name, &counts[..CELLS * CELLS], &cells, 2 * cases.len() as u32);

@@ -1,4 +1,4 @@
-//! The weights with which paths leave a rough boundary: they hardly vary, and their ways follow the BSDF.
+//! The weights of paths at a rough boundary hardly vary, and the directions of the paths follow the BSDF.
 
 use std::f64::consts::TAU;
 
@@ -13,14 +13,14 @@ const ROUGHNESSES: [f64; 5] = [0.02, 0.3, 0.77, 0.99, 1.0];
 const INDICES: [f64; 6] = [1.001, 1.1, 1.5, 2.4, 4.0, 9.9];
 const COSINES: [f64; 7] = [1e-12, 1e-3, 0.05, 0.3, 0.6, 0.9, 1.0];
 
-/// All of these, seen from a direction.
+/// Calls `check` with all of these, seen from a direction.
 fn each(check: impl Fn(&FacetSides, [f64; 2], DVec3, &str)) {
     super::each(&ROUGHNESSES, &INDICES, &COSINES, |sides, indices, cos, what| {
         check(sides, indices, at(cos, 0.7), what)
     });
 }
 
-/// What is evaluated over the density, radiance over n^2, on both sides of one draw.
+/// Returns the weights of both sides of a draw: the BSDF value over its pdf, as radiance over n^2.
 fn weights(sides: &FacetSides, [n1, n2]: [f64; 2], wo: DVec3, ways: [Option<FacetSample>; 2]) -> [f64; 2] {
     let over = |flow: BsdfValue| flow.value / flow.pdf;
     let [above, beyond] = ways;
@@ -30,7 +30,7 @@ fn weights(sides: &FacetSides, [n1, n2]: [f64; 2], wo: DVec3, ways: [Option<Face
     ]
 }
 
-/// The product of the weights of some 1.7 n^2 surfaces has a tail unless they hardly vary inside of dense glass.
+/// The product of the weights of some 1.7 n^2 surfaces has a long tail unless they hardly vary inside dense glass.
 #[test]
 fn no_draw_is_lost_no_way_weighs_more_than_1_and_dense_glass_sends_on_what_it_gets() {
     each(|sides, indices @ [n1, n2], wo, what| {
@@ -39,7 +39,7 @@ fn no_draw_is_lost_no_way_weighs_more_than_1_and_dense_glass_sends_on_what_it_ge
         for _ in 0..COUNT {
             let weights = weights(sides, indices, wo, sides.draw(wo, random.pair()));
             let all = weights[0] + weights[1];
-            // The lobe is drawn by a table of its own, that is linear between its places.
+            // The lobe is drawn from a table of its own, which is linear between its entries.
             assert!(weights.iter().all(|weight| (0.0..1.1).contains(weight)) && all > 0.0, "{what}: {weights:?}");
             sum += all;
             squares += (all - 1.0) * (all - 1.0);
@@ -48,14 +48,14 @@ fn no_draw_is_lost_no_way_weighs_more_than_1_and_dense_glass_sends_on_what_it_ge
         let error = spread / f64::from(COUNT).sqrt();
         println!("{what}: {mean:.5} +- {error:.1e}, spread {spread:.4}");
         assert!((mean - 1.0).abs() < 2e-3 + 5.0 * error, "{what}: {mean} +- {error}");
-        // A body of index n holds light for some 1.7 n^2 surfaces: the product's spread is below 1.
+        // A body of index n holds light for some 1.7 n^2 surfaces: the spread of the product is below 1.
         if n1 > 2.0 {
             assert!(1.7 * (n1 / n2) * (n1 / n2) * spread * spread < 1.0, "{what}: spread {spread}");
         }
     });
 }
 
-/// Cells by height and by azimuth on each side, and places along each side of one.
+/// Number of cells by height and by azimuth on each side, and of points along each side of a cell.
 const CELLS: usize = 12;
 const FINER: usize = 64;
 
@@ -66,7 +66,7 @@ fn cell(wi: DVec3) -> usize {
     side + place(up) * CELLS + place(around)
 }
 
-/// The light of every cell, by quadrature of the BSDF times cosine; radiance over n^2.
+/// Returns the light of every cell as radiance over n^2, by quadrature of the BSDF times the cosine.
 fn light(sides: &FacetSides, [n1, n2]: [f64; 2], wo: DVec3) -> Vec<f64> {
     let (mut cells, finer) = (vec![0.0; 2 * CELLS * CELLS], CELLS * FINER);
     for (i, j) in (0..finer).flat_map(|i| (0..finer).map(move |j| (i, j))) {
@@ -104,7 +104,7 @@ fn ways_that_are_kept_by_their_weights_follow_the_bsdf_on_both_sides() {
         let mut random = Random::new((roughness * 1000.0 + cos * 1e6 + indices[0] * 1e7) as u64);
         let mut counts = vec![0; 2 * CELLS * CELLS];
         for _ in 0..COUNT {
-            // Directions are kept as often as their weight says.
+            // Each direction is kept with a probability equal to its weight.
             let ways = sides.draw(wo, random.pair());
             for (way, weight) in ways.into_iter().zip(weights(&sides, indices, wo, ways)) {
                 if let Some(way) = way.filter(|_| random.number() < weight) {

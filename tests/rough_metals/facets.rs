@@ -1,4 +1,4 @@
-//! Facets and the directions they send light in.
+//! Facets and the directions in which they reflect light.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,8 +11,9 @@ use crate::support::exact::Exact;
 use crate::support::larger::larger;
 use crate::support::random::Random;
 
-/// Where directions of light lie on a grid: by the facet that mirrors them, its slope s and azimuth, with
-/// tan^2 = alpha^2 q / (1 - q) and 1 - q = (1 - s)^4. Densities over the unit square are bounded at every roughness.
+/// A grid of light directions. A direction is located by the facet that mirrors it, with the facet's slope s and
+/// azimuth, where tan^2 = alpha^2 q / (1 - q) and 1 - q = (1 - s)^4. Densities over the unit square are bounded at
+/// every roughness.
 struct Grid {
     wo: DVec3,
     alpha: f64,
@@ -32,7 +33,8 @@ impl Grid {
         place(s) * CELLS + place(around)
     }
 
-    /// The direction at a place of the unit square, and steradians per unit of area there; none below the surface.
+    /// Returns the direction at a point of the unit square and the steradians per unit of area there, or none if the
+    /// direction is below the surface.
     fn direction(&self, s: f64, around: f64) -> Option<(DVec3, f64)> {
         let left = libm::pow(1.0 - s, 4.0);
         let tan = self.alpha * ((1.0 - left) / left).sqrt();
@@ -45,16 +47,16 @@ impl Grid {
         (toward > 0.0 && wi.z > 0.0).then(|| (wi.normalize(), 4.0 * toward * facets))
     }
 
-    /// The share of directions in every cell by their density.
+    /// Returns the probability of every cell, from the pdf.
     fn probabilities(&self, surface: &RoughSurface) -> Vec<f64> {
         let mut cells = vec![0.0; CELLS * CELLS];
         for row in 0..CELLS {
-            // The last row holds nearly all light that is reflected more than once, with a sharp edge at the horizon;
-            // of the first one only a corner is seen from near the horizon.
+            // The last row holds nearly all light that is reflected more than once, with a sharp edge at the horizon.
+            // Only a corner of the first row is visible from near the horizon.
             let up = if row == 0 || row == CELLS - 1 { 40 * FINER } else { FINER };
             for (i, j) in (0..up).flat_map(|i| (0..CELLS * FINER).map(move |j| (i, j))) {
                 let s = (row as f64 + (i as f64 + 0.5) / up as f64) / CELLS as f64;
-                // Rows are shifted against each other, so that edges are met everywhere.
+                // Rows are shifted relative to each other, so that edges are sampled everywhere.
                 let around = (j as f64 + (i as f64 * 0.618_033_988_75).fract()) / (CELLS * FINER) as f64;
                 if let Some((wi, steradians)) = self.direction(s, around) {
                     let pdf = surface.evaluate(self.wo, wi).map_or(0.0, |reflection| reflection.pdf);
@@ -99,7 +101,7 @@ fn directions_follow_their_density_and_the_rest_lies_below_the_surface() {
 #[test]
 fn g4_the_density_of_nearly_even_facets_keeps_its_digits() {
     let exact = |alpha: f64, h: DVec3| {
-        // Walter et al. 2007, equation 33, in cosines alone, of the very vector that is given.
+        // Walter et al. 2007, equation 33, in cosines alone, of exactly the given vector.
         let [one, a2] = [Exact::from(1.0), Exact::from(alpha) * Exact::from(alpha)];
         let squares = [h.x, h.y, h.z].map(|x| Exact::from(x) * Exact::from(x));
         let c2 = squares[2] / (squares[0] + squares[1] + squares[2]);

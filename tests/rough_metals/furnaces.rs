@@ -1,4 +1,4 @@
-//! Row G6: in an even environment, what reflects all light cannot be told from it.
+//! Row G6: in a uniform environment, a surface that reflects all light is invisible.
 
 use abbe::material::{Material, Roughness};
 use abbe::math::DVec3;
@@ -18,7 +18,7 @@ fn conductor(metal: &str, roughness: f64) -> Material<Table> {
 
 const BALL: &str = "sphere = { center = [0, 0, 0], radius = 1 }";
 
-/// What a metal shows of an even environment of radiance 1, under a medium of an index.
+/// Returns what a metal below a medium of the given index shows of a uniform environment of radiance 1.
 fn furnace(material: &Material<Table>, cos: f64, index: f64) -> [f64; 3] {
     let draw = Draw::<4>::fixed(3);
     arrivals::furnace(material, &context(&draw, toward(cos, 0.4), index), DRAWS).map(|[shown, _]| shown)
@@ -45,7 +45,7 @@ fn the_table_of_what_is_reflected_once_agrees_with_a_finer_quadrature() {
         for step in 1..60 {
             let cos = libm::pow(f64::from(step) / 59.0, 3.0);
             let wo = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-            // Places dense toward upright facets, which block most.
+            // Points are dense toward upright facets, which block most.
             let blocked: f64 = points(DRAWS)
                 .map(|[v, around]| {
                     let h = surface.facets().visible_normal(wo, [around, 1.0 - v * v]);
@@ -83,7 +83,7 @@ fn no_metal_reflects_more_than_comes_and_the_rougher_the_deeper_its_color() {
 fn a_lossless_ball_is_invisible_in_an_even_environment() {
     for roughness in [0.02, 0.1, 0.3, 0.6, 1.0] {
         let metal = format!("conductor = {{ {LOSSLESS}, roughness = {roughness:?} }}");
-        // A ball that fills the view, and one of which only the rim is seen.
+        // A ball that fills the view, and one of which only the rim is visible.
         let views = [([0.0, 0.0, 9.0], [0.0; 3], 10.0), ([0.0, 0.0, 9.0], [0.99, 0.0, 0.0], 0.1)];
         for (position, target, fov) in views {
             for (bounces, transport) in [("", SINGLE_PATH), ("", SPLITTING), ("diffuse_bounces = 0\n", SINGLE_PATH)] {

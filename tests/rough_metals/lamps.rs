@@ -1,4 +1,4 @@
-//! Rough metals under lamps: aiming at them and meeting them agree, and nearly smooth metals look smooth.
+//! Rough metals under lamps: next-event estimation and random hits agree, and nearly smooth metals look smooth.
 
 use abbe::material::{Material, Roughness, Scatter, ScatterContext};
 use abbe::math::DVec3;
@@ -13,7 +13,7 @@ use crate::support::scenes::{
 
 const LAMP: &str = "sphere = { center = [-1, 2, 0], radius = 0.7 }";
 
-/// A floor of gold under a lamp that is not in view.
+/// Returns a floor of gold under a lamp that is not in view.
 fn gold(roughness: f64, lamp: &str, samples: u32) -> String {
     view([4.0, 3.0, 0.5], [0.5, 0.0, 0.0], 25.0, 12)
         + &format!("[render]\nsamples = {samples}\n")
@@ -56,7 +56,7 @@ fn a_point_light_shows_the_brdf_itself() {
 
 #[test]
 fn the_smoother_a_metal_the_more_it_looks_like_a_smooth_one() {
-    // The lamp's mirror image is in view, and its edge.
+    // The mirror image of the lamp is in view, with its edge.
     let [lamp, _] = lamps(&[LAMP]);
     let shown = |roughness: f64| {
         let text = gold(roughness, &lamp, 256).replace("look_at = [0.5, 0.0, 0.0]", "look_at = [1.1, 0, 0.15]");
@@ -92,14 +92,15 @@ fn a_scene_with_a_rough_metal_is_left_to_chance_and_a_smooth_one_is_not() {
 
 #[test]
 fn deterministic_transport_follows_rough_metals_as_well() {
-    // Not what the plan takes, but it must not fail: one direction, and all lights.
+    // The plan does not choose this, but it must not fail: one direction and all lights.
     let [lamp, _] = lamps(&[LAMP]);
     let (film, _) = image(&gold(0.5, &lamp, 16), EVERY_BRANCH);
     assert!(film.pixels.iter().all(|pixel| pixel.rgb.iter().all(|x| x.is_finite() && *x > 0.0)));
     assert!(Roughness::new(0.5).surface().is_some());
 }
 
-/// Tables of rough surfaces take long: what is as rough shares them, whatever it is made of.
+/// Tables of rough surfaces take long to compute. Surfaces with the same roughness share them, whatever they are made
+/// of.
 #[test]
 fn surfaces_that_are_as_rough_share_their_tables() {
     let metal = |roughness: f64| format!("conductor = {{ metal = \"Au\", roughness = {roughness:?} }}");

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-/// A change to a text; numbers choose what is changed, modulo how much there is.
+/// A change to a text. Its numbers select what is changed, modulo the number of candidates.
 #[derive(Clone, Debug)]
 pub enum Edit {
     DropLine(usize),
@@ -11,13 +11,13 @@ pub enum Edit {
     DropCharacter(usize),
     InsertText(usize, String),
     ReplaceNumber(usize, String),
-    /// Another value for a key, mostly one of those that belong to it.
+    /// Another value for a key, mostly one that suits it.
     ReplaceValue(usize, usize),
     AddLight(usize),
     SwapWords(usize, usize),
 }
 
-/// Values by the key that they belong to; files are read from `tests/messages`.
+/// Values by the keys that they suit. Files are read from `tests/messages`.
 const VALUES: [(&[&str], &[&str]); 6] = [
     (
         &["reflectance", "transmittance"],
@@ -106,7 +106,7 @@ const NUMBERS: [&str; 27] = [
     "true",
 ];
 
-/// Edits of any kind.
+/// Returns edits of any kind.
 pub fn edit() -> impl Strategy<Value = Edit> {
     let number = || prop::sample::select(NUMBERS.as_slice()).prop_map(str::to_owned);
     let at = any::<usize>;
@@ -123,7 +123,7 @@ pub fn edit() -> impl Strategy<Value = Edit> {
     ]
 }
 
-/// Edits that leave many scenes valid.
+/// Returns edits that leave many scenes valid.
 pub fn change() -> impl Strategy<Value = Edit> {
     let number = || prop::sample::select(NUMBERS.as_slice()).prop_map(str::to_owned);
     let at = any::<usize>;
@@ -134,7 +134,7 @@ pub fn change() -> impl Strategy<Value = Edit> {
     ]
 }
 
-/// A text after an edit.
+/// Returns a text after an edit.
 pub fn edited(text: &str, edit: &Edit) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
@@ -177,7 +177,7 @@ pub fn edited(text: &str, edit: &Edit) -> String {
     lines.join("\n")
 }
 
-/// Start and end of the runs of such characters.
+/// Returns the start and end of each run of matching characters.
 fn words(text: &str, belongs: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
     let mut words: Vec<(usize, usize)> = Vec::new();
     for (at, c) in text.char_indices().filter(|(_, c)| belongs(*c)) {
@@ -189,7 +189,7 @@ fn words(text: &str, belongs: impl Fn(char) -> bool) -> Vec<(usize, usize)> {
     words
 }
 
-/// The values that have a key of `VALUES`: the key, the start and the end of its value.
+/// Returns the values whose key is in `VALUES`: the key, and the start and end of its value.
 fn values(text: &str) -> Vec<(&str, usize, usize)> {
     let mut found = Vec::new();
     for (at, mark) in text.match_indices(" = ") {

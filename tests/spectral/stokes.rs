@@ -1,4 +1,5 @@
-//! Spectra of Stokes vectors: that they make the layers S1 to S3, and what sheets and glass make of an even spectrum.
+//! Spectra of Stokes vectors: they make up the layers S1 to S3, and they show what sheets and glass do to an even
+//! spectrum.
 
 use std::f64::consts::TAU;
 
@@ -9,8 +10,9 @@ use super::{FINE, WHITE, room};
 use crate::support::larger::larger;
 use crate::support::scenes::{SHEETS, one_pixel, rendered};
 
-/// What the bands of S1, S2 and S3 make of their layers, at worst relative to the brightest channel of the pixel and
-/// one percent of the image's mean; and how much of the image's light is polarized.
+/// Returns the largest difference between the bands of S1, S2 and S3 and their layers, relative to the brightest
+/// channel of the pixel or to one percent of the image's mean. The second result is how much of the image's light is
+/// polarized.
 fn worst_component(image: &Image) -> (f64, f64) {
     let film = image.film();
     let film_of_xyz = film.color_space.of_xyz();
@@ -38,8 +40,8 @@ fn worst_component(image: &Image) -> (f64, f64) {
     (worst, polarized)
 }
 
-/// Photons are shown and gathered, samples are subtracted, wavelengths part, and a floor fluoresces: as exactly as
-/// spectra make the image.
+/// Photons are splatted and gathered, samples are subtracted, wavelengths part, and a floor fluoresces. The tolerances
+/// are those of the image's own spectra.
 #[test]
 fn spectra_of_stokes_vectors_make_their_layers() {
     let dye = "floor.diffuse = { reflectance = 0.1, fluorescence = { absorption = { samples = [[420, 0.9], [520, 0]] }, \
@@ -58,7 +60,7 @@ fn spectra_of_stokes_vectors_make_their_layers() {
     }
 }
 
-/// S0 to S3 in each band of one pixel that sees an even spectrum of 1, and the center of the band in nm.
+/// Returns the center of each band in nm with its S0 to S3, in one pixel that sees an even spectrum of 1.
 fn spectrum(rest: &str) -> Vec<(f64, [f64; 4])> {
     let film = ", layers = [\"polarization\"], spectral = { from = 460, to = 660, step = 5 }";
     let sky = "light = [{ environment.radiance.samples = [[300, 1], [900, 1]] }]\n";
@@ -86,9 +88,9 @@ fn a_sheet_polarizes_all_bands_alike() {
     }
 }
 
-/// Behind a plate at 45 degrees, S1 and S3 are cosine and sine of its phase. Lanes are 10.6 nm apart: what is
-/// interpolated between them is no farther off than a straight line between two would be, an eighth of the square of
-/// the step in phase. The first and the last lanes, where spectra are taken to be level, are some lanes away.
+/// Behind a plate at 45 degrees, S1 and S3 are the cosine and the sine of its phase. Lanes are 10.6 nm apart. Values
+/// interpolated between them are at least as accurate as a straight line, whose error is an eighth of the square of the
+/// step in phase. The first and the last lanes, where spectra are assumed to be level, are some lanes away.
 #[test]
 fn a_wave_plate_shows_its_phase_band_by_band() {
     for retardation in [140.0, 400.0] {

@@ -1,11 +1,12 @@
-//! Rows H4 and H10: indices at the ends of what is known of a glass, and hardly any index at all.
+//! Rows H4 and H10: indices at the ends of a glass's known range, and bodies with hardly any index at all.
 
 use abbe::spectrum::data::glasses;
 use abbe::spectrum::{ColorSpace, Curve, CurveKind, Quantity, Upsampler};
 
 use crate::support::scenes::{Mean, SPLITTING, body, environment, image, view};
 
-/// The ends of visible light and of its own range, one step within them and far beyond: the index is that of the edge.
+/// The ends of visible light and of the glass's own range, one floating-point step inside them and far beyond. Beyond
+/// the range, the index is that of its edge.
 #[test]
 fn h4_every_glass_has_an_index_at_and_beyond_the_ends_of_its_range() {
     let upsampler = Upsampler::new(ColorSpace::Rec709);
@@ -25,7 +26,7 @@ fn h4_every_glass_has_an_index_at_and_beyond_the_ends_of_its_range() {
     assert!(count > 1500, "{count} glasses");
 }
 
-/// In an even environment a lossless body cannot be seen, whatever its index and roughness.
+/// In a uniform environment, a lossless body is invisible, whatever its index and roughness.
 #[test]
 fn h10_bodies_of_hardly_any_index_and_of_the_ends_of_roughness_are_invisible_in_an_even_sky() {
     let mut cases = Vec::new();
@@ -48,7 +49,7 @@ fn h10_bodies_of_hardly_any_index_and_of_the_ends_of_roughness_are_invisible_in_
             "H10: {material}: {:.5} +- {:.1e}, {rays:.0} rays, {} stopped",
             mean.value[1], mean.error[1], report.stopped
         );
-        // The light that facets hand to each other is tabulated to 3 parts in 10^3 (Kulla & Conty 2017).
+        // Multiple scattering between facets is tabulated to 3 parts in 10^3 (Kulla & Conty 2017).
         let table = if material.contains("roughness = 1 ") || material.contains("0.02") { 3e-3 } else { 0.0 };
         let off = (mean.value[1] - 1.0).abs();
         let limit = crate::support::scenes::standard_errors(claims) * mean.error[1] + table + 4e-6;

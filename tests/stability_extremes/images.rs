@@ -13,7 +13,7 @@ fn view(width: u32, height: u32, fov: f64) -> String {
     )
 }
 
-/// A white ball in a white sky: every pixel is 1, and the ball is there.
+/// A white ball in a white sky: every pixel is 1, and the ball is present.
 #[test]
 fn h7_images_of_one_pixel_one_row_and_one_column_are_whole() {
     let ball = "[material.white]\ndiffuse.reflectance = 1\n[[object]]\nmaterial = \"white\"\n\
@@ -33,7 +33,7 @@ fn h7_images_of_one_pixel_one_row_and_one_column_are_whole() {
                 assert!(is_white, "{filter}, pixel {at} of {width} x {height}: {pixel:?}");
             }
             let seen = film.pixels.iter().filter(|pixel| pixel.depth != DEPTH_OF_NOTHING).count();
-            // A wide filter may take its one sample from beside the pixel.
+            // A wide filter may take its only sample from outside of the pixel.
             assert!(seen > 0 || filter == "gaussian", "{filter}, {width} x {height}: the ball is not there");
         }
     }

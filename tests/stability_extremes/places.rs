@@ -1,13 +1,13 @@
-//! Rows H1, H8, H9 and H12: bodies that are stretched unevenly, cameras that stand on surfaces, and things so small
-//! beside others that both are at the ends of what can be said.
+//! Rows H1, H8, H9 and H12: unevenly stretched bodies, cameras on surfaces, and bodies so small beside others that both
+//! are at the limits of what can be expressed.
 
 use abbe::film::DEPTH_OF_NOTHING;
 
 use crate::support::bodies::ball;
 use crate::support::scenes::{GROUND, Mean, SPLITTING, body, environment, image, standard_errors, view};
 
-/// Every closed shape under scales that differ by up to 10^6, turned, in an even sky: white paint and glass are as
-/// bright as the sky, which no wrong normal, cosine or area leaves them.
+/// Every closed shape under scales that differ by up to 10^6, turned, in a uniform sky. White paint and glass are as
+/// bright as the sky. A wrong normal, cosine or area would change that.
 #[test]
 fn h1_stretched_bodies_and_instances_keep_all_light() {
     let (points, faces) = ball();
@@ -31,7 +31,7 @@ fn h1_stretched_bodies_and_instances_keep_all_light() {
                     + &environment(1.0);
                 let (film, report) = image(&text, SPLITTING);
                 let what = format!("{material}, {}, {scale}", &shape[..shape.len().min(40)]);
-                // In a body as thin as 10^-3 a ray aimed at its rim has no room, and one in 10^6 may go astray.
+                // In a body as thin as 10^-3, a ray aimed at its rim has no room, and one in 10^6 may go astray.
                 assert!(
                     report.unmatched * 100_000 <= report.rays,
                     "{what}: {} of {} rays",
@@ -47,7 +47,7 @@ fn h1_stretched_bodies_and_instances_keep_all_light() {
     }
 }
 
-/// On the floor, on the wall of a room, on the skin of a glass ball and in the plane of a pane, exactly.
+/// The camera is exactly on the floor, on the wall of a room, on the surface of a glass ball or in the plane of a pane.
 #[test]
 fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
     let white = "diffuse = { reflectance = 1 }";
@@ -67,7 +67,8 @@ fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
             + &environment(1.0);
         let (film, report) = image(&text, SPLITTING);
         assert_eq!(report.non_finite, 0, "{shape} from {position:?}");
-        // The start lies on either side: from within glass a sky of 1 is n^2. Roulette may raise a pixel beyond.
+        // The start may count as being on either side: from inside glass, a sky of 1 is n^2. Roulette may raise a pixel
+        // above that.
         let mean = Mean::of(&film);
         let (least, most) = if material == glass { (1.0, 2.25) } else { (0.0, 1.0) };
         let room = standard_errors(7) * mean.error[1] + 1e-5;
@@ -76,7 +77,7 @@ fn h8_a_camera_on_a_surface_sees_what_there_is_and_no_nan() {
     }
 }
 
-/// A ball of 10^-9 before a ball of 10^9, all white: both are there, and as bright as the sky.
+/// A ball of 10^-9 in front of a ball of 10^9, all white: both are there, and as bright as the sky.
 #[test]
 fn h9_things_that_differ_by_18_orders_of_magnitude_share_a_scene() {
     let small = 1e-9;
@@ -94,7 +95,7 @@ fn h9_things_that_differ_by_18_orders_of_magnitude_share_a_scene() {
         assert_eq!((report.non_finite, report.unmatched), (0, 0));
         let near = film.pixels.iter().filter(|pixel| pixel.depth < 1e-7).count();
         let far = film.pixels.iter().filter(|pixel| (1e8..2e9).contains(&pixel.depth)).count();
-        // The small ball fills (asin(1/8) / 10 degrees)^2 of the height: about two fifths of the image.
+        // The small ball spans asin(1/8) / 10 degrees of the height, so it covers about two fifths of the image.
         assert!((80..=130).contains(&near) && near + far == 256, "{near} near, {far} far");
         assert_ne!(film.pixels[0].depth, DEPTH_OF_NOTHING);
         let mean = Mean::of(&film);
@@ -102,7 +103,7 @@ fn h9_things_that_differ_by_18_orders_of_magnitude_share_a_scene() {
     }
 }
 
-/// From the least length to the greatest, and beyond them a sentence.
+/// From the smallest allowed length to the largest. Sizes beyond are refused with a message.
 #[test]
 fn h12_a_sphere_is_seen_at_every_size_that_is_allowed_and_refused_at_others() {
     for exponent in [-30, -20, -10, 10, 20, 29] {

@@ -1,8 +1,8 @@
-//! Row H6: light that is very weak and very strong. A picture is proportional to its lights.
+//! Row H6: very weak and very strong light. A picture is proportional to its lights.
 
 use crate::support::scenes::{SINGLE_PATH, SPLITTING, body, image, view};
 
-/// Every kind of light and surface, all lights multiplied by a factor.
+/// Returns a scene with every kind of light and surface. All lights are multiplied by a factor.
 fn text(factor: f64) -> String {
     let light = |x: f64| format!("{:e}", x * factor);
     view([0.2, 1.0, 6.0], [0.0, 0.3, 0.0], 40.0, 40)
@@ -28,7 +28,7 @@ fn text(factor: f64) -> String {
         )
 }
 
-/// A power of two commutes with every rounding, so that no bit may differ: light of 9 2^96 is 7 10^29.
+/// A power of two commutes with every rounding, so no bit may differ. Light of 9 2^96 is 7 10^29.
 #[test]
 fn h6_pictures_of_lights_of_1e30_and_1e_minus_30_are_those_of_1_to_the_last_bit() {
     for transport in [SPLITTING, SINGLE_PATH] {
@@ -44,7 +44,7 @@ fn h6_pictures_of_lights_of_1e30_and_1e_minus_30_are_those_of_1_to_the_last_bit(
                 assert_eq!(scaled.rgb, expected, "pixel {at} at 2^{power}");
             }
         }
-        // At 2^-100 products of small weights leave the normal range of f32, and with it their last digits.
+        // At 2^-100, products of small weights leave the normal range of f32 and lose their last digits.
         let factor = libm::exp2(-100.0);
         let (scaled, _) = image(&text(factor), transport);
         for (scaled, pixel) in scaled.pixels.iter().zip(&film.pixels) {
@@ -56,7 +56,7 @@ fn h6_pictures_of_lights_of_1e30_and_1e_minus_30_are_those_of_1_to_the_last_bit(
     }
 }
 
-/// The dim lamp is nothing beside the bright one, but it is there where it shines alone.
+/// The dim lamp is negligible beside the bright one, but visible where it shines alone.
 #[test]
 fn h6_lights_of_1e30_and_1e_minus_30_share_a_scene() {
     let lamp = |name: &str, x: f64, radiance: &str| {
@@ -70,7 +70,7 @@ fn h6_lights_of_1e30_and_1e_minus_30_share_a_scene() {
             "diffuse = { reflectance = 0.8 }",
             &[
                 "plane = { point = [0, -1, 0], normal = [0, 1, 0] }",
-                // Between the lamps: each side of the floor sees one of them.
+                // A wall between the lamps: each side of the floor sees only one of them.
                 "cube = { center = [0, 0, 0], size = [0.2, 9, 12] }",
             ],
         );

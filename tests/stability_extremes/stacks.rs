@@ -1,4 +1,4 @@
-//! Row H5: a thousand bodies one behind the other and one in the other.
+//! Row H5: a thousand bodies, one behind the other and one inside the other.
 
 use abbe::plan::plan;
 
@@ -14,9 +14,9 @@ fn lit(bodies: &str, side: u32, samples: u32) -> String {
         + &body("lamp", "emissive = { radiance = 1, sides = \"front\" }", &[far])
 }
 
-/// Panes of reflectance r at each surface let through (1 - r) / (1 + (2 N - 1) r), all ways counted (Stokes 1862).
-/// Light that wanders through them meets about (2 N)^2 r surfaces; of more than some thousand roulette leaves to one
-/// path what many would have brought.
+/// Panes with reflectance r at each surface transmit (1 - r) / (1 + (2 N - 1) r) over all paths (Stokes 1862). Light
+/// that wanders through them meets about (2 N)^2 r surfaces. If there are more than some thousand, roulette leaves to
+/// one path what many would have contributed.
 #[test]
 fn h5_stacks_of_a_hundred_and_of_a_thousand_panes_let_through_what_the_closed_form_says() {
     for (count, index, side) in [(100, 1.5f64, 24), (1000, 1.01, 24)] {
@@ -44,7 +44,7 @@ fn h5_stacks_of_a_hundred_and_of_a_thousand_panes_let_through_what_the_closed_fo
     }
 }
 
-/// Cubes within cubes of one glass are one cube: their media are counted, and the 1998 inner surfaces are not there: a
+/// Nested cubes of one glass are one cube: their media are counted, and their 1998 inner surfaces have no effect. A
 /// loss of a part in 30 000 at each would show.
 #[test]
 fn h5_a_thousand_bodies_in_each_other_are_one() {
@@ -56,15 +56,15 @@ fn h5_a_thousand_bodies_in_each_other_are_one() {
     let (film, report) = image(&text, SPLITTING);
     let expected = 0.96 / 1.04;
     assert_eq!((report.unmatched, report.stopped), (0, 0.0));
-    // Roulette ends one long path in a thousand, and light that is reflected inside comes back one time in 33 with a
-    // weight of 0.05: too seldom for sixteen paths to tell their own deviation.
+    // Roulette ends one long path in a thousand, and light that is reflected inside returns one time in 33 with a
+    // weight of 0.05. That is too rare for sixteen paths to estimate their own deviation.
     let deviation = (0.001 * expected * expected + 0.03 * 0.05f64.powi(2)).sqrt();
     let mean = Mean::of(&film).value[1];
     assert!((mean - expected).abs() <= 3.0 * deviation / 4.0, "{mean} for {expected}");
 }
 
-/// A thousand stacked panes that are found by chance from within a closed white room end: no stack grows, no path is
-/// lost.
+/// Light that wanders through a thousand stacked panes under a uniform sky comes to an end: no stack grows, and no path
+/// is lost.
 #[test]
 fn h5_light_that_wanders_in_a_stack_keeps_its_energy() {
     let panes: Vec<String> = (0..COUNT)
@@ -79,7 +79,7 @@ fn h5_light_that_wanders_in_a_stack_keeps_its_energy() {
     assert_eq!((report.unmatched, report.non_finite), (0, 0));
     let mean = Mean::of(&film);
     let off = (mean.value[1] - 1.0).abs();
-    // What the safety stop took from paths caught for good by total reflection is counted.
+    // The light that the safety stop took from paths caught for good by total reflection is counted.
     assert!(off <= standard_errors(1) * mean.error[1] + report.stopped * 2.25 + 1e-5, "{mean:?}, {}", report.stopped);
     assert!(mean.error[1] < 0.1 && report.stopped < 0.01, "{mean:?}, {} stopped", report.stopped);
 }

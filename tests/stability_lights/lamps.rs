@@ -12,8 +12,8 @@ use crate::support::scenes::{
     GROUND, Mean, SINGLE_PATH, SPLITTING, body, environment, image, images, moments, standard_errors, view,
 };
 
-/// Lamps that fill a thousandth of what a pixel sees, sampled 1024 times. Found by chance they are as noisy as counting
-/// is: sqrt((1 - p) / (p n)) = 0.988 of the mean at most. Aimed at they are not.
+/// Lamps that fill a thousandth of what a pixel sees, sampled 1024 times. If random hits find them, they have the noise
+/// of counting: sqrt((1 - p) / (p n)) = 0.988 of the mean at most. With next-event estimation they do not.
 #[test]
 fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_aimed_at() {
     const SEEDS: u64 = 64;
@@ -26,7 +26,7 @@ fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_ai
         variance.sqrt() / mean
     };
     let render = "filter = \"box\"\n[render]\nsamples = 1024\ndiffuse_bounces = 0\n";
-    // At distance 1 the view is 2 by 2, and a quad is given by half its edges.
+    // At distance 1 the view is 2 by 2, and a quad is given by its half edges.
     let half = SHARE.sqrt();
     let lamp = |center: &str, u: &str, v: &str| {
         let quad = format!("quad = {{ center = {center}, u = {u}, v = {v} }}");
@@ -36,13 +36,13 @@ fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_ai
         + render
         + &lamp("[0.31, -0.17, -1]", &format!("[{half:?}, 0, 0]"), &format!("[0, {half:?}, 0]"));
     let by_chance = relative(&seen, SHARE);
-    // Far above a white floor, a thousandth of what the floor sees.
+    // Far above a white floor, the lamp fills a thousandth of what the floor sees.
     let above = view([0.0, 1.0, 0.1], [0.0; 3], 1e-3, 1)
         + render
         + &body("floor", "diffuse = { reflectance = 1 }", &[GROUND])
         + &lamp("[0, 1000, 0]", "[28, 0, 0]", "[0, 0, 28]");
-    // What a small surface sees of a square above it, half its edge over the distance being a: Hamilton & Morgan 1952,
-    // P-5.
+    // The light of a square on a small surface below it, with a as half its edge over the distance: Hamilton & Morgan
+    // 1952, P-5.
     let a: f64 = 28.0 / 1000.0;
     let across = (1.0 + a * a).sqrt();
     let aimed = relative(&above, 4.0 / PI * a / across * libm::atan(a / across));
@@ -51,7 +51,7 @@ fn a6_a_small_lamp_is_noisy_where_it_is_found_by_chance_and_quiet_where_it_is_ai
     assert!((1e-9..=0.01).contains(&aimed), "{aimed}");
 }
 
-/// Solid angle of a sphere over 2 PI: s^2 / (1 + sqrt(1 - s^2)), with 31 digits.
+/// Returns the solid angle of a sphere over 2 PI: s^2 / (1 + sqrt(1 - s^2)), with 31 digits.
 fn one_minus_cos(radius: f64, squared_distance: Exact) -> Exact {
     let s2 = Exact::from(radius) * Exact::from(radius) / squared_distance;
     s2 / (Exact::from(1.0) + (Exact::from(1.0) - s2).sqrt())
@@ -70,7 +70,7 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
             let sample = sphere.sample(DVec3::ZERO, random.pair()).expect("it is outside");
             let ray = Ray { origin: DVec3::ZERO, direction: sample.direction };
             let intersection = sphere.intersect(&ray, f64::INFINITY);
-            // At the rim itself a direction may pass by rounding; a draw there is as rare as the rim is thin.
+            // Exactly at the rim, a direction may miss by rounding. A draw there is as rare as the rim is thin.
             let Some(intersection) = intersection else { continue };
             let [x, y, z] = center.to_array().map(|x| Exact::from(x) * Exact::from(x));
             let solid_angle = Exact::from(2.0 * PI) * one_minus_cos(radius, x + y + z);
@@ -78,7 +78,7 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
             assert!(off <= 1e-14, "R / D = {ratio}: the density is off by {off:e}");
             worst = larger(worst, off);
         }
-        // Irradiance of a surface that faces it is PI s^2: the mean of cos over the density.
+        // The irradiance of a surface that faces the sphere is PI s^2: the mean of the cosine over the pdf.
         let sphere = Shape::Sphere(Sphere::new(DVec3::Z / ratio, 1.0));
         let (mut sum, mut lost) = (0.0, 0);
         for i in 0..4096_u32 {
@@ -95,7 +95,7 @@ fn l1_lamps_far_away_keep_their_solid_angle_and_their_irradiance() {
     println!("L1: density off by at most {worst:.1e} of itself");
 }
 
-/// A white ball within a shining sphere is as bright as the sphere, and so is all else: a furnace.
+/// Returns a white ball inside an emissive sphere. The ball and everything else are as bright as the sphere: a furnace.
 fn inside(radius: f64, at: DVec3) -> String {
     let lamp = format!("sphere = {{ center = [0, 0, 0], radius = {radius:?} }}");
     let ball = format!("sphere = {{ center = {:?}, radius = 0.5 }}", (at - DVec3::Z * 1.5).to_array());
@@ -114,7 +114,8 @@ fn l2_whatever_is_inside_of_a_shining_sphere_is_as_bright_as_it() {
     assert!((mean.value[1] - 1.0).abs() <= 1e-3, "{mean:?}");
 }
 
-/// So large that a thing within is one part in 10^8 of it, seen from its middle and from beside its wall.
+/// The sphere is so large that an object inside is one part in 10^8 of it, seen from its center and from beside its
+/// wall.
 #[test]
 fn h3_a_shining_sphere_of_any_size_lights_what_is_inside_alike() {
     for radius in [1e3, 1e8] {
@@ -128,7 +129,7 @@ fn h3_a_shining_sphere_of_any_size_lights_what_is_inside_alike() {
     }
 }
 
-/// A square on a wall that reaches the floor, and a point of the floor at ever smaller distances from the wall.
+/// A square on a wall reaches down to the floor. Points of the floor are at ever smaller distances from the wall.
 #[test]
 fn l3_a_lamp_that_touches_the_floor_lights_it_quietly_up_to_the_edge() {
     const SAMPLES: f64 = 16.0 * 16.0 * 64.0;
@@ -142,7 +143,8 @@ fn l3_a_lamp_that_touches_the_floor_lights_it_quietly_up_to_the_edge() {
                 "emissive = { radiance = 1, sides = \"front\" }",
                 &["quad = { center = [0, 0.5, 0], u = [0.5, 0, 0], v = [0, 0.5, 0] }"],
             );
-        // A small surface below the edge of a rectangle at right angles: Hamilton & Morgan 1952, P-6, twice a half.
+        // A small surface below the edge of a rectangle at right angles to it: Hamilton & Morgan 1952, P-6, twice for a
+        // half.
         let (half, slant) = (0.5, (1.0 + distance * distance).sqrt());
         let expected = (libm::atan(half / distance) - distance / slant * libm::atan(half / slant)) / PI;
         let (film, report) = image(&text, SPLITTING);
@@ -158,7 +160,8 @@ fn l3_a_lamp_that_touches_the_floor_lights_it_quietly_up_to_the_edge() {
     }
 }
 
-/// A lamp in the plane of the floor sends it nothing, be it beside or in the very place that is seen.
+/// A lamp in the plane of the floor sends it no light, whether it is beside the visible point or in the very same
+/// place.
 #[test]
 fn l5_a_lamp_in_the_plane_of_the_floor_leaves_it_dark_and_makes_no_nan() {
     let shapes = [
@@ -176,7 +179,7 @@ fn l5_a_lamp_in_the_plane_of_the_floor_leaves_it_dark_and_makes_no_nan() {
         assert_eq!(report.non_finite, 0);
         assert!(film.pixels.iter().all(|pixel| pixel.rgb == [0.0; 3]), "{materials}");
     }
-    // Lamp and floor in one place, under a sky: either may be seen, nothing else.
+    // Lamp and floor in the same place, under a sky: either may be seen, but nothing else.
     let both = view([0.0, 2.0, 0.1], [0.0; 3], 10.0, 12)
         + &body("floor", "diffuse = { reflectance = 0.5 }", &[GROUND])
         + &body(

@@ -1,4 +1,4 @@
-//! Rows D6, M2, M5 and T6: media whose indices are near each other, and surfaces that lie in one place.
+//! Rows D6, M2, M5 and T6: media with nearly equal indices, and surfaces in the same place.
 
 use std::path::Path;
 
@@ -7,8 +7,8 @@ use abbe::scene::Source;
 
 use crate::support::scenes::{EVERY_BRANCH, GROUND, SPLITTING, body, environment, image, refusal_in, scene, view};
 
-/// Reflectance of even light from outside of an index: Walsh 1926, *The Reflection Factor of a Polished Glass Surface
-/// for Diffused Light*.
+/// Returns the reflectance for diffuse light from outside of a medium: Walsh 1926, *The Reflection Factor of a Polished
+/// Glass Surface for Diffused Light*.
 fn walsh(n: f64) -> f64 {
     let (n2, n4) = (n * n, n * n * n * n);
     0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
@@ -17,11 +17,11 @@ fn walsh(n: f64) -> f64 {
         + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0) * (n4 - 1.0)) * libm::log(n)
 }
 
-/// Schlick's approximation reflects 1 / 21 of even light however near two indices are; the truth goes to 0.
+/// Schlick's approximation reflects 1 / 21 of diffuse light however close two indices are. The true value goes to 0.
 #[test]
 fn d6_even_light_between_glass_and_water_is_reflected_as_the_closed_form_says() {
     const STEPS: u32 = 1_000_000;
-    // 2 c dc = d(c^2), so the mean is even over the squared cosine.
+    // 2 c dc = d(c^2), so the mean is uniform over the squared cosine.
     let cosine = |step: u32| ((f64::from(step) + 0.5) / f64::from(STEPS)).sqrt();
     for (n1, n2) in [(1.333, 1.5168), (1.0, 1.1), (1.0, 1.5)] {
         let sum: f64 = (0..STEPS).map(|step| Interface::new(n1, n2, cosine(step)).reflectance).sum();
@@ -49,7 +49,8 @@ fn m2_clear_bodies_that_share_a_surface_are_refused_and_those_that_overlap_are_n
     }
 }
 
-/// A floor was taken for a neighbor of every bead above it, and nothing else was looked for beside twenty thousand.
+/// A floor used to count as a neighbor of every bead above it. With twenty thousand neighbors, no others were looked
+/// for.
 #[test]
 fn m2_two_of_many_beads_above_a_floor_are_refused_that_share_a_surface() {
     let place = |i: u32| format!("[{{ translate = [{}, {}, 0] }}]", i % 200, i / 200 + 1);
@@ -61,8 +62,8 @@ fn m2_two_of_many_beads_above_a_floor_are_refused_that_share_a_surface() {
     assert!(refusal_in(Path::new(""), &text).message.contains("lies in one place"));
 }
 
-/// One side of a glass block and a table below it lie in one plane, cut into triangles in two ways: rounding would
-/// decide, ray by ray, which is met first.
+/// One side of a glass block and a table below it lie in one plane but are divided into triangles in different ways.
+/// Rounding would decide for each ray which is hit first.
 #[test]
 fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
     let block = |y: f64| {
@@ -86,7 +87,7 @@ fn t6_sheets_in_one_plane_are_told_of_where_light_must_cross_them_in_order() {
     }
 }
 
-/// The order of the objects decides nothing, and planes have no box that others could lie in.
+/// The order of the objects has no effect. Planes have no box that others could lie in.
 #[test]
 fn m2_a_plane_that_a_body_or_another_plane_lies_in_is_refused_whichever_comes_first() {
     let water = body("water", "dielectric = { index = 1.33 }", &[GROUND]);
@@ -110,8 +111,8 @@ fn m2_a_plane_that_a_body_or_another_plane_lies_in_is_refused_whichever_comes_fi
     }
 }
 
-/// Closed bodies are left as often as they are entered, to the last ray; an open one is counted, and no light is made
-/// of it.
+/// Closed bodies are left as often as they are entered, to the last ray. Rays that leave an open body are counted, and
+/// it creates no light.
 #[test]
 fn m5_a_medium_that_was_never_entered_is_counted_and_left_as_if_nothing_were_there() {
     let (points, faces) = crate::support::bodies::ball();

@@ -1,19 +1,19 @@
-//! Rows L6, L9 and M6: scenes that look right in their file and in which a light lights nothing or stands in a surface,
-//! or a body is inside out.
+//! Rows L6, L9 and M6: scenes that look right in their file, in which a light lights nothing or stands in a surface, or
+//! a body is inside out.
 
 use crate::support::scenes::{GROUND, body, environment, scene, view};
 
 const BALL: &str = "sphere = { center = [0, 1, 0], radius = 1 }";
 const LAMP: &str = "emissive = { radiance = 5, sides = \"front\" }";
 
-/// A ball on a floor, seen from before it, and what is added to them.
+/// Returns a ball on a floor, seen from the front, and whatever is added to them.
 fn stage(more: &str) -> String {
     view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16)
         + &body("white", "diffuse = { reflectance = 0.7 }", &[GROUND, BALL])
         + more
 }
 
-/// The faces of a tetrahedron, outward or inward.
+/// Returns a tetrahedron whose faces look outward or inward.
 fn tetrahedron(outward: bool) -> String {
     let faces = if outward {
         "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]"
@@ -64,7 +64,7 @@ fn l6_lights_that_light_nothing_in_sight_are_told_of_with_the_cure() {
     }
 }
 
-/// What lights little, or by a detour, is left alone.
+/// Lights that light little, or only indirectly, cause no warning.
 #[test]
 fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
     let light = |light: &str| format!("[[light]]\n{light}\n");
@@ -76,12 +76,12 @@ fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
     let prism = body("glass", "dielectric = { index = 1.6 }", &["cube = { center = [0, 6, 0], size = 1 }"]);
     for more in [
         lamp("quad = { center = [0, 5, 0], u = [1, 0, 0], v = [0, 0, 1] }"),
-        // Straight down, by a mirror, into glass, far outside of the picture.
+        // Straight down, by way of a mirror, into glass, and far outside of the picture.
         spot("[0, -1, 0]", 1.0),
         spot("[0, 1, 0]", 3.0) + &mirror,
         spot("[0, 1, 0]", 3.0) + &prism,
         spot("[1, -0.01, 0]", 1.0),
-        // Turned away, but seen; turned to a wall behind the camera.
+        // Facing away but visible, and facing a wall behind the camera.
         lamp("quad = { center = [0, 5, -20], u = [9, 0, 0], v = [0, 9, 0] }"),
         lamp("quad = { center = [0, 3, 12], u = [1, 0, 0], v = [0, 1, 0] }")
             + &body(
@@ -89,7 +89,7 @@ fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
                 "diffuse = { reflectance = 0.5 }",
                 &["quad = { center = [0, 3, 30], u = [9, 0, 0], v = [0, 9, 0] }"],
             ),
-        // Behind a pane and through a cutout.
+        // Behind a pane, and through a cutout.
         light("point = { position = [0, 6, 0], intensity = 9 }")
             + &body(
                 "pane",
@@ -103,7 +103,7 @@ fn l6_lights_of_which_something_may_be_seen_are_not_told_of() {
         ) + &light("point = { position = [0, 6, 0], intensity = 9 }"),
         light("sun = { toward = [0, 1, -0.2], irradiance = 9 }"),
         environment(1.0),
-        // Behind what the camera does not see.
+        // Behind an object that the camera does not see.
         lamp("quad = { center = [0, 5, -20], u = [9, 0, 0], v = [0, 9, 0] }")
             + &body(
                 "gray",
@@ -122,7 +122,7 @@ fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
     let away = view([0.0, 2.0, 8.0], [0.0, 2.0, 20.0], 40.0, 16) + &white(BALL);
     assert_warns(&(away.clone() + light), &["the camera sees no object"]);
     assert_warns(&(away + &environment(1.0)), &[]);
-    // A star, a wire and a far plane lie between the rays that look for objects.
+    // A star, a wire and a distant plane that lie between the rays that look for objects.
     for small in [
         "sphere = { center = [0.03, 1, 0], radius = 0.001 }",
         "cube = { center = [0, 1, 0], size = [0.001, 40, 0.001] }",
@@ -133,7 +133,7 @@ fn a_camera_that_sees_nothing_or_is_inside_an_opaque_body_is_told_of() {
     let inside = view([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 40.0, 16) + &white("cube = { center = [0, 0, 0], size = 40 }");
     assert_warns(&(inside.clone() + &environment(1.0)), &["the camera is inside object 1, which is opaque"]);
     assert_warns(&(inside.clone() + light), &[]);
-    // Around the camera is glass, and what is opaque is around the glass.
+    // The camera is inside glass, and the opaque body surrounds the glass.
     let bead = body("glass", "dielectric = { index = 1.5 }", &["sphere = { center = [0, 2, 8], radius = 1 }"]);
     let warnings = scene(&(inside + &bead + &environment(1.0))).warnings;
     assert!(warnings.len() == 1 && !warnings[0].contains("which is opaque"), "{warnings:?}");
@@ -149,12 +149,12 @@ fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
     let many =
         format!("{}\ninstances = [[{{ translate = [0, 0, 0] }}], [{{ translate = [0, 3, 0] }}]]", tetrahedron(false));
     assert_warns(&stage(&glass(&[&many])), &["[1] and 1 more: the faces"]);
-    // A mirror image in a transform turns no faces around.
+    // A reflection in a transform does not turn faces around.
     let mirrored = format!("{}\ntransform = [{{ scale = [-1, 1, 1] }}]", tetrahedron(true));
     assert_warns(&stage(&glass(&[&mirrored])), &[]);
 }
 
-/// Flat glass is a half space of it, where nothing closes that.
+/// Flat glass that nothing closes is a half space of glass.
 #[test]
 fn flat_glass_that_nothing_closes_is_told_of() {
     let glass = |shapes: &[&str]| body("glass", "dielectric = { index = 1.5 }", shapes) + &environment(1.0);
@@ -178,7 +178,7 @@ fn flat_glass_that_nothing_closes_is_told_of() {
     assert_warns(&stage(&glass(&shapes)), &[]);
 }
 
-/// Where a light or the camera stands exactly in a surface, neither side of that is theirs.
+/// A light or a camera exactly in a surface is on neither side of it.
 #[test]
 fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
     let ceiling = |shape: &str| body("ceiling", "diffuse = { reflectance = 0.5 }", &[shape]);
@@ -212,7 +212,7 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
     assert_warns(&stage(&(water(2.0 + 1e-9) + &environment(1.0))), &[]);
 }
 
-/// Nearly every direction that is drawn for this sky leads to its sun, behind the only wall.
+/// Nearly every direction that is sampled for this sky leads to its sun, which is behind the only wall.
 #[test]
 fn l6_a_sky_that_lights_a_wall_from_before_is_not_told_of_for_its_sun_behind() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Rows S5, D7 and D8: directions stay unit vectors, for the sphere's and Fresnel's formulas assume it.
+//! Rows S5, D7 and D8: directions stay unit vectors, as the formulas for spheres and Fresnel's equations assume.
 
 use abbe::material::{Index, Interface, Scatter, ScatterContext, reflect};
 use abbe::math::{DVec2, DVec3, UNIT_ROUNDOFF};
@@ -12,12 +12,12 @@ use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, method, scene, view};
 
-/// How far a vector's length is from 1, in roundings.
+/// Returns how far a vector's length is from 1, in units of rounding.
 fn off_unit(direction: DVec3) -> f64 {
     (ExactVector::from(direction).length() - Exact::from(1.0)).abs().rounded() / UNIT_ROUNDOFF
 }
 
-/// A unit normal at an acute angle to a direction.
+/// Returns a unit normal at an acute angle to a direction.
 fn normal_toward(direction: DVec3, random: &mut Random) -> DVec3 {
     let normal = random.direction().normalize();
     if normal.dot(direction) < 0.0 { -normal } else { normal }
@@ -108,7 +108,7 @@ fn s5_camera_rays_and_rays_to_lights_run_along_unit_vectors() {
     }
     println!("S5: camera rays off by at most {worst:.2} u");
     assert!(worst <= 2.0, "camera rays off by {worst} u");
-    // Rays to lights are not bounced again: what their length is off by, they only miss in length.
+    // Rays to lights do not bounce again. An error in their length affects only that length.
     for (number, light) in scene.lights.iter().enumerate() {
         let mut worst = 0f64;
         for _ in 0..20_000 {

@@ -13,14 +13,14 @@ fn stack(layers: &[([f64; 2], f64)]) -> Stack {
     Stack::new([NM, 0.0], layers.iter().map(layer))
 }
 
-/// Bytes of a layer's characteristic matrix as it is written in Born & Wolf: cos delta of a complex phase.
+/// Returns the cosine of a layer's complex phase delta, as it is written in the characteristic matrix of Born & Wolf.
 fn cosine_as_written(index: [f64; 2], thickness_nm: f64) -> [f64; 2] {
     let [re, im] = index.map(|part| part * TAU * thickness_nm / NM);
     [re.cos() * im.cosh(), re.sin() * im.sinh()]
 }
 
-/// A layer through which no light comes is the bulk of it: the largest numbers of its matrix have a thousand digits and
-/// more before the point, and their quotients are all that counts.
+/// A layer that transmits no light acts as its bulk. The largest numbers of its matrix have a thousand digits and more
+/// before the point, and only their quotients count.
 #[test]
 fn d17_layers_that_absorb_all_light_are_as_their_bulk() {
     for thickness in [10_000.0, 20_000.0, 100_000.0] {
@@ -38,9 +38,9 @@ fn d17_layers_that_absorb_all_light_are_as_their_bulk() {
     }
 }
 
-/// At the critical angle of a layer the phase and the admittance are 0, and sin(delta) / q is 0 / 0. A gap of air
-/// between glasses of index 1.25, met at a cosine of 0.6, is there to the last bit; then R = x^2 / (4 + x^2) with
-/// x = k d q1 of s, and x = k d q1 / n1^2 of p.
+/// At the critical angle of a layer, the phase and the admittance are 0, and sin(delta) / q is 0 / 0. A gap of air
+/// between glasses of index 1.25, hit at a cosine of 0.6, is there to the last bit. Then R = x^2 / (4 + x^2), with x =
+/// k d q1 for s and x = k d q1 / n1^2 for p.
 #[test]
 fn d17_a_layer_at_its_critical_angle_has_its_limit() {
     let (n1, cos) = (1.25, 0.6);
@@ -51,7 +51,7 @@ fn d17_a_layer_at_its_critical_angle_has_its_limit() {
         let [s, p] = [phase * q1, phase * q1 / (n1 * n1)].map(|x| x * x / (4.0 + x * x));
         let found = stack(&[([1.0, 0.0], gap)]).shares(n1, n1.into(), q1);
         assert!((found.reflected.s - s).abs() < 1e-12 && (found.reflected.p - p).abs() < 1e-12, "{gap} nm: {found:?}");
-        // Beside it nothing jumps.
+        // Nothing jumps next to it.
         for q1 in [q1 * (1.0 - 1e-12), q1 * (1.0 + 1e-12)] {
             let beside = stack(&[([1.0, 0.0], gap)]).shares(n1, n1.into(), q1);
             assert!((beside.reflected.s - s).abs() < 1e-5, "{gap} nm: {beside:?} for {s}");
@@ -60,8 +60,8 @@ fn d17_a_layer_at_its_critical_angle_has_its_limit() {
     }
 }
 
-/// A wave that decays in a gap of any width comes through it or back, and none of it is lost or made: the difference of
-/// two exponentials that grow would leave nothing but rounding.
+/// A wave that decays in a gap of any width is transmitted or reflected, and none of it is lost or gained. The
+/// difference of two growing exponentials would leave nothing but rounding errors.
 #[test]
 fn d17_total_reflection_at_a_gap_of_any_width_keeps_all_light() {
     for gap in [1.0, 30.0, 300.0, 3000.0, 100_000.0] {

@@ -1,4 +1,4 @@
-//! Rows D1 to D5: one interface against 31 digits.
+//! Rows D1 to D5: a single interface, compared with results of 31 digits.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,7 +12,7 @@ use crate::support::larger::larger;
 use crate::support::random::Random;
 use crate::support::scenes::{EVERY_BRANCH, body, environment, image, view};
 
-/// Reflectance and transmittance with 31 digits, of the same rounded inputs.
+/// Returns reflectance and transmittance with 31 digits, from the same rounded inputs.
 fn truth(n1: f64, n2: f64, c1: f64) -> (Exact, Exact) {
     let [n1, n2, c1, one] = [n1, n2, c1, 1.0].map(Exact::from);
     let eta = n1 / n2;
@@ -32,7 +32,7 @@ fn difference(computed: f64, exact: Exact) -> f64 {
     (Exact::from(computed) - exact).abs().rounded()
 }
 
-/// Pairs of indices from nearly equal to diamond, both ways.
+/// Returns pairs of indices from nearly equal to diamond, in both orders.
 fn index_pairs() -> Vec<(f64, f64)> {
     let mut pairs = vec![(1.0, 1.000_000_1), (1.0, 1.1), (1.0, 1.333), (1.333, 1.5168), (1.0, 1.5), (1.0, 2.42)];
     pairs.extend(pairs.clone().iter().map(|&(a, b)| (b, a)));
@@ -53,7 +53,7 @@ fn d1_reflectance_is_right_and_continuous_through_the_critical_angle() {
                 worst = larger(worst, difference(found.reflectance, truth(n1, n2, cosine).0));
             }
         }
-        // Neighboring numbers on both sides of the angle.
+        // Neighboring floating-point numbers on both sides of the angle.
         let exact = ((n1 - n2) * (n1 + n2)).sqrt() / n1;
         let mut cosine = (0..200).fold(exact, |c: f64, _| c.next_up());
         let mut before = Interface::new(n1, n2, cosine).reflectance;
@@ -221,12 +221,13 @@ fn d4_an_index_matched_body_is_invisible_to_the_bit() {
 fn d5_the_mean_reflectance_of_diffuse_light_is_exact() {
     let mean = |n1: f64, n2: f64| {
         const STEPS: u32 = 1_000_000;
-        // 2 c dc = d(c^2), so the mean is even over the squared cosine.
+        // 2 c dc = d(c^2), so the mean is uniform over the squared cosine.
         let cosine = |step: u32| ((f64::from(step) + 0.5) / f64::from(STEPS)).sqrt();
         (0..STEPS).map(|step| Interface::new(n1, n2, cosine(step)).reflectance).sum::<f64>() / f64::from(STEPS)
     };
     for (n, outside) in [(1.5, 0.091_778_0), (1.333, 0.066_406)] {
-        // What enters through a surface in equilibrium leaves it again: 1 - R_inside = (1 - R_outside) / n^2.
+        // In equilibrium, the light that enters through a surface leaves it again: 1 - R_inside = (1 - R_outside) /
+        // n^2.
         for (found, expected) in [(mean(1.0, n), outside), (mean(n, 1.0), 1.0 - (1.0 - outside) / (n * n))] {
             assert!((found - expected).abs() <= 1e-6, "index {n}: {found} for {expected}");
         }

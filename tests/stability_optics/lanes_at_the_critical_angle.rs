@@ -8,14 +8,14 @@ use abbe::spectrum::Curve;
 use crate::support::larger::larger;
 use crate::support::scenes::{EVERY_BRANCH, GROUND, Mean, SINGLE_PATH, body, films_of, image, method, scene, view};
 
-/// N-SF11 at 700, 550 and 400 nm, about.
+/// N-SF11 at about 700, 550 and 400 nm.
 const INDICES: [f64; 3] = [1.77, 1.79, 1.845];
 const SIDE: u32 = 512;
 const SEEDS: u64 = 4;
 const LANES: f32 = 3.0;
 
-/// From inside the glass onto its surface, over sin^2 from 0.9 / n^2 of the blue lane to 1.02 / n^2 of the red one;
-/// beyond the surface everything shines with radiance 1, inside nothing does.
+/// Returns a view from inside the glass onto its surface, over sin^2 from 0.9 / n^2 of the blue lane to 1.02 / n^2 of
+/// the red one. Beyond the surface everything has a radiance of 1. Inside, nothing emits light.
 fn text() -> String {
     let [low, high] =
         [(0.9, INDICES[2]), (1.02, INDICES[0])].map(|(share, n): (f64, f64)| libm::asin(share.sqrt() / n));
@@ -27,7 +27,7 @@ fn text() -> String {
         + &body("sky", "emissive = { radiance = 1 }", &["plane = { point = [0, 9, 0], normal = [0, -1, 0] }"])
 }
 
-/// Mean transmittance times n^2 of each lane over the image, by the midpoint rule.
+/// Returns the mean of each lane's transmittance times n^2 over the image, by the midpoint rule.
 fn expected(scene: &Scene<Curve>) -> [f64; 3] {
     const STEPS: u32 = 1000;
     let place = |step: u32| (f64::from(step) + 0.5) / f64::from(STEPS) * f64::from(SIDE);
@@ -48,7 +48,7 @@ fn d9_lanes_that_disagree_at_the_critical_angle_keep_their_energy() {
     mean.assert_near(expected, 1, "random choice");
     assert!(mean.worst_error(expected) <= 0.003, "sigma is {}", mean.worst_error(expected));
 
-    // One sample a pixel: what a pixel shows is the weight of its path.
+    // With one sample per pixel, a pixel shows the weight of its path.
     let weights = films
         .iter()
         .flat_map(|film| &film.pixels)

@@ -1,4 +1,4 @@
-//! Rows B1 to B3 and B6 of the stability catalog: boxes of the tree, and vertices that are no numbers. (Rows B4 and B5
+//! Rows B1 to B3 and B6 of the stability catalog: boxes of the tree, and vertices that are not numbers. (Rows B4 and B5
 //! are tested where the tree is built.)
 
 use std::cell::Cell;
@@ -12,7 +12,7 @@ use crate::meshes::files::file;
 use crate::support::random::Random;
 use crate::support::scenes::{body, object, scene, view};
 
-/// Whether a walk shows an item.
+/// Records whether a walk reaches an item.
 struct Reached<'a> {
     bvh: &'a Bvh,
     item: u32,
@@ -35,7 +35,7 @@ fn reaches(boxes: &[Bounds], ray: &Ray, item: u32) -> bool {
     any.reached
 }
 
-/// A point whose coordinates f32 holds, so that its box is not rounded outward.
+/// Returns a point whose coordinates are exact in f32, so that its box is not rounded outward.
 fn single(point: DVec3) -> DVec3 {
     point.as_vec3().as_dvec3()
 }
@@ -48,7 +48,7 @@ fn b1_a_ray_within_a_side_of_a_box_reaches_it() {
         let mut bounds = Bounds::around(corners);
         let axis = (random.number() * 3.0) as usize;
         if random.number() < 0.3 {
-            // A wall: the box is flat.
+            // A wall, whose box is flat.
             bounds.max[axis] = bounds.min[axis];
         }
         let mut target = bounds.min + (bounds.max - bounds.min) * random.number();
@@ -71,7 +71,7 @@ fn b2_a_ray_that_hits_a_triangle_on_the_rim_of_its_box_reaches_the_box() {
             let corner = single(OFFSET * offset + random.direction());
             let mut arm = |axis: DVec3| single(corner + axis * size * random.between(-1.0, 1.0));
             let points = [corner, arm(DVec3::X), arm(DVec3::Y)];
-            // The triangle is half a side of the flat box: aim at its corner, or along the edges they share.
+            // The triangle is half a side of the flat box. Rays aim at its corner, or along the edges that both share.
             let along = if random.number() < 0.5 { 0.0 } else { random.number() };
             let target = corner + (points[1] - corner) * along;
             let ray = Ray::new(target + random.direction() * 5.0 * size, DVec3::X);
@@ -108,7 +108,7 @@ fn b3_mesh_files_with_vertices_that_are_not_finite_are_refused() {
     for (name, text) in [("mesh.ply", ply as fn(&str) -> String), ("mesh.obj", obj)] {
         for number in ["nan", "inf", "-inf", "1e39"] {
             let message = refusal(name, text(number)).unwrap_or_else(|| panic!("{name} with {number} is accepted"));
-            // By the line where it is told, else by the vertex.
+            // The message names the line if it is known, and otherwise the vertex.
             let place = ["vertex 1 ", "line 11 ", "the vertex in line 2 "];
             assert!(place.iter().any(|place| message.contains(place)), "{name} with {number}: {message}");
         }
@@ -132,7 +132,7 @@ fn b3_the_largest_vertices_a_file_can_hold_build_a_mesh_that_is_hit() {
     assert!(shape.area().is_finite() && shape.pdf(&ray, &intersection).is_finite());
 }
 
-/// Long shapes that run aslant, about and beside the center of the world.
+/// Returns long, slanting shapes around and beside the center of the world.
 fn needles(random: &mut Random) -> Vec<Shape> {
     let mesh = Mesh::new(
         Vertices::Double(vec![DVec3::NEG_ONE, DVec3::X, DVec3::Y, DVec3::ONE]),
@@ -183,7 +183,7 @@ fn b6_boxes_of_pieces_hold_all_that_rays_meet_of_a_shape() {
     assert!(pieces > 3 * shapes.len() && hits > 20_000, "{pieces} pieces, {hits} hits");
 }
 
-/// Each ray entered the boxes of every third needle.
+/// Each ray used to enter the boxes of every third needle.
 #[test]
 fn b6_objects_whose_pieces_have_boxes_are_met_as_if_they_were_whole_and_few_are_tried() {
     const NEEDLES: usize = 1000;
@@ -222,7 +222,7 @@ fn b6_objects_whose_pieces_have_boxes_are_met_as_if_they_were_whole_and_few_are_
     assert!(hits > 1000 && tried.get() < 5000 * NEEDLES / 10, "{hits} hits, {} tried", tried.get());
 }
 
-/// Long triangles between points of a lattice: they are cut in planes of the lattice, within which many rays run.
+/// Long triangles between points of a lattice. They are split in planes of the lattice, in which many rays run.
 #[test]
 fn b6_triangles_that_are_cut_are_met_as_if_they_were_whole() {
     let mut random = Random::new(36);

@@ -1,4 +1,4 @@
-//! Rows X4 and S6 of the stability catalog: light in closed glass bodies comes in and goes out by turns.
+//! Rows X4 and S6 of the stability catalog: light alternately enters and leaves closed glass bodies.
 
 use abbe::math::{DMat3, DVec3, Ray, Transform};
 use abbe::shape::{Cube, Ellipsoid, Shape, Sphere};
@@ -9,19 +9,20 @@ use crate::support::random::Random;
 
 const INDEX: f64 = 1.5;
 pub const EVENTS: u64 = 200_000;
-/// Crossings after which a ray that total reflection traps is left alone.
+/// Number of crossings after which a ray that is trapped by total reflection is abandoned.
 const MOST: u32 = 40;
 
-/// What happened to the rays.
+/// Counts of what happened to the rays.
 #[derive(Clone, Copy, Default, PartialEq, Debug)]
 pub struct Tally {
     pub events: u64,
     pub wrong: u64,
-    /// Of every crossing's part and distance in units of the body's size.
+    /// Hash of the part of every crossing, and of its distance in units of the body's size.
     hash: u64,
 }
 
-/// The way on from an interface: reflected or refracted, at random by Fresnel's share; and whether it passed.
+/// Returns the direction after an interface, reflected or refracted at random by the Fresnel reflectance, and whether
+/// the ray passed through.
 ///
 /// Born & Wolf 1999, section 1.5, equations 8 and 21, without polarization.
 fn scatter(direction: DVec3, normal: DVec3, leaving: bool, random: &mut Random) -> (DVec3, bool) {
@@ -38,7 +39,7 @@ fn scatter(direction: DVec3, normal: DVec3, leaving: bool, random: &mut Random) 
     }
 }
 
-/// Follows a ray from outside until it goes for good. A convex body is entered once.
+/// Follows a ray from outside until it leaves for good. A convex body is entered only once.
 pub fn follow(body: &Shape, mut ray: Ray, size: f64, random: &mut Random, tally: &mut Tally) {
     let mut inside = false;
     for event in 0..MOST {
@@ -62,10 +63,10 @@ pub fn follow(body: &Shape, mut ray: Ray, size: f64, random: &mut Random, tally:
     }
 }
 
-/// Rays from 4 sizes away, aimed at targets of the body, until enough has happened.
+/// Follows rays from 4 sizes away, aimed at targets of the body, until enough has happened.
 ///
-/// Rays to the rim of a body of triangles as `origin` sees it touch the body in a point that faces both ways: of those
-/// there `steepness`, the least cosine between a ray and the target's arm, leaves out.
+/// At the rim of a body of triangles, as seen from `origin`, rays touch the body in a point that faces both ways. Rays
+/// for which the cosine to the target's arm is below `steepness` are left out.
 fn tally(
     (body, center, size): (&Shape, DVec3, f64),
     events: u64,
@@ -88,13 +89,13 @@ fn tally(
     tally
 }
 
-/// The least steepness that leaves nothing out.
+/// A steepness that leaves nothing out.
 pub const ALL: f64 = -2.0;
 
-/// Size, and coordinate offset in sizes.
+/// Size, and coordinate offset in units of size.
 const PLACES: [(f64, f64); 6] = [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 100.0), (1e-6, 0.0), (1.0, 1e4)];
 
-/// A point of a face: anywhere inside the body near it, on an edge, or a corner.
+/// The target of a ray: anywhere on a face or inside the body near it, on an edge, or at a corner.
 #[derive(Clone, Copy, Debug)]
 pub enum Aim {
     Anywhere,
@@ -136,22 +137,22 @@ fn x4_rays_aimed_at_corners_enter_and_leave_a_glass_mesh_by_turns() {
     check_mesh(Aim::Corner);
 }
 
-/// A turn about no axis of the world.
+/// Returns a rotation about none of the world's axes.
 fn turn(degrees: f64) -> Transform {
     Transform::rotate(DVec3::new(0.3, -1.0, 0.6), degrees)
 }
 
-/// Maps of the unit body: as it is, turned, thin, thin and turned, sheared.
+/// Returns maps of the unit body: as it is, turned, thin, thin and turned, sheared.
 pub fn maps() -> [Transform; 5] {
     let thin = Transform::scale(DVec3::new(1.0, 1e-3, 0.7));
     let sheared = turn(40.0).then(&Transform::scale(DVec3::new(1.0, 0.2, 0.6))).then(&turn(75.0));
     [Transform::IDENTITY, turn(33.0), thin, thin.then(&turn(33.0)), sheared]
 }
 
-/// Places the unit body everywhere in every form, and aims at the image of what `target` draws from the unit body.
+/// Checks the unit body in every place and form, with rays aimed at the image of what `target` draws on the unit body.
 fn check_unit_body(body: &Shape, target: impl Fn(Aim, &mut Random) -> DVec3) {
     for (form, map) in maps().iter().enumerate() {
-        // The last one stands on the world's origin, where coordinates cancel.
+        // The last place puts the body on the world's origin, where coordinates cancel.
         let standing = (1.0, map.vector(DVec3::Y));
         for (size, center) in PLACES.map(|(size, offset)| (size, OFFSET * offset * size)).into_iter().chain([standing])
         {
@@ -169,7 +170,7 @@ fn check_unit_body(body: &Shape, target: impl Fn(Aim, &mut Random) -> DVec3) {
 fn x4_rays_enter_and_leave_a_glass_cube_by_turns() {
     let cube = Shape::Cube(Cube::new(DVec3::ZERO, DVec3::splat(2.0)));
     check_unit_body(&cube, |aim, random| {
-        // A point of a face: one coordinate is at its end; on an edge two are, at a corner three.
+        // On a face, one coordinate is at its limit. On an edge two are, at a corner three.
         let ends = match aim {
             Aim::Anywhere => 1,
             Aim::Edge => 2,

@@ -1,5 +1,5 @@
-//! Rows X4 and S6 of the stability catalog for meshes that are placed by a map: light in them comes in and goes out by
-//! turns, and a ray that leaves one never meets it again.
+//! Rows X4 and S6 of the stability catalog for meshes that are placed by a map: light alternately enters and leaves
+//! them, and a ray that leaves one never hits it again.
 
 use std::sync::Arc;
 
@@ -12,15 +12,15 @@ use crate::support::bodies::{ball, closed_mesh};
 use crate::support::random::Random;
 use crate::support::scenes::{SINGLE_PATH, body, environment, image, view};
 
-/// The ball of `bodies`, placed.
+/// Returns the ball of `bodies`, placed by a map.
 fn instance(map: &Transform) -> Shape {
     let (points, faces) = ball();
     let Shape::Mesh(mesh) = closed_mesh(points, faces) else { unreachable!("it is a mesh") };
     Shape::Instance(Box::new(Instance::new(mesh, *map).expect("a map that can be turned back")))
 }
 
-/// A target on or in the ball, in its own space; and the least cosine between a ray there and the target's arm, below
-/// which the ray touches the ball in a point that faces both ways.
+/// Returns a target on or in the ball, in its own space, and the least cosine between a ray and the target's arm. Below
+/// that cosine, the ray touches the ball in a point that faces both ways.
 fn target(random: &mut Random) -> (Aim, DVec3, f64) {
     let (points, faces) = ball();
     let [a, b, _] = faces[(random.number() * faces.len() as f64) as usize].map(|i| points[i as usize]);
@@ -52,7 +52,7 @@ fn targets() -> Vec<(Aim, DVec3, f64)> {
     (0..3000).map(|_| target(&mut random)).collect()
 }
 
-/// Sizes, and offsets in sizes.
+/// Sizes, and offsets in units of size.
 const PLACES: [(f64, f64); 6] = [(1.0, 0.0), (1e-3, 0.0), (1e3, 0.0), (1.0, 1e4), (1e-3, 1e6), (1e3, 100.0)];
 
 fn placed(map: &Transform, (size, offset): (f64, f64)) -> Transform {
@@ -76,8 +76,8 @@ fn x4_rays_enter_and_leave_an_instance_of_a_glass_mesh_by_turns() {
 
 #[test]
 fn x4_rays_into_thin_and_sheared_instances_go_astray_no_more_often_than_in_baked_meshes() {
-    // Between the faces of a thin body that meet at its rim a ray aimed exactly there has no room to start, in an
-    // instance as in a baked mesh: counted are those rays, and of all others none.
+    // A ray aimed exactly at the rim of a thin body has no room to start between the faces that meet there, in an
+    // instance as well as in a baked mesh. Such rays are counted, and no others may go astray.
     let (points, faces) = ball();
     let all = targets();
     let inner: Vec<_> = all.iter().copied().filter(|target| matches!(target.0, Aim::Anywhere)).collect();
@@ -88,7 +88,7 @@ fn x4_rays_into_thin_and_sheared_instances_go_astray_no_more_often_than_in_baked
             assert_eq!(result.wrong, 0, "{map:?}: {result:?}");
             let baked = closed_mesh(points.clone(), faces.clone()).transformed(&map);
             let wrong = [&instance(&map), &baked].map(|body| tally(body, &map, &all, place.0, 50_000).wrong as f64);
-            // Counts of rare events have the variance of their mean.
+            // Counts of rare events have a variance equal to their mean.
             assert!(wrong[0] <= wrong[1] + 5.0 * (wrong[0] + wrong[1] + 1.0).sqrt(), "{map:?}: {wrong:?}");
         }
     }
@@ -129,7 +129,7 @@ fn an_instance_is_where_its_baked_triangles_are() {
             let ray = Ray::new(origin, map.point(random.direction() * 0.9 * random.number()) - origin);
             let both = [&placed, &baked].map(|shape| shape.intersect(&ray, f64::INFINITY).expect("it is aimed at"));
             let [a, b] = [placed.point(&ray, &both[0]), baked.point(&ray, &both[1])];
-            // On an edge either of two triangles may be met; the map there and back rounds as much as the thin side
+            // On an edge, either of two triangles may be hit. The map there and back rounds as much as the thin side
             // allows.
             assert!((both[0].t - both[1].t).abs() < 1e-11 * both[1].t, "{map:?}");
             if both[0].part == both[1].part {
@@ -158,8 +158,8 @@ fn copies_of_a_mesh_share_its_triangles() {
     }
 }
 
-/// In the space of a huge mesh that is placed very small, places and directions are beyond numbers of 32 bits: there
-/// boxes of children that are not there were met, and others missed.
+/// In the space of a huge mesh that is placed very small, positions and directions are beyond the range of 32 bits.
+/// There, boxes of missing children used to be hit, and others missed.
 #[test]
 fn copies_whose_own_space_is_beyond_32_bits_are_met_as_others_are() {
     let (points, faces) = ball();
@@ -179,7 +179,7 @@ fn copies_whose_own_space_is_beyond_32_bits_are_met_as_others_are() {
         let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.rgb[1])).sum();
         sum / film.pixels.len() as f64
     };
-    // Too far away to be seen.
+    // The body is too far away to be seen.
     for [radius, scale, away] in [[1e30, 1e-30, 1e9], [1e25, 1e-25, 1e14], [1e30, 1e-15, 1e24]] {
         let found = seen(radius, scale, away);
         assert!((found - 1.0).abs() < 0.02, "{radius:e} at {scale:e} from {away:e}: {found}");

@@ -9,7 +9,7 @@ use crate::support::exact::ExactVector;
 use crate::support::larger::larger;
 use crate::support::random::Random;
 
-/// Size of the surface, its coordinate offset and the distance of the ray's origin, both in sizes.
+/// Size of the surface, then its coordinate offset and the distance of the ray's origin, both in units of size.
 const SETTINGS: [(f64, f64, f64); 12] = [
     (1.0, 1.0, 5.0),
     (1e-6, 1.0, 5.0),
@@ -25,19 +25,19 @@ const SETTINGS: [(f64, f64, f64); 12] = [
     (1e6, 1e5, 1e5),
 ];
 
-/// A ray that left a surface, from where to where, and the corners of the triangle that it left.
+/// A ray that hits a surface, the ray that leaves from there, and the corners of the triangle that it leaves.
 struct Departure {
     context: Ray,
     t: f64,
     point: SurfacePoint,
     leaving: Ray,
     corners: [DVec3; 3],
-    /// The corner that makes a parallelogram of the triangle.
+    /// The corner that completes the triangle to a parallelogram.
     fourth: DVec3,
 }
 
 impl Departure {
-    /// Distance of the new origin from the plane of the triangle.
+    /// Returns the distance of the new origin from the plane of the triangle.
     fn height(&self) -> f64 {
         let [a, b, c] = self.corners.map(ExactVector::from);
         let normal = (b - a).cross(c - a);
@@ -45,8 +45,8 @@ impl Departure {
     }
 }
 
-/// Departures from the triangle (0, 0), (1, 0), (0, 1) of a square turned every way, built as `shape` from its corners,
-/// at the points that `aim` gives.
+/// Tests departures from the triangle (0, 0), (1, 0), (0, 1) of a square in any orientation, which `shape` builds from
+/// its corners. They are at the points that `aim` returns.
 fn departures(
     (size, offset, distance): (f64, f64, f64),
     aim: fn([f64; 2]) -> [f64; 2],
@@ -81,12 +81,12 @@ fn departures(
     panic!("only {tested} rays hit the shape of size {size:e} that they are aimed at");
 }
 
-/// Anywhere in the triangle.
+/// Returns a point anywhere in the triangle.
 fn anywhere([x, y]: [f64; 2]) -> [f64; 2] {
     if x + y > 1.0 { [1.0 - x, 1.0 - y] } else { [x, y] }
 }
 
-/// On the edge that the triangle shares with the other one of the square.
+/// Returns a point on the edge that the triangle shares with the other one of the square.
 fn on_shared_edge([x, _]: [f64; 2]) -> [f64; 2] {
     [x, 1.0 - x]
 }
@@ -99,7 +99,7 @@ fn hits(shape: &Shape, ray: &Ray) -> bool {
     shape.intersect(ray, f64::INFINITY).is_some()
 }
 
-/// Whether a ray hits the other triangle of the square.
+/// Returns whether a ray hits the other triangle of the square.
 fn hits_neighbor(departure: &Departure) -> bool {
     let [_, b, c] = departure.corners;
     hits(&Shape::Triangle(Triangle::new([b, departure.fourth, c])), &departure.leaving)
@@ -124,7 +124,7 @@ fn x2_a_sheet_a_thousandth_of_the_size_away_is_seen_at_every_scale() {
         departures(setting, anywhere, first, |_, departure| {
             let side = departure.point.normal * departure.leaving.direction.dot(departure.point.normal).signum();
             let sheet = Shape::Plane(Plane::new(departure.corners[0] + side * 1e-3 * setting.0, side));
-            // Nearly parallel rays meet the sheet far away, or by rounding never.
+            // Nearly parallel rays hit the sheet far away, or never because of rounding.
             let steep = departure.leaving.direction.dot(side) > 1e-9;
             assert!(!steep || hits(&sheet, &departure.leaving), "{setting:?}: {:?}", departure.leaving);
         });
@@ -186,6 +186,7 @@ fn x7_the_distance_of_the_camera_does_not_move_new_rays_away() {
     let mut highest = 0f64;
     departures((1.0, 1.0, 1e5), anywhere, first, |_, departure| highest = highest.max(departure.height()));
     println!("X7: moved by {highest:.1e} s");
-    // The row allows 1e-9 s; where rays start from triangles by their corners, the distance does not count at all.
+    // The row allows 1e-9 s. Rays start from points that are computed from the triangle's corners, so the distance does
+    // not matter at all.
     assert!(highest <= 64.0 * UNIT_ROUNDOFF, "{highest:e}");
 }

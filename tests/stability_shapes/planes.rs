@@ -8,11 +8,11 @@ use crate::support::exact::{Exact, ExactVector};
 use crate::support::larger::larger;
 use crate::support::random::Random;
 
-/// How far rays start from where they hit; no number of few digits, which would hide roundings of t.
+/// Distance of a ray's start from its hit. A number with few digits would hide rounding errors of t.
 const DISTANCE: f64 = 9.870_123_456_789;
 
-/// The largest errors over many rays that meet a plane through a point at coordinate `offset` under an angle: of the
-/// hit's height over the plane, in roundings of the distance; of t, in roundings over the angle's cosine.
+/// Returns the largest errors over many rays that hit a plane, through a point at coordinate `offset`, at an angle: the
+/// height of the hit above the plane in roundings of the distance, and that of t in roundings over the angle's cosine.
 fn plane_errors(offset: f64, cos: f64) -> [f64; 2] {
     let mut random = Random::new(11);
     let mut worst = [0f64; 2];
@@ -25,7 +25,7 @@ fn plane_errors(offset: f64, cos: f64) -> [f64; 2] {
         let ray = Ray::new(point - direction * DISTANCE, direction);
         let plane = Shape::Plane(Plane::new(point, normal));
         let t = plane.intersect(&ray, f64::INFINITY).expect("the ray was aimed at the plane").t;
-        // The plane normalizes its normal once more: what it keeps is what its points report.
+        // The plane normalizes its normal once more. The normal that it keeps is the one that its points report.
         let kept = plane.point(&ray, &plane.intersect(&ray, f64::INFINITY).expect("as above")).normal;
         let (n, along) = (ExactVector::from(kept), ExactVector::from(ray.direction));
         let start = ExactVector::from(ray.origin) - point.into();
@@ -44,7 +44,7 @@ fn p1_hits_lie_on_a_plane_wherever_it_is() {
     for offset in [0.0, 1e3, 1e6] {
         for cos in [1.0, 1e-2] {
             let [height, _] = plane_errors(offset, cos);
-            // The row allows 8 u (D + C); the difference of points is formed first, so C does not count.
+            // The row allows 8 u (D + C). The difference of points is formed first, so C does not matter.
             assert!(height <= 8.0, "offset {offset:e}, cos {cos:e}: {height} u D");
         }
     }
@@ -80,7 +80,7 @@ fn p3_rays_within_or_beside_a_plane_miss_it() {
             }
         }
     }
-    // Not a number, or never: from a point that is not one, and along no direction.
+    // A ray from a NaN point, along a NaN direction or along no direction hits nothing.
     for shape in flat.iter().chain([&Shape::Cube(Cube::new(DVec3::ZERO, DVec3::ONE))]) {
         for (origin, direction) in [(DVec3::NAN, DVec3::Y), (DVec3::Y, DVec3::NAN), (DVec3::Y, DVec3::ZERO)] {
             assert_eq!(shape.intersect(&Ray { origin, direction }, f64::INFINITY), None, "{shape:?}");
@@ -88,7 +88,7 @@ fn p3_rays_within_or_beside_a_plane_miss_it() {
     }
 }
 
-/// A ray aimed near the rim of the unit disc about `center`, and how far outside the rim it crosses, |d|^2 - 1.
+/// Returns a ray aimed near the rim of the unit disc about `center`, and how far outside the rim it crosses, |d|^2 - 1.
 fn ray_near_rim(center: DVec3, normal: DVec3, nearness: f64, random: &mut Random) -> (Ray, f64) {
     let (sin, cos) = libm::sincos(random.between(0.0, std::f64::consts::TAU));
     let radius = 1.0 + random.between(-nearness, nearness);
@@ -110,7 +110,7 @@ fn p4_the_rim_of_a_disc_is_where_it_should_be() {
             let normal = Ray::new(DVec3::ZERO, random.direction()).direction;
             let center = OFFSET * offset;
             let disc = Shape::Disc(Disc::new(center, normal, 1.0, None).expect("no direction is asked for"));
-            // Half the rays test the row as it stands, half aim at the rim as exactly as they can.
+            // Half of the rays test the row as it stands. The others aim at the rim as exactly as they can.
             let nearness = if ray_index % 2 == 0 { 0.01 } else { 0.0 };
             let (ray, outside) = ray_near_rim(center, normal, nearness, &mut random);
             if disc.intersect(&ray, f64::INFINITY).is_some() != (outside < 0.0) {

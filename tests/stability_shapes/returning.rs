@@ -5,7 +5,8 @@ use abbe::shape::{Cube, Ellipsoid, Quad, Shape, Sphere, Triangle};
 
 use crate::support::random::Random;
 
-/// How many of the rays that leave a shape at targets on it hit it again: on either side, or outside a closed one.
+/// Returns how many of the rays that leave a shape at targets on it hit it again: on either side, or outside a closed
+/// shape.
 fn returns(rays: usize, mut draw: impl FnMut(&mut Random) -> (Shape, DVec3)) -> usize {
     let mut random = Random::new(42);
     let mut again = 0;
@@ -25,7 +26,7 @@ fn returns(rays: usize, mut draw: impl FnMut(&mut Random) -> (Shape, DVec3)) -> 
 
 #[test]
 fn x3_no_ray_hits_what_it_leaves_where_the_coordinates_of_the_surface_are_zero() {
-    // The floors of most scenes: no offset relative to a coordinate of 0 leaves them.
+    // The floors of most scenes. An offset relative to a coordinate of 0 does not leave them.
     let on_floor = |random: &mut Random| DVec3::new(random.between(-1.0, 1.0), 0.0, random.between(-1.0, 1.0));
     let triangle = returns(100_000, |random| {
         let points = std::array::from_fn(|_| on_floor(random));

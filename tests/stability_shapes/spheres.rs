@@ -10,7 +10,7 @@ use crate::support::random::Random;
 
 const RAYS: usize = 20_000;
 
-/// Both roots of |origin + t direction - center| = radius, whatever the direction's length.
+/// Returns both roots of |origin + t direction - center| = radius, for a direction of any length.
 fn exact_roots(center: DVec3, radius: f64, ray: &Ray) -> Option<[Exact; 2]> {
     let (d, n) = (ExactVector::from(center) - ray.origin.into(), ExactVector::from(ray.direction));
     let (length_squared, along, radius) = (n.dot(n), n.dot(d), Exact::from(radius));
@@ -22,7 +22,7 @@ fn exact_roots(center: DVec3, radius: f64, ray: &Ray) -> Option<[Exact; 2]> {
     Some([(along - root) / length_squared, (along + root) / length_squared])
 }
 
-/// A ray from a random side whose line passes `impact` away from the center.
+/// Returns a ray from a random side whose line passes `impact` away from the center.
 fn ray_at_impact(center: DVec3, distance: f64, impact: f64, random: &mut Random) -> Ray {
     let outward = random.direction();
     let across = Frame::about(outward).to_world(DVec3::X);
@@ -61,7 +61,7 @@ fn s1_far_spheres_are_hit_within_16_roundings_of_distance_over_radius() {
 fn s2_rays_that_graze_a_sphere_hit_or_miss_as_they_should() {
     let mut random = Random::new(2);
     let shape = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0));
-    // The last pair tells forms apart: the expanded discriminant is already off by (D / R)^2 roundings.
+    // The last pair distinguishes formulas: the expanded discriminant is already off by (D / R)^2 roundings.
     for (distance, nearness) in [(10.0, 1e-2), (10.0, 1e-4), (10.0, 1e-6), (10.0, 1e-8), (100.0, 1e-12)] {
         let mut hits = 0;
         for _ in 0..RAYS {
@@ -105,7 +105,7 @@ fn s3_both_sides_of_a_sphere_as_large_as_a_wall_are_hit_within_1e8th_of_a_unit()
 fn s4_rays_that_bounce_off_a_sphere_as_large_as_a_wall_cross_the_room() {
     let mut random = Random::new(4);
     let shape = Shape::Sphere(Sphere::new(WALL.0, WALL.1));
-    // Starting too near shows in one of 70 000 rays.
+    // Starting too close to the surface shows in one of 70 000 rays.
     for _ in 0..20 * RAYS {
         let target = DVec3::new(1.0, random.between(1.0, 80.0), random.between(1.0, 160.0));
         let origin = in_the_room(&mut random);
@@ -120,9 +120,9 @@ fn meet(shape: &Shape, ray: &Ray) -> SurfacePoint {
     shape.point(ray, &intersection)
 }
 
-/// A ray that leaves toward the inside starts there and meets the far side.
+/// Checks that a ray that leaves toward the inside starts there and hits the far side.
 fn check_inward(shape: &Shape, (center, radius): (DVec3, f64), point: &SurfacePoint, random: &mut Random) {
-    // Only as long as plain scaling makes it: up to 3 roundings off 1.
+    // The length is only as exact as plain scaling makes it: up to 3 roundings off 1.
     let direction = random.direction().normalize();
     let inward = if direction.dot(point.normal) > 0.0 { -direction } else { direction };
     let leaving = point.leave(inward);
@@ -168,7 +168,7 @@ fn s7_spheres_of_any_size_are_hit_where_they_are() {
 
 #[test]
 fn x5_rays_that_leave_a_sphere_outward_miss_it_and_inward_meet_its_far_side() {
-    // Radius; offset and distance of the ray's origin, in radii.
+    // Radius, then offset and distance of the ray's origin in units of the radius.
     let settings = [
         (1.0, 0.0, 5.0),
         (1.0, 10.0, 5.0),

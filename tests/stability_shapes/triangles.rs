@@ -12,8 +12,8 @@ use crate::support::random::Random;
 
 const RAYS: usize = 20_000;
 
-/// Rays from inside a ball of triangles at coordinate `offset`, aimed at points of its faces: anywhere, on an edge or
-/// at a corner.
+/// Returns rays from inside a ball of triangles at coordinate `offset`, aimed at points of its faces: anywhere, on an
+/// edge or at a corner.
 fn rays_at(points: &[DVec3], faces: &[[u32; 3]], offset: f64) -> [Vec<Ray>; 3] {
     let mut random = Random::new(21);
     std::array::from_fn(|aim| {
@@ -85,7 +85,7 @@ fn t2_of_coincident_triangles_the_one_listed_first_is_hit() {
     }
 }
 
-/// Affine coordinates (u, v) of the crossing of a line with a triangle's plane.
+/// Returns the affine coordinates (u, v) at which a line crosses a triangle's plane.
 fn exact_coordinates([a, b, c]: [DVec3; 3], ray: &Ray) -> [Exact; 2] {
     let (start, along) = (ExactVector::from(ray.origin) - a.into(), ExactVector::from(ray.direction));
     let (e1, e2) = (ExactVector::from(b) - a.into(), ExactVector::from(c) - a.into());
@@ -133,7 +133,7 @@ fn t4_triangles_of_any_size_are_hit_inside_and_missed_outside() {
         for _ in 0..5_000 {
             let points = std::array::from_fn(|_| random.direction() * size);
             let [a, b] = random.pair();
-            // Twice the triangle's parallelogram, so that about a quarter of the rays hit.
+            // Twice the triangle's parallelogram in each direction, so that about an eighth of the rays hit.
             let (a, b) = (2.0 * a - 0.5, 2.0 * b - 0.5);
             let target = points[0] + (points[1] - points[0]) * a + (points[2] - points[0]) * b;
             let origin = random.direction() * 5.0 * size;

@@ -1,4 +1,4 @@
-//! Materials written as text, and light that arrives at them.
+//! Materials parsed from text, and scattering contexts to test them with.
 
 use std::sync::LazyLock;
 
@@ -9,7 +9,7 @@ use abbe::trace::prepare;
 
 use super::scenes::{SINGLE_PATH, method, scene, view};
 
-/// Materials that others are made of.
+/// Materials that layered materials refer to.
 pub const PARTS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
     [material.mirror]\nmirror = { reflectance = 1 }\n\
     [material.pane]\nthin = { index = 1.5 }\n\
@@ -18,10 +18,10 @@ pub const PARTS: &str = "[material.white]\ndiffuse = { reflectance = 1 }\n\
     [material.satin]\nplastic = { reflectance = { rgb = [0.9, 0.1, 0.5] }, roughness = 0.31 }\n\
     [material.silver]\nconductor = { n = 1e-6, k = 100, roughness = 0.6 }\n";
 
-/// A metal that takes less than 1e-9 of the light at right angles.
+/// A metal that absorbs less than 1e-9 of the light at normal incidence.
 pub const LOSSLESS: &str = "n = 1e-6, k = 100";
 
-/// The material of a text, in three bands.
+/// Parses a material and prepares it for three bands.
 pub fn material(text: &str) -> Material<Table> {
     let object = "[[object]]\nshape.sphere = { center = [0, 0, 0], radius = 1 }\nmaterial = \"tested\"\n";
     let text = view([0.0, 0.0, 9.0], [0.0; 3], 1.0, 1) + PARTS + &format!("[material.tested]\n{text}\n{object}");
@@ -31,15 +31,15 @@ pub fn material(text: &str) -> Material<Table> {
 
 pub const NORMAL: DVec3 = DVec3::new(0.6, -0.48, 0.64);
 
-/// A unit vector at a cosine to the normal.
+/// Returns a unit vector whose angle to `NORMAL` has the given cosine.
 pub fn toward(cos: f64, azimuth: f64) -> DVec3 {
     Frame::about(NORMAL).to_world(about_z(cos, azimuth)).normalize()
 }
 
-/// Three bands, as of [`material`].
+/// The three bands of [`material`].
 static WAVES: LazyLock<Waves> = LazyLock::new(|| Basis::rgb(ColorSpace::Rec709).waves());
 
-/// Light from a surface under a medium of an index, toward `wo`.
+/// Returns the context of scattering toward `wo` on a surface below a medium of the given index.
 pub fn context<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> ScatterContext<'_, N> {
     let [incident, beyond] = [Index::Same(index); 2];
     ScatterContext {
@@ -59,14 +59,14 @@ pub fn context<const N: usize>(draw: &Draw<N>, wo: DVec3, index: f64) -> Scatter
     }
 }
 
-/// A unit vector at a cosine to the z axis.
+/// Returns a unit vector whose angle to the z axis has the given cosine.
 pub fn about_z(cos: f64, azimuth: f64) -> DVec3 {
     let (sin, (y, x)) = ((1.0 - cos * cos).max(0.0).sqrt(), libm::sincos(azimuth));
     DVec3::new(sin * x, sin * y, cos)
 }
 
-/// What each band shows of an even environment, whose radiance over n^2 is 1, with the standard error if draws are
-/// independent.
+/// Estimates what each band reflects and transmits of a uniform environment whose radiance over n^2 is 1. Returns each
+/// mean with the standard error that independent draws would have.
 pub fn furnace(material: &Material<Table>, context: &ScatterContext<4>, draws: u32) -> [[f64; 2]; 3] {
     let (mut sums, mut branches) = ([[0.0; 2]; 3], Vec::new());
     for u in points(draws) {
@@ -87,7 +87,7 @@ pub fn furnace(material: &Material<Table>, context: &ScatterContext<4>, draws: u
     })
 }
 
-/// The points of Hammersley in the unit square.
+/// Returns the Hammersley points in the unit square.
 pub fn points(count: u32) -> impl Iterator<Item = [f64; 2]> {
     (0..count).map(move |i| [(f64::from(i) + 0.5) / f64::from(count), f64::from(i.reverse_bits()) / 4_294_967_296.0])
 }

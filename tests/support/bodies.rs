@@ -1,4 +1,4 @@
-//! Closed bodies for rays to meet.
+//! Closed bodies to trace rays against.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,13 +8,13 @@ use abbe::shape::{Mesh, Shape, Vertices};
 const AROUND: u32 = 24;
 const RINGS: u32 = 11;
 
-/// Points and outward faces of a closed, convex ball of 528 triangles about the origin, radius 1.
+/// Returns the points and outward faces of a closed, convex ball of 528 triangles about the origin, radius 1.
 pub fn ball() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut points = vec![DVec3::Z, -DVec3::Z];
     for ring in 1..=RINGS {
         for step in 0..AROUND {
             let polar = PI * f64::from(ring) / f64::from(RINGS + 1);
-            // Turned a little, so that no vertex but the poles lies in a plane of the axes.
+            // Rotated a little, so that only the poles lie in a coordinate plane.
             let azimuth = TAU * (f64::from(step) + 0.37) / f64::from(AROUND);
             let (sin, cos) = libm::sincos(polar);
             points.push(DVec3::new(sin * libm::cos(azimuth), sin * libm::sin(azimuth), cos));
@@ -23,7 +23,7 @@ pub fn ball() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (points, ball_faces(AROUND, RINGS))
 }
 
-/// Faces of a ball of two poles and as many rings of points between them, each ring after the one before.
+/// Returns the faces of a ball with two poles and `rings` rings of `around` points between them, stored ring by ring.
 pub fn ball_faces(around: u32, rings: u32) -> Vec<[u32; 3]> {
     let vertex = |ring: u32, step: u32| 2 + (ring - 1) * around + step % around;
     let mut faces = Vec::new();
@@ -38,7 +38,7 @@ pub fn ball_faces(around: u32, rings: u32) -> Vec<[u32; 3]> {
     faces
 }
 
-/// The mesh of some faces; panics if it is not closed.
+/// Builds a mesh and panics if it is not closed.
 pub fn closed_mesh(points: Vec<DVec3>, faces: Vec<[u32; 3]>) -> Shape {
     let mesh = Mesh::new(Vertices::Double(points), faces).expect("the faces have areas");
     assert_eq!((mesh.degenerate(), mesh.open_edges()), (0, 0));

@@ -1,13 +1,13 @@
 //! The chi-squared test of counts against probabilities.
 
-/// Significance of all tests of one kind together.
+/// Significance of all tests of one kind taken together.
 const SIGNIFICANCE: f64 = 0.01;
 /// Expected count below which bins are pooled.
 const LEAST: f64 = 5.0;
 
-/// Panics if counts in bins deviate from their probabilities more than chance allows, in one of `tests` tests.
+/// Panics if the counts in bins deviate from their probabilities by more than chance allows, in one of `tests` tests.
 ///
-/// Each test gets the share of the significance that is right for independent ones: Sidak 1967.
+/// Each test gets the share of the significance that suits independent tests: Sidak 1967.
 pub fn check(name: &str, counts: &[u64], probabilities: &[f64], tests: u32) {
     let total = counts.iter().sum::<u64>() as f64;
     let mut pooled = (0.0, 0.0);
@@ -28,9 +28,9 @@ pub fn check(name: &str, counts: &[u64], probabilities: &[f64], tests: u32) {
     assert!(chance >= least, "{name}: chi-squared {statistic:.1} in {bins} bins has chance {chance:.2e} < {least:.2e}");
 }
 
-/// Probability of a greater chi-squared of many degrees of freedom: Wilson & Hilferty 1931.
+/// Returns the probability of a greater chi-squared with many degrees of freedom: Wilson & Hilferty 1931.
 ///
-/// The cube root of chi-squared over its degrees of freedom is nearly normal.
+/// The cube root of chi-squared over its degrees of freedom is nearly normally distributed.
 fn upper_tail(statistic: f64, degrees: f64) -> f64 {
     let variance = 2.0 / (9.0 * degrees);
     let normal = (libm::cbrt(statistic / degrees) - (1.0 - variance)) / variance.sqrt();

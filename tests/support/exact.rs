@@ -1,11 +1,11 @@
-//! Arithmetic with about 31 digits: the truth that results in 64 bits are measured against.
+//! Arithmetic with about 31 digits: the reference that 64-bit results are measured against.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use abbe::math::DVec3;
 
-/// An unevaluated sum of two f64, the second at most half a unit in the last place of the first.
+/// An unevaluated sum of two f64. The second is at most half a unit in the last place of the first.
 ///
 /// Hida, Li & Bailey 2001, *Algorithms for Quad-Double Precision Floating Point Arithmetic*, section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct Exact {
 impl Exact {
     pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
-    /// The nearest f64.
+    /// Returns the nearest f64.
     pub fn rounded(self) -> f64 {
         self.high
     }
@@ -26,7 +26,7 @@ impl Exact {
         if self.high < 0.0 { -self } else { self }
     }
 
-    /// The root of a number that is not negative: one Newton step from the rounded one (Karp & Markstein 1997).
+    /// Returns the square root of a nonnegative number: one Newton step from the rounded root (Karp & Markstein 1997).
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::ZERO;
@@ -43,20 +43,20 @@ impl From<f64> for Exact {
     }
 }
 
-/// a + b without error (Knuth 1969, theorem B of section 4.2.2).
+/// Adds a and b without error (Knuth 1969, theorem B of section 4.2.2).
 fn sum(a: f64, b: f64) -> Exact {
     let high = a + b;
     let of_b = high - a;
     Exact { high, low: (a - (high - of_b)) + (b - of_b) }
 }
 
-/// a + b without error where |a| >= |b| (Dekker 1971).
+/// Adds a and b without error if |a| >= |b| (Dekker 1971).
 fn quick_sum(a: f64, b: f64) -> Exact {
     let high = a + b;
     Exact { high, low: b - (high - a) }
 }
 
-/// a b without error.
+/// Multiplies a and b without error.
 fn product(a: f64, b: f64) -> Exact {
     let high = a * b;
     Exact { high, low: a.mul_add(b, -high) }
@@ -100,7 +100,7 @@ impl Mul for Exact {
 impl Div for Exact {
     type Output = Self;
 
-    /// Long division, three digits of 53 bits each.
+    /// Long division with three digits of 53 bits each.
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
         let left = self - other * first.into();
@@ -170,7 +170,7 @@ impl Mul<Exact> for ExactVector {
 fn exact_arithmetic_carries_31_digits() {
     let number = |x: f64| Exact::from(x);
     let third = number(1.0) / number(3.0);
-    // Stored digits of the square root of 2 beyond the 53 bits of its f64 (OEIS A002193).
+    // The digits of the square root of 2 beyond the 53 bits of its f64 (OEIS A002193).
     let root = Exact { high: std::f64::consts::SQRT_2, low: -9.667_293_313_452_913e-17 };
     let errors = [
         third * number(3.0) - number(1.0),

@@ -1,13 +1,14 @@
-//! Fresnel's equations of 1823 for surfaces of clear media, written without a look at the renderer's own.
+//! Fresnel's equations of 1823 for transparent media, written independently of the renderer's own code.
 
-/// Reflectances of s and of p, from vacuum to an index at a cosine.
+/// Returns the s and p reflectances of an interface from vacuum to index `n`, at the cosine of incidence `cos`.
 pub fn reflectances(n: f64, cos: f64) -> [f64; 2] {
     let beyond = (n * n - 1.0 + cos * cos).sqrt() / n;
     let amplitudes = [(cos - n * beyond) / (cos + n * beyond), (n * cos - beyond) / (n * cos + beyond)];
     amplitudes.map(|amplitude| amplitude * amplitude)
 }
 
-/// Unpolarized reflectance by the angles on both sides of a surface in radians: the sine and the tangent law.
+/// Returns the unpolarized reflectance from the angles of incidence and refraction in radians: the sine and tangent
+/// laws.
 pub fn reflectance_by_angles(incidence: f64, refraction: f64) -> f64 {
     let (difference, sum) = (incidence - refraction, incidence + refraction);
     0.5 * ((difference.sin() / sum.sin()).powi(2) + (difference.tan() / sum.tan()).powi(2))

@@ -1,4 +1,4 @@
-//! What several tests need; each test uses its part of it.
+//! Helpers shared by several tests. Each test uses only some of them.
 
 #![allow(dead_code)]
 

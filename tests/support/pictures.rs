@@ -1,11 +1,11 @@
-//! Pictures of every kind that is read, written by tests, and PNGs that the program wrote.
+//! Picture files of every kind that the renderer reads, written by tests, and PNGs that the program wrote.
 
 use std::fs;
 use std::path::Path;
 
 use png::{BitDepth, ColorType};
 
-/// What the numbers of a PNG are.
+/// The format of a PNG's numbers.
 #[derive(Clone, Copy)]
 pub struct Kind {
     pub color: ColorType,
@@ -26,13 +26,13 @@ pub const RGBA8: Kind = kind(ColorType::Rgba, BitDepth::Eight);
 pub const RGBA16: Kind = kind(ColorType::Rgba, BitDepth::Sixteen);
 
 impl Kind {
-    /// Bytes of a texel.
+    /// Bytes per texel.
     pub fn bytes(self) -> usize {
         self.color.samples() * self.depth as usize / 8
     }
 }
 
-/// A PNG; numbers of 16 bits begin with the high byte.
+/// Encodes a PNG. 16-bit numbers are big-endian.
 pub fn png(width: u32, kind: Kind, numbers: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let height = numbers.len() / (kind.bytes() * width as usize);
@@ -65,7 +65,8 @@ pub fn read_png(path: &Path) -> Picture {
     Picture { width: info.width as usize, pixels: bytes.as_chunks().0.to_vec() }
 }
 
-/// A Radiance picture, rows from the top, rounded down to 8 bits. Rows that can be packed are.
+/// Encodes a Radiance picture, rows from the top, rounded down to 8 bits. Rows are run-length encoded where the format
+/// allows it.
 pub fn radiance(width: usize, texels: &[[f32; 3]]) -> Vec<u8> {
     let rgbe = |rgb: &[f32; 3]| {
         let (_, exponent) = libm::frexpf(rgb.iter().copied().fold(0.0, f32::max));
@@ -94,7 +95,7 @@ pub fn radiance(width: usize, texels: &[[f32; 3]]) -> Vec<u8> {
     file
 }
 
-/// A JPEG of this many numbers a texel, 1 or 3.
+/// Encodes a JPEG with 1 or 3 numbers per texel, depending on the length of `numbers`.
 pub fn jpeg(size: [u16; 2], quality: u8, progressive: bool, numbers: &[u8]) -> Vec<u8> {
     let [width, height] = size;
     let color = match numbers.len() / (usize::from(width) * usize::from(height)) {

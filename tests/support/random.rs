@@ -2,7 +2,7 @@
 
 use abbe::math::{DVec3, ball_surface};
 
-/// A stream of independent numbers.
+/// A stream of independent random numbers.
 ///
 /// Steele, Lea & Flood 2014, *Fast Splittable Pseudorandom Number Generators* (SplitMix64).
 pub struct Random(u64);
@@ -19,22 +19,23 @@ impl Random {
         x ^ (x >> 31)
     }
 
-    /// Uniform in [0, 1).
+    /// Returns a uniform number in [0, 1).
     pub fn number(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Uniform in the unit square.
+    /// Returns a uniform point in the unit square.
     pub fn pair(&mut self) -> [f64; 2] {
         [self.number(), self.number()]
     }
 
-    /// Uniform between two numbers.
+    /// Returns a uniform number between two others.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.number()
     }
 
-    /// A copy of a file that is cut off, changed near its beginning or has four bits turned over, by turns.
+    /// Returns a damaged copy of a file. By turns it is truncated, has one byte changed near its beginning, or has four
+    /// bits flipped.
     pub fn damaged(&mut self, whole: &[u8], turn: usize) -> Vec<u8> {
         let mut bytes = whole.to_vec();
         let mut within = |most: usize| (self.number() * most as f64) as usize;
@@ -52,7 +53,7 @@ impl Random {
         bytes
     }
 
-    /// A uniform unit vector.
+    /// Returns a uniform unit vector.
     pub fn direction(&mut self) -> DVec3 {
         ball_surface(self.pair())
     }

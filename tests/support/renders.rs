@@ -1,13 +1,13 @@
-//! Many renders at once.
+//! Many renders in parallel.
 
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-/// Bytes of a thread's stack. A thread that waits for a part of one render takes up another meanwhile, and of that
-/// another: so many lie on one stack that the 2 MB of a thread do not always hold them.
+/// Bytes of a thread's stack. A thread that waits for part of one render takes up another meanwhile, and so on. So many
+/// renders then lie on one stack that a thread's default 2 MB may overflow.
 const STACK: usize = 64 << 20;
 
-/// What comes of the numbers below `count`, each of which may be a render.
+/// Returns the results of `one` for all numbers below `count`, computed in parallel. Each may be a render.
 pub fn many<T: Send>(count: u64, one: impl Fn(u64) -> T + Send + Sync) -> Vec<T> {
     let threads = ThreadPoolBuilder::new().stack_size(STACK).build().expect("threads can be started");
     threads.install(|| (0..count).into_par_iter().map(one).collect())

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
 
-/// A folder that is empty at first and gone at last.
+/// A temporary folder: empty at first, deleted in the end.
 pub struct Folder(tempfile::TempDir);
 
-/// What the command answered.
+/// The exit code and the output of the command.
 pub struct Answer {
     pub code: Option<i32>,
     pub stdout: String,
@@ -20,7 +20,7 @@ impl Folder {
         Self(tempfile::tempdir().expect("a temporary folder can be made"))
     }
 
-    /// A folder with a file in it.
+    /// Creates a folder with a file in it.
     pub fn with(name: &str, content: impl AsRef<[u8]>) -> Self {
         let folder = Self::new();
         folder.write(name, content);
@@ -35,7 +35,7 @@ impl Folder {
         self.path().join(name)
     }
 
-    /// Writes a file, which may stand in folders that are not there yet.
+    /// Writes a file and creates missing parent folders.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         let path = self.path_of(name);
         fs::create_dir_all(path.parent().expect("a file stands in a folder")).expect("folders can be made");
@@ -46,7 +46,7 @@ impl Folder {
         fs::read(self.path_of(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// The names in the folder, in order.
+    /// Returns the sorted names in the folder.
     pub fn listing(&self) -> Vec<String> {
         let entries = fs::read_dir(self.path()).expect("the folder can be read");
         let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
@@ -57,14 +57,14 @@ impl Folder {
 }
 
 impl Answer {
-    /// Refused with this text and nothing on stdout.
+    /// Asserts that the command failed with this text on stderr and nothing on stdout.
     pub fn assert_refused(&self, code: i32, stderr: &str) {
         assert_eq!(self.stderr, stderr);
         assert_eq!((self.code, &*self.stdout), (Some(code), ""));
     }
 }
 
-/// Runs `render` in a folder, its stderr no terminal.
+/// Runs `render` in a folder, with a stderr that is not a terminal.
 pub fn render(folder: &Folder, arguments: &[&str]) -> Answer {
     let mut command = Command::new(env!("CARGO_BIN_EXE_render"));
     let output = command.current_dir(folder.path()).args(arguments).output().expect("the command can be started");

@@ -1,4 +1,4 @@
-//! Scenes written as text in a test, rendered, and their means judged.
+//! Renders scenes written as text in a test, and judges their means.
 
 use std::fmt::Debug;
 use std::ops::Range;
@@ -12,13 +12,13 @@ use abbe::{Diagnostic, Error, Image, Options};
 
 use super::larger::larger;
 
-/// Follows every branch down to a weight that no pixel can show.
+/// Follows every branch down to a weight that no pixel can resolve.
 pub const EVERY_BRANCH: Transport = Transport::Deterministic { cutoff: 1e-20, most: u64::MAX };
-/// What the plan takes where light is left to chance.
+/// The plan's choice where light is sampled randomly.
 pub const SPLITTING: Transport = Transport::Random { split: 0.05, roulette: 0.05 };
-/// The path tracer: one branch at every surface, one light at every vertex.
+/// The path tracer: one branch at every surface and one light at every vertex.
 pub const SINGLE_PATH: Transport = Transport::Random { split: 1.0, roulette: 0.05 };
-/// A polarizer and a wave plate before the middle of a room, so that light has all components of Stokes vectors.
+/// A polarizer and a wave plate in front of the middle of a room, so that its light has all Stokes components.
 pub const SHEETS: &str = r#"
 [material.sheet]
 polarizer = { axis = [1, 0.5, 0], extinction = 0.05 }
@@ -34,21 +34,21 @@ material = "plate"
 
 /// The plane y = 0.
 pub const GROUND: &str = "plane = { point = [0, 0, 0], normal = [0, 1, 0] }";
-/// What lamps shine that are aimed at or met.
+/// The radiance of the two kinds of [`lamps`].
 const RADIANCE: &str = "{ rgb = [10, 20, 5] }";
 
-/// The world that a text without mistakes describes.
+/// Compiles a scene from a text without mistakes.
 pub fn scene(text: &str) -> Scene<Curve> {
     scene_in(Path::new(""), text)
 }
 
-/// The same of a text that names files in a folder.
+/// Compiles a scene from a text that may name files in a folder.
 pub fn scene_in(folder: &Path, text: &str) -> Scene<Curve> {
     let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
     source.compile().unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// The first mistake of a text that is refused, which may name files in a folder.
+/// Returns the first mistake in a text that must be refused. The text may name files in a folder.
 pub fn refusal_in(folder: &Path, text: &str) -> Diagnostic {
     let source = Source { path: folder.join("scene.toml"), text: text.to_owned() };
     match source.compile() {
@@ -57,19 +57,19 @@ pub fn refusal_in(folder: &Path, text: &str) -> Diagnostic {
     }
 }
 
-/// The image of a text as its plan has it, by one thread.
+/// Renders a text as its plan decides, on one thread.
 pub fn rendered(text: &str) -> Image {
     rendered_with(text, &Options { threads: Some(1), ..Options::default() })
 }
 
-/// The same with other options.
+/// Renders a text with the given options.
 pub fn rendered_with(text: &str, options: &Options) -> Image {
     let scene = Scene::parse(text, "").unwrap_or_else(|error| panic!("{error}\n{text}"));
     abbe::render(&scene, options).expect("it renders")
 }
 
-/// The camera and the film of one pixel that looks along -z at hardly more than a point, with more keys of both, each
-/// behind a comma.
+/// Returns the camera and the film of one pixel that looks along -z at hardly more than a point. `camera` and `film`
+/// add more keys, each after a comma.
 pub fn one_pixel(camera: &str, film: &str) -> String {
     format!(
         "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = 1e-6{camera} }}\n\
@@ -77,7 +77,7 @@ pub fn one_pixel(camera: &str, film: &str) -> String {
     )
 }
 
-/// The tables of a scene's camera and of a square film.
+/// Returns the tables of a camera and a square film.
 pub fn view(position: [f64; 3], look_at: [f64; 3], vertical_fov: f64, side: u32) -> String {
     format!(
         "[camera]\nposition = {position:?}\nlook_at = {look_at:?}\nvertical_fov = {vertical_fov:?}\n\
@@ -85,23 +85,24 @@ pub fn view(position: [f64; 3], look_at: [f64; 3], vertical_fov: f64, side: u32)
     )
 }
 
-/// An object of a material that stands elsewhere.
+/// Returns an object whose material is defined elsewhere.
 pub fn object(material: &str, shape: &str) -> String {
     format!("[[object]]\nshape.{shape}\nmaterial = \"{material}\"\n")
 }
 
-/// A material and objects of it.
+/// Returns a material and objects made of it.
 pub fn body(name: &str, material: &str, shapes: &[&str]) -> String {
     let objects = shapes.iter().map(|shape| object(name, shape));
     format!("[material.{name}]\n{material}\n{}", objects.collect::<String>())
 }
 
-/// A parallelogram by its center and half of its edges.
+/// Returns a parallelogram with the given center and half edges.
 pub fn quad(center: impl Into<[f64; 3]>, u: impl Into<[f64; 3]>, v: impl Into<[f64; 3]>) -> String {
     format!("quad = {{ center = {:?}, u = {:?}, v = {:?} }}", center.into(), u.into(), v.into())
 }
 
-/// A lamp that is aimed at, and the same as glass that only shines, which is met by chance and never aimed at.
+/// Returns two versions of a lamp: an emissive one that is sampled by next-event estimation, and black glass with the
+/// same emission that only random paths hit.
 pub fn lamps(shapes: &[&str]) -> [String; 2] {
     let dark = "index = 1.5, reflectance = 0, transmittance = 0, priority = 9";
     [
@@ -110,12 +111,12 @@ pub fn lamps(shapes: &[&str]) -> [String; 2] {
     ]
 }
 
-/// A light of the same radiance everywhere around.
+/// Returns a uniform environment light.
 pub fn environment(radiance: f64) -> String {
     format!("[[light]]\nenvironment = {{ radiance = {radiance:?} }}\n")
 }
 
-/// How the scene asks to be rendered, by a given transport.
+/// Returns the method that the scene's render settings ask for, with the given transport.
 pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
     Method {
         samples: scene.render.samples.unwrap_or(1),
@@ -125,42 +126,42 @@ pub fn method(scene: &Scene<Curve>, transport: Transport) -> Method {
     }
 }
 
-/// The image of a scene by a given transport.
+/// Renders a text with the given transport.
 pub fn image(text: &str, transport: Transport) -> (Film, Report) {
     image_in(Path::new(""), text, transport)
 }
 
-/// The same of a scene that names files in a folder.
+/// Renders a text that may name files in a folder, with the given transport.
 pub fn image_in(folder: &Path, text: &str, transport: Transport) -> (Film, Report) {
     let scene = scene_in(folder, text);
     let method = method(&scene, transport);
     render(&prepare(&scene, method), &|_| ())
 }
 
-/// Images of one scene by a given transport, under seeds from 0 on.
+/// Renders a text with the given transport under each of the seeds from 0.
 pub fn images(text: &str, transport: Transport, seeds: u64) -> Vec<(Film, Report)> {
     let scene = scene(text);
     let asked = method(&scene, transport);
     (0..seeds).map(|seed| render(&prepare(&scene, Method { seed, ..asked.clone() }), &|_| ())).collect()
 }
 
-/// The film of a scene by a method.
+/// Renders a scene with a method and returns its film.
 pub fn film_of(scene: &Scene<Curve>, method: Method) -> Film {
     render(&prepare(scene, method), &|_| ()).0
 }
 
-/// Films of a scene by a method, under other seeds.
+/// Renders a scene with a method under several seeds and returns the films.
 pub fn films_of(scene: &Scene<Curve>, method: &Method, seeds: Range<u64>) -> Vec<Film> {
     seeds.map(|seed| film_of(scene, Method { seed, ..method.clone() })).collect()
 }
 
-/// The mean of each band over a film.
+/// Returns the mean of each band over a film.
 pub fn mean_color(film: &Film) -> [f64; 3] {
     [0, 1, 2]
         .map(|band| film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])).sum::<f64>() / film.pixels.len() as f64)
 }
 
-/// A mean of each band with its standard error.
+/// The mean of each band with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
     pub value: [f64; 3],
@@ -168,7 +169,8 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// Of a film whose pixels all see the same thing: they share no random numbers, so their spread is the error.
+    /// Computes the mean over a film whose pixels all see the same thing. Pixels share no random numbers, so their
+    /// spread gives the error.
     pub fn of(film: &Film) -> Self {
         let bands = [0, 1, 2].map(|band| {
             let (mean, variance) = moments(film.pixels.iter().map(|pixel| f64::from(pixel.rgb[band])));
@@ -177,7 +179,8 @@ impl Mean {
         Self { value: bands.map(|band| band.0), error: bands.map(|band| band.1) }
     }
 
-    /// Of films under different seeds, whose pixels may see different things: the error is each pixel's own.
+    /// Computes the mean over films under different seeds, whose pixels may see different things. The error of each
+    /// pixel is estimated by itself.
     pub fn over_seeds(films: &[Film]) -> Self {
         let (pixels, seeds) = (films[0].pixels.len(), films.len() as f64);
         let bands = [0, 1, 2].map(|band| {
@@ -188,31 +191,32 @@ impl Mean {
         Self { value: bands.map(|band| band.0), error: bands.map(|band| band.1) }
     }
 
-    /// Of images of a text under seeds from 0 on.
+    /// Renders a text under each of the seeds from 0 and computes the mean.
     pub fn rendered(text: &str, transport: Transport, seeds: u64) -> Self {
         let scene = scene(text);
         Self::over_seeds(&films_of(&scene, &method(&scene, transport), 0..seeds))
     }
 
-    /// Each band times a factor.
+    /// Multiplies each band by a factor.
     pub fn times(&self, factors: [f64; 3]) -> Self {
         let by = |of: [f64; 3]| std::array::from_fn(|band| of[band] * factors[band]);
         Self { value: by(self.value), error: by(self.error) }
     }
 
-    /// The same value with the standard error of its difference from another mean.
+    /// Keeps the value and takes the standard error of its difference from another mean.
     pub fn beside(&self, other: &Self) -> Self {
         Self { error: std::array::from_fn(|band| libm::hypot(self.error[band], other.error[band])), ..*self }
     }
 
-    /// Every band lies within 3 standard errors of what is expected, wider only for many claims made together.
+    /// Asserts that every band lies within 3 standard errors of the expected value. The limit is wider if several
+    /// claims are made together.
     ///
-    /// One claim errs by chance in 0.27 % of the cases and so do `claims` of them together (Sidak 1967).
+    /// A single claim fails by chance in 0.27 % of the cases, and so do all `claims` together (Sidak 1967).
     pub fn assert_near(&self, expected: [f64; 3], claims: usize, what: &str) {
         let limit = standard_errors(claims);
         for band in 0..3 {
             let (value, error, expected) = (self.value[band], self.error[band], expected[band]);
-            // Lanes are f32: a pixel that no chance reaches is still rounded at each of some dozen surfaces.
+            // Lanes are f32: even a pixel without noise is rounded at each of some dozen surfaces.
             let rounding = 32.0 * f64::from(f32::EPSILON) * expected.abs();
             let off = (value - expected).abs();
             assert!(
@@ -223,13 +227,13 @@ impl Mean {
         }
     }
 
-    /// The largest standard error of a band relative to what is expected there.
+    /// Returns the largest standard error of a band relative to its expected value.
     pub fn worst_error(&self, expected: [f64; 3]) -> f64 {
         (0..3).map(|band| self.error[band] / expected[band]).fold(0.0, larger)
     }
 }
 
-/// Every number lies within a tolerance of what is expected.
+/// Asserts that every number lies within a tolerance of its expected value.
 pub fn assert_near<T: Copy + Debug + Into<f64>, const N: usize>(
     found: [T; N],
     expected: [f64; N],
@@ -240,8 +244,8 @@ pub fn assert_near<T: Copy + Debug + Into<f64>, const N: usize>(
     assert!(near, "{what}: {found:?} for {expected:?}");
 }
 
-/// A lamp shows the same where it is aimed at, alone or with all others, and where chance alone meets it. The error of
-/// the difference is less than a share of it.
+/// Asserts that a lamp contributes the same with next-event estimation, to one light or to all, as when only random
+/// paths hit it. The standard error of the difference must be less than `share` of the value.
 pub fn assert_aimed_at_as_met([aimed_at, met]: [&str; 2], seeds: u64, share: f64, claims: usize, what: &str) {
     let by_chance = Mean::rendered(met, SINGLE_PATH, seeds);
     for transport in [SINGLE_PATH, SPLITTING] {
@@ -252,14 +256,14 @@ pub fn assert_aimed_at_as_met([aimed_at, met]: [&str; 2], seeds: u64, share: f64
     }
 }
 
-/// Mean and unbiased variance.
+/// Returns the mean and the unbiased variance.
 pub fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let count = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / count;
     (mean, values.map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count - 1.0))
 }
 
-/// How many standard errors all of `claims` independent means keep within in 99.73 % of the cases.
+/// Returns how many standard errors bound all of `claims` independent means in 99.73 % of the cases.
 pub fn standard_errors(claims: usize) -> f64 {
     let chance = -libm::expm1(libm::log1p(-0.0027) / claims as f64);
     let (mut low, mut high) = (2.0, 10.0);

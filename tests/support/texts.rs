@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every Rust file below a folder, by its path inside it.
+/// Returns every Rust file below a folder, keyed by its path relative to the folder.
 pub fn texts(folder: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).expect("a folder") {
@@ -19,7 +19,7 @@ pub fn texts(folder: &Path) -> BTreeMap<String, String> {
     found
 }
 
-/// The scenes in `scenes`, in order.
+/// Returns the sorted paths of the scenes in `scenes`.
 pub fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let entries = fs::read_dir(folder).expect("a folder of scenes");

@@ -1,11 +1,11 @@
-//! The kinds of image files, what is read of them, and damaged ones.
+//! The kinds of image files, what is read of them, and damaged files.
 
 use abbe::material::Material;
 
 use super::*;
 use crate::support::pictures::{L8, L16, LA8, LA16, RGB16, RGBA8, RGBA16, jpeg, radiance};
 
-/// A scene with a material for every reflectance, and its warnings.
+/// Compiles a scene with a material for every reflectance.
 pub(super) fn materials(folder: &Path, reflectances: &[&str]) -> Scene<Curve> {
     let materials: String = (reflectances.iter().enumerate())
         .map(|(i, reflectance)| {
@@ -25,7 +25,7 @@ pub(super) fn image_of(scene: &Scene<Curve>, material: usize) -> Arc<Image> {
     texture.image.clone()
 }
 
-/// IEC 61966-2-1, written another way than the renderer does.
+/// Decodes sRGB by IEC 61966-2-1, written in another way than the renderer does.
 fn from_srgb(x: f64) -> f64 {
     if x < 0.0405 { x / 12.92 } else { (2.4 * ((x + 0.055) / 1.055).ln()).exp() }
 }
@@ -58,7 +58,7 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
             vec![image(""), image(", encoding = \"linear\""), image(", channel = \"blue\", encoding = \"linear\"")];
         options.extend(has_alpha.then(|| image(", channel = \"alpha\"")));
         let scene = materials(folder.path(), &options.iter().map(String::as_str).collect::<Vec<_>>());
-        // Half a step, as sRGB at most 2.3 times as wide where it is steepest, and the rounding to f32.
+        // Half a step, which sRGB widens at most 2.3 times where it is steepest, and the rounding to f32.
         let tolerance = 0.5 / steps + 1e-7;
         assert_near(image_of(&scene, 0).texel(0, 0), color.map(from_srgb), 2.3 * tolerance, name);
         assert_near(image_of(&scene, 1).texel(0, 0), color, tolerance, name);
@@ -67,12 +67,12 @@ fn every_kind_of_png_is_read_as_it_is_meant() {
             assert_near(image_of(&scene, 3).texel(0, 0), [alpha; 3], tolerance, name);
         }
         let told = scene.warnings.iter().filter(|warning| warning.contains("alpha")).count();
-        // Once for each way of reading the file that leaves alpha out, but for single channels.
+        // Once for each way of reading the file that leaves alpha out, except for single channels.
         assert_eq!(told, if has_alpha { 2 } else { 0 }, "{name}: {:?}", scene.warnings);
     }
 }
 
-/// A color profile of nothing but the XYZ of red, green and blue, adapted to D50.
+/// Returns a color profile with nothing but the XYZ of red, green and blue, adapted to D50.
 fn profile(primaries: [[f64; 3]; 3]) -> Vec<u8> {
     let mut bytes = vec![0; 128];
     bytes.extend(3u32.to_be_bytes());
@@ -87,9 +87,9 @@ fn profile(primaries: [[f64; 3]; 3]) -> Vec<u8> {
     bytes
 }
 
-/// By Apple's profile.
+/// Primaries from Apple's profile.
 const DISPLAY_P3: [[f64; 3]; 3] = [[0.5151, 0.2412, -0.0011], [0.2920, 0.6922, 0.0419], [0.1571, 0.0666, 0.7841]];
-/// By the profile of the International Color Consortium.
+/// Primaries from the profile of the International Color Consortium.
 const SRGB: [[f64; 3]; 3] = [[0.4361, 0.2225, 0.0139], [0.3851, 0.7169, 0.0971], [0.1431, 0.0606, 0.7141]];
 
 #[test]
@@ -109,7 +109,7 @@ fn what_the_color_profile_of_a_jpeg_says_is_told() {
 
 #[test]
 fn a_photo_of_a_turned_camera_is_told() {
-    // A directory of two entries of 12 bytes, the second of which is the orientation, 6 for a quarter turn.
+    // A directory of two entries of 12 bytes. The second one is the orientation, 6 for a quarter turn.
     let exif = |orientation: u8, is_big: bool| -> Vec<u8> {
         let short = |x: u16| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
         let long = |x: u32| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
@@ -133,7 +133,7 @@ fn a_photo_of_a_turned_camera_is_told() {
     }
 }
 
-/// Of colors alone, and unless the file says that they are sRGB all the same.
+/// Only colors are concerned, and only if the file does not also say that they are sRGB.
 #[test]
 fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {
     type Marks = fn(&mut png::Info);
@@ -184,13 +184,13 @@ fn a_jpeg_and_images_of_floats_are_read() {
         "{ image = \"color.jpeg\" }",
     ];
     let scene = materials(folder.path(), &reflectances);
-    // JPEG may be a step off.
+    // A JPEG may be one step off.
     assert_near(image_of(&scene, 0).texel(5, 3), [from_srgb(100.0 / 255.0); 3], 4e-3, "jpeg");
     assert_near(image_of(&scene, 1).texel(1, 0), [1.1, 0.5, 0.25], 1e-6, "exr");
     assert_near(image_of(&scene, 2).texel(1, 0), [0.75; 3], 0.0, "alpha of exr");
     assert_near(image_of(&scene, 3).texel(1, 1), [0.5, 0.25, 0.125], 0.0, "hdr");
     assert_near(image_of(&scene, 4).texel(0, 0), [0.5, 0.25, 0.125].map(from_srgb), 1e-7, "encoded hdr");
-    // Two steps of sRGB, at most 2.3 times as wide where it is steepest.
+    // Two steps of sRGB, which are at most 2.3 times as wide where it is steepest.
     let color = [100.0, 50.0, 200.0].map(|x| from_srgb(x / 255.0));
     assert_near(image_of(&scene, 5).texel(19, 8), color, 2.3 * 2.0 / 255.0, "progressive jpeg");
 }
@@ -211,12 +211,12 @@ fn an_image_of_many_materials_is_read_once_and_belongs_to_the_hash() {
     assert_ne!(before, hash());
 }
 
-/// What a scene whose only reflectance is an image is refused with.
+/// Returns the message that refuses a scene whose only reflectance is an image.
 fn refusal(folder: &Path, reflectance: &str) -> String {
     refusal_of(folder, &format!("diffuse = {{ reflectance = {reflectance} }}")).message
 }
 
-/// What a scene of a material is refused with.
+/// Returns the diagnostic that refuses a scene of a material.
 pub(super) fn refusal_of(folder: &Path, material: &str) -> abbe::Diagnostic {
     let text = format!(
         "{}[material.a]\n{material}\n[[object]]\nmaterial = \"a\"\n\
@@ -268,12 +268,12 @@ fn impossible_texels_are_refused_with_their_place() {
     let mask = "[material.b]\nmask = { material = \"a\", opacity = { image = \"bright.exr\" } }";
     let told = refusal_of(folder.path(), &format!("diffuse = {{ reflectance = 1 }}\n{mask}")).message;
     assert_eq!(told, "bright.exr: pixel (2, 1) is 1.5, and a share is at most 1");
-    // A number that is not read may be anything.
+    // A number that is not used may be anything.
     materials(
         folder.path(),
         &["{ image = \"hole.exr\", channel = \"red\" }", "{ image = \"bright.exr\", scale = 0.6 }"],
     );
-    // A picture that would fill the memory: its header alone says so.
+    // A picture that would fill the memory, as its header alone says.
     write_png(folder.path(), "huge.png", 1, L8, &[7]);
     let mut huge = std::fs::read(folder.path().join("huge.png")).unwrap();
     huge[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
@@ -311,7 +311,7 @@ fn an_image_of_another_kind_than_its_name_says_is_told() {
     assert_eq!(found.help.as_deref(), Some("leave `channel` out, or save the image with alpha"));
 }
 
-/// The decoder makes gray of what is missing, and says nothing.
+/// The decoder replaces what is missing by gray and reports nothing.
 #[test]
 fn a_jpeg_that_ends_too_early_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -320,11 +320,11 @@ fn a_jpeg_that_ends_too_early_is_refused() {
     let numbers: Vec<u8> = (0..64 * 64 * 3).map(|i: u32| (i * 37 % 251) as u8).collect();
     for progressive in [false, true] {
         let whole = jpeg([64, 64], 90, progressive, &numbers);
-        // A small picture of the picture, as cameras put it before: it has an end of its own.
+        // A thumbnail, as cameras put it before the picture. It has an end of its own.
         let small = jpeg([8, 8], 75, false, &numbers[..8 * 8 * 3]);
         let length = (small.len() as u16 + 2).to_be_bytes();
         let pictured = [&whole[..2], &[0xff, 0xe1], &length, &small, &whole[2..]].concat();
-        // What stands between segments and behind the end is nobody's business.
+        // Bytes between segments and after the end are ignored.
         let stray = [&whole[..2], &[0, 1, 2, 3, 4], &whole[2..], &small[..9]].concat();
         for bytes in [&whole, &pictured, &stray] {
             write(bytes);
@@ -340,7 +340,7 @@ fn a_jpeg_that_ends_too_early_is_refused() {
     }
 }
 
-/// Files that were cut off or damaged are refused in words, whatever byte is hit.
+/// Truncated or damaged files are refused with a message, whatever byte is hit.
 #[test]
 fn a_damaged_image_never_stops_the_program() {
     let folder = tempfile::tempdir().unwrap();
@@ -371,7 +371,7 @@ fn a_damaged_image_never_stops_the_program() {
                 Err(other) => panic!("{name}, round {round}: {other:?}"),
             }
         }
-        // Some damage is not seen, most is.
+        // Some damage goes unnoticed, most does not.
         assert!(readable > 0 && refused > 200, "{name}: {readable} read, {refused} refused");
     }
 }

@@ -7,7 +7,7 @@ use super::*;
 use crate::support::scenes::{Mean, SPLITTING, film_of, films_of, mean_color, scene};
 
 const WIDTH: usize = 4;
-/// Rows from the top: nothing is symmetric.
+/// Rows from the top. Nothing is symmetric.
 const TEXELS: [[f32; 3]; 12] = [
     [1.0, 0.0, 0.1],
     [0.2, 0.9, 0.0],
@@ -31,13 +31,13 @@ fn write_lamp(folder: &Path) {
     exr::prelude::write_rgb_file(folder.join("lamp.exr"), WIDTH, TEXELS.len() / WIDTH, at).unwrap();
 }
 
-/// The color at (u, v), by the formula of bilinear interpolation between clamped texels.
+/// Returns the color at (u, v) by the formula of bilinear interpolation between clamped texels.
 fn color([u, v]: [f64; 2]) -> [f64; 3] {
     let height = TEXELS.len() / WIDTH;
     let (x, y) = (u * WIDTH as f64 - 0.5, (1.0 - v) * height as f64 - 0.5);
     let mut sum = [0.0; 3];
     for (row, column) in (0..height).flat_map(|row| (0..WIDTH).map(move |column| (row, column))) {
-        // The hat of a texel, which at the edges goes on.
+        // The hat function of a texel, which continues beyond the edges.
         let hat =
             |at: f64, i: usize, count: usize| (1.0 - (at.clamp(0.0, count as f64 - 1.0) - i as f64).abs()).max(0.0);
         let weight = hat(x, column, WIDTH) * hat(y, row, height);
@@ -48,7 +48,7 @@ fn color([u, v]: [f64; 2]) -> [f64; 3] {
 
 const LAMP: &str = "emissive = { radiance = { image = \"lamp.exr\", wrap = \"clamp\", scale = 2 } }";
 
-/// A small white floor below a lamp whose image faces down, seen from above; u runs along +x and v along +z.
+/// Returns a small white floor below a lamp whose image faces down, seen from above. u runs along +x and v along +z.
 fn floor(model: &str) -> String {
     format!(
         "{}[render]\nmodel = {model}\nsamples = 64\n\
@@ -59,13 +59,13 @@ fn floor(model: &str) -> String {
     )
 }
 
-/// What is seen by all lights aimed at, or one chosen.
+/// Returns the mean of renders with the splitting transport.
 fn mean(scene: &Scene<Curve>) -> Mean {
     let method = Method { transport: SPLITTING, ..plan(scene).method };
     Mean::over_seeds(&films_of(scene, &method, 0..16))
 }
 
-/// The film color of the floor's middle: reflectance / pi times the sum of L cos cos / r^2 over the lamp, whose
+/// Returns the film color of the floor's middle: reflectance / pi times the sum of L cos cos / r^2 over the lamp, whose
 /// radiance in each lane is read from its table.
 fn expected(scene: &Scene<Curve>, basis: &Basis) -> [f64; 3] {
     let emission = scene.lights[0].emission();
@@ -74,7 +74,7 @@ fn expected(scene: &Scene<Curve>, basis: &Basis) -> [f64; 3] {
     sent(|uv| response.sensor(&draw, draw.read_at(&table, uv), false))
 }
 
-/// The same of a lamp of any radiance.
+/// Returns the film color of the floor's middle under a lamp with any radiance.
 fn sent(radiance: impl Fn([f64; 2]) -> [f64; 3]) -> [f64; 3] {
     const STEPS: usize = 300;
     let mut sum = [0.0; 3];
@@ -97,14 +97,15 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
         let scene = scene_in(folder.path(), &floor(model));
         let expected = expected(&scene, &plan(&scene).method.basis);
         if model == "\"rgb\"" {
-            // Three numbers are what the file has, twice.
+            // The three numbers are those in the file, times two.
             let by_texels = sent(|uv| color(uv).map(|x| 2.0 * x));
             assert!((0..3).all(|c| (expected[c] / by_texels[c] - 1.0).abs() < 1e-5), "{expected:?} for {by_texels:?}");
         }
         let mean = mean(&scene);
         let error = mean.worst_error(expected);
         assert!(error < 0.01, "{model}: noise {error}");
-        // The floor is no point: over 0.01 to each side the form factor changes by 1e-4, in squares of the distance.
+        // The floor is not a point: over 0.01 to each side the form factor changes by 1e-4, with the square of the
+        // distance.
         let bias = 2e-4;
         for (c, &expected) in expected.iter().enumerate() {
             let (off, limit) = ((mean.value[c] - expected).abs(), 3.5 * mean.error[c] + bias * expected);
@@ -113,7 +114,7 @@ fn a_lamp_that_shows_an_image_lights_a_floor_as_its_texels_say() {
     }
 }
 
-/// Every light is aimed at, or one chosen: a lamp of dark and bright images beside each other.
+/// A lamp whose image has a dark and a bright half shines like the bright half alone.
 #[test]
 fn a_checkered_lamp_shines_like_its_two_halves() {
     let lit = |lamps: &str| {
@@ -138,14 +139,14 @@ fn a_checkered_lamp_shines_like_its_two_halves() {
     }
 }
 
-/// A sphere that was turned and stretched shows its image where the turned point lies.
+/// A sphere that is turned and stretched shows its image at the transformed points.
 #[test]
 fn an_image_turns_with_its_sphere() {
     let folder = tempfile::tempdir().unwrap();
     write_lamp(folder.path());
     for (direction, stretch) in [([0.1, 0.2, 1.0], 1.0), ([-0.7, 0.3, 0.4], 1.0), ([0.6, -0.5, 0.7], 2.5)] {
         let own = DVec3::from(direction).normalize();
-        // First stretched along y, then turned by a quarter about z: x becomes y, y becomes -x.
+        // First stretched along y, then turned by a quarter about z: x becomes y, and y becomes -x.
         let stretched = DVec3::new(own.x, stretch * own.y, own.z);
         let point = DVec3::new(-stretched.y, stretched.x, stretched.z);
         let camera = point + DVec3::new(point.x / (stretch * stretch), point.y, point.z) * 0.5;
@@ -165,8 +166,8 @@ fn an_image_turns_with_its_sphere() {
     }
 }
 
-/// A lamp on which one texel of 256 x 256 shines, above the small white floor, and the point of it at (u, v), with the
-/// area that stands for one of the image, times its normal.
+/// A lamp above the small white floor, of which one texel of 256 x 256 shines. `place` returns the point at (u, v), and
+/// the normal there times the area that stands for a unit of the image.
 struct OneTexel {
     shape: &'static str,
     texel: [usize; 2],
@@ -209,7 +210,7 @@ const ONE_TEXEL: [OneTexel; 5] = [
 ];
 
 impl OneTexel {
-    /// The radiance of a white floor that reflects a half, at the origin, under a radiance of 1.
+    /// Returns the radiance of a white floor of reflectance 1/2 at the origin, under a radiance of 1.
     fn expected(&self) -> f64 {
         const STEPS: usize = 20;
         let mut sum = 0.0;
@@ -225,7 +226,7 @@ impl OneTexel {
     }
 }
 
-/// Sampled evenly, a lamp would be met where it is dark by all but one of 65,536 samples.
+/// With uniform sampling, all but one of 65,536 samples would hit the lamp where it is dark.
 #[test]
 fn l10_one_bright_texel_of_a_lamp_is_found() {
     for lamp in ONE_TEXEL {
@@ -239,13 +240,13 @@ fn l10_one_bright_texel_of_a_lamp_is_found() {
         let error = mean.worst_error([expected; 3]);
         println!("{}: {} +- {} for {expected}", lamp.shape, mean.value[0], mean.error[0]);
         assert!(error < 0.01, "{}: noise {error}", lamp.shape);
-        // As above: the floor is no point, and the texel is near the horizon of none.
+        // The floor is not a point, and the texel is not near the horizon of any of its points.
         let off = (mean.value[0] - expected).abs();
         assert!(off <= 3.5 * mean.error[0] + 2e-4 * expected, "{}: {} for {expected}", lamp.shape, mean.value[0]);
     }
 }
 
-/// Neither a million repeats nor coordinates of a mesh that are far apart take memory or time without end.
+/// Neither a million repeats nor mesh coordinates that are far apart take unlimited memory or time.
 #[test]
 fn patterns_too_fine_to_be_told_apart_shine_like_their_mean() {
     let fine = "emissive = { radiance = { checker = [0, { rgb = [3, 2, 1] }], repeat = [1e6, 1e6], scale = 2 } }";
@@ -260,6 +261,6 @@ fn patterns_too_fine_to_be_told_apart_shine_like_their_mean() {
     let even = lit("emissive = { radiance = { rgb = [3, 2, 1] } }", quad);
     let (of_quad, of_mesh) = (lit(fine, quad), lit(fine, mesh));
     println!("{of_quad} and {of_mesh} for {even}");
-    // Where numbers end, a pattern is no more what it is written as: on the mesh it is still light.
+    // At the ends of the number range, a pattern no longer is what was written. On the mesh it is still light.
     assert!((of_quad / even - 1.0).abs() < 0.1 && of_mesh >= 0.0 && of_mesh < 2.0 * even);
 }

@@ -1,4 +1,4 @@
-//! Which numbers of an OpenEXR file are read, and what they stand for.
+//! Which numbers of an OpenEXR file are read, and what they mean.
 
 use abbe::material::Material;
 use exr::meta::attribute::Chromaticities;
@@ -8,13 +8,13 @@ use super::files::{image_of, materials, refusal_of};
 use super::*;
 use crate::look::files::Exr;
 
-/// A file of 2 x 1 pixels, whose channels hold these numbers.
+/// Writes a file of 2 x 1 pixels whose channels hold the given numbers.
 fn write(folder: &Path, name: &str, channels: &[(&'static str, [f32; 2])]) {
     let channels = channels.iter().map(|(name, values)| (*name, values.to_vec())).collect();
     Exr::new([2, 1], channels).write(&folder.join(name));
 }
 
-/// Red, green and blue of the second pixel.
+/// Returns red, green and blue of the second pixel.
 fn second(folder: &Path, options: &str) -> [f32; 3] {
     image_of(&materials(folder, &[&format!("{{ image = \"a.exr\"{options} }}")]), 0).texel(1, 0)
 }
@@ -51,7 +51,7 @@ fn grays_layers_and_small_letters_are_read() {
     write(folder, "a.exr", &[&albedo[..], &small[..]].concat());
     assert_eq!(second(folder, ""), [0.1, 0.2, 0.3], "what has no layer comes first");
     assert_eq!(second(folder, ", channel = \"alpha\""), [0.75; 3]);
-    // Of several parts the one that has colors.
+    // Of several parts, the one with colors is read.
     let mut parts = Exr::new([2, 1], vec![("Z", vec![1e9; 2])]);
     parts.parts[0].0 = "depth";
     parts.parts.push(("color", colors(["R", "G", "B"]).map(|(name, values)| (name, values.to_vec())).to_vec()));
@@ -66,13 +66,13 @@ fn grays_layers_and_small_letters_are_read() {
 fn compressions_that_are_not_known_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // Enough alike that it is not kept as it is.
+    // The values are so alike that the file is not stored uncompressed.
     let plain = Exr::new([16, 2], vec![("Y", vec![0.5; 32])]);
     Exr { compression: Compression::ZIP16, ..plain }.write(&folder.join("a.exr"));
     let mut bytes = std::fs::read(folder.join("a.exr")).unwrap();
     let attribute = b"compression\0compression\0\x01\0\0\0";
     let at = bytes.windows(attribute.len()).position(|part| part == attribute).expect("every file has it");
-    // High-throughput JPEG 2000 in blocks of 256 and of 32 rows, and what may come.
+    // High-throughput JPEG 2000 in blocks of 256 and of 32 rows, and a number that may come.
     for compression in [10, 11, 200] {
         bytes[at + attribute.len()] = compression;
         std::fs::write(folder.join("a.exr"), &bytes).unwrap();
@@ -103,14 +103,14 @@ fn channels_that_are_no_image_are_told() {
         assert_eq!(found.help.as_deref(), Some(help));
     }
     write(folder, "a.exr", &[("Y", [0.5; 2])]);
-    // The key stands in the object, which follows the material at once.
+    // The key belongs to the object, which directly follows the material.
     let bent = "[[object]]\nshape.sphere = { center = [3, 0, 0], radius = 1 }\nmaterial = \"a\"\n\
                 normal_map = { image = \"a.exr\" }";
     let found = refusal_of(folder, &format!("diffuse = {{ reflectance = 1 }}\n{bent}"));
     assert_eq!(found.message, "a.exr is gray, and a normal map has red, green and blue");
 }
 
-/// The data window lies in the display window, where a crop, an overscan or another program put it.
+/// The data window lies in the display window wherever a crop, an overscan or another program put it.
 #[test]
 fn an_image_is_its_display_window() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,7 +139,7 @@ fn an_image_is_its_display_window() {
             assert_eq!(found, expected, "({x}, {y}) of {size:?} at {corner:?}");
         }
     }
-    // A display window that would fill the memory is refused before.
+    // A display window that would fill the memory is refused beforehand.
     let huge = Exr { full: [16384, 8192], ..Exr::new([1, 1], vec![("Y", vec![0.5])]) };
     huge.write(&folder.join("a.exr"));
     let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }").message;
@@ -152,7 +152,7 @@ fn pair([x, y]: [f32; 2]) -> Vec2<f32> {
 
 const ACESCG: [[f32; 2]; 4] = [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044], [0.32168, 0.33767]];
 
-/// Writes 2 x 1 pixels of primaries and a white.
+/// Writes 2 x 1 pixels with the given primaries and white.
 fn write_colors(folder: &Path, [red, green, blue, white]: [[f32; 2]; 4], colors: [[f32; 3]; 2]) {
     let channels = ["R", "G", "B"].into_iter().enumerate().map(|(c, name)| (name, colors.map(|rgb| rgb[c]).to_vec()));
     let [red, green, blue, white] = [red, green, blue, white].map(pair);
@@ -192,7 +192,7 @@ fn colors_of_another_space_are_converted_and_numbers_are_not() {
     });
     let Some(CurveKind::Texture(texture)) = opacity else { panic!("the opacity is an image") };
     assert_eq!(texture.image.texel(1, 0), color);
-    // The same by its name, and Rec.709 as other programs write it.
+    // The same color space by its name, and Rec.709 as other programs write it.
     let channels = ["R", "G", "B"].into_iter().zip(color).map(|(name, value)| (name, vec![value; 2])).collect();
     let id = |id: &str| vec![("colorInteropID", id.to_owned())];
     Exr { texts: id("lin_ap1_scene"), ..Exr::new([2, 1], channels) }.write(&folder.join("a.exr"));
@@ -201,7 +201,7 @@ fn colors_of_another_space_are_converted_and_numbers_are_not() {
     assert_eq!(read(""), (color, vec![]));
 }
 
-/// Rec.709 has no colors with negative numbers, and wide spaces hold colors that it does not.
+/// Rec.709 has no colors with negative numbers, and wide spaces hold colors outside of it.
 #[test]
 fn colors_outside_of_rec709_are_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -223,21 +223,21 @@ fn colors_outside_of_rec709_are_told() {
     assert_eq!(second(folder, ""), [0.5; 3]);
     write_colors(folder, ACESCG, [[0.0, 0.5, 0.0]; 2]);
     assert_eq!(warnings(), told(", as does 1 other"));
-    // Rec.709's own green in ACEScg, rounded as halves do, lies on the edge.
+    // Rec.709's own green in ACEScg, with the rounding of halves, lies on the edge.
     let green = [0.169_799_8, 0.458_251_95, 0.054_779_053];
     write_colors(folder, ACESCG, [green; 2]);
     assert_eq!(warnings(), Vec::<String>::new());
     write_colors(folder, [[0.2, 0.2], [0.3, 0.3], [0.4, 0.4], [0.3, 0.3]], [[0.5; 3]; 2]);
     let none = "a.exr: its chromaticities mean no colors: it is read as linear Rec.709";
     assert_eq!(warnings(), [none]);
-    // A sky says so too.
+    // An image of the sky warns as well.
     write_colors(folder, ACESCG, [[0.0, 9.0, 0.0], [0.5; 3]]);
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"a.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
     let sky = scene_in(folder, &text).warnings;
     assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside of Rec.709")), "{sky:?}");
 }
 
-/// Lossy compressions leave numbers below 0 where there is black.
+/// Lossy compression leaves numbers below 0 where the image is black.
 #[test]
 fn noise_below_0_is_black_and_all_else_there_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -260,14 +260,14 @@ fn noise_below_0_is_black_and_all_else_there_is_refused() {
         write(compression, half, -0.01);
         assert_eq!(darkest(), 0.0, "{compression}");
     }
-    // What halves round of the mean, which is 0.0348.
+    // The limit is the rounding of halves at the mean, which is 0.0348.
     write(Compression::ZIP16, false, -0.034 / 2048.0);
     assert_eq!(darkest(), 0.0);
     let light = "light is finite and not negative: save the image with 0 for all that lies below";
     for (compression, half, dark) in [
         (Compression::ZIP16, false, -0.036 / 2048.0),
         (Compression::PIZ, true, -0.5),
-        // Only halves are packed with loss there.
+        // This compression loses something only for halves.
         (Compression::B44, false, -0.5),
     ] {
         write(compression, half, dark);

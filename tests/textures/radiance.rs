@@ -1,4 +1,4 @@
-//! Radiance pictures: what four bytes mean, and the ways in which a row is packed.
+//! Radiance pictures: the meaning of the four bytes, and the ways in which a row is packed.
 
 use abbe::material::Material;
 
@@ -9,7 +9,7 @@ const HEADER: &str = "#?RADIANCE\n# made by hand\nEXPOSURE=1\nFORMAT=32-bit_rle_
 fn compiled(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.hdr"), bytes).unwrap();
-    // No number of a picture is more than 2^127.
+    // No number of a picture exceeds 2^127.
     let text = format!(
         "{}[material.a]\ndiffuse = {{ reflectance = {{ image = \"a.hdr\", scale = 1e-39 }} }}\n\
          [[object]]\nmaterial = \"a\"\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n\
@@ -19,7 +19,7 @@ fn compiled(bytes: &[u8]) -> abbe::Result<Scene<Curve>> {
     Source { path: folder.path().join("scene.toml"), text }.compile()
 }
 
-/// The first texels of the first row of a picture.
+/// Returns the first texels of the first row of a picture.
 fn row(size: &str, bytes: &[u8], count: usize) -> Vec<[f32; 3]> {
     texels(&[HEADER.as_bytes(), size.as_bytes(), b"\n", bytes].concat(), count)
 }
@@ -40,7 +40,7 @@ fn every_exponent_of_a_radiance_picture_is_a_power_of_two() {
     }
 }
 
-/// "Radiance File Formats": what light a picture shows is its numbers divided by all exposures that were applied.
+/// "Radiance File Formats": the light that a picture shows is its numbers divided by all exposures that were applied.
 #[test]
 fn exposures_of_a_radiance_picture_are_taken_out() {
     let picture = |lines: &str| {
@@ -51,11 +51,11 @@ fn exposures_of_a_radiance_picture_are_taken_out() {
     assert_eq!(picture("EXPOSURE=4\n"), [0.25, 0.125, 0.0625]);
     assert_eq!(picture("EXPOSURE= 4.0 \nEXPOSURE=2.5e-1\n"), [1.0, 0.5, 0.25]);
     assert_eq!(picture("COLORCORR=2 1 0.5\nEXPOSURE=2\n"), [0.25, 0.25, 0.25]);
-    // Of a picture that this one was made of.
+    // The exposure of a picture from which this one was made does not count.
     assert_eq!(picture("\tEXPOSURE=4\n"), [1.0, 0.5, 0.25]);
 }
 
-/// Of light: the primaries of Rec.2020 mean other colors in Rec.709, and those of Rec.709 the same.
+/// Light with the primaries of Rec.2020 has other numbers in Rec.709. Light with those of Rec.709 keeps its numbers.
 #[test]
 fn primaries_of_a_radiance_picture_are_brought_to_rec709() {
     let lamp = |primaries: &str| {
@@ -115,7 +115,7 @@ fn a_row_is_the_same_in_whatever_way_it_is_packed() {
         newer.extend([128 + 90, texel(2)[channel]]);
     }
     assert_eq!(row(&size, &newer, COUNT), expected);
-    // A row of fewer than 8 texels is never packed in the newer way, though it begins as if it were.
+    // A row of fewer than 8 texels is never packed in the newer way, even if it begins as if it were.
     assert_eq!(row("-Y 1 +X 1", &[2, 2, 0, 136], 1), [[2.0, 2.0, 0.0]]);
 }
 

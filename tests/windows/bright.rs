@@ -1,4 +1,4 @@
-//! Bounces that aim at what lights a room, against closed forms and against bounces that do not.
+//! Bounces aimed at what lights a room, compared with closed forms and with bounces that are not aimed.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,8 @@ use crate::support::scenes::{
     Mean, SPLITTING, body, environment, films_of, method, moments, quad, scene, standard_errors, view,
 };
 
-/// A closed box, 4 x 3 x 5, with holes in the wall at x = -2: each from z to z, all from y = 1 to 2.2.
+/// Returns a closed box, 4 x 3 x 5, with holes in the wall at x = -2. Each of them extends from z to z, and all of them
+/// from y = 1 to 2.2.
 pub fn walls(holes: &[[f64; 2]]) -> Vec<String> {
     let mut quads = vec![
         quad([0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.5]),
@@ -30,7 +31,7 @@ pub fn walls(holes: &[[f64; 2]]) -> Vec<String> {
     quads
 }
 
-/// A room seen from inside.
+/// Returns a room seen from inside.
 pub fn room(holes: &[[f64; 2]], wall: &str, samples: u32, more: &str) -> String {
     let walls = walls(holes);
     view([1.6, 1.5, 2.0], [-1.0, 0.8, -0.8], 60.0, 16)
@@ -42,7 +43,7 @@ pub fn room(holes: &[[f64; 2]], wall: &str, samples: u32, more: &str) -> String 
 pub const WHITE: &str = "diffuse = { reflectance = 0.7 }";
 pub const SUN: &str = "[[light]]\nsun = { toward = [-1, 0.7, 0.2], irradiance = 12 }\n";
 
-/// Images of a scene by bounces that aim at places, or at nothing.
+/// Renders a scene with bounces that aim at places, or at nothing.
 pub fn films(text: &str, bright: Option<&BrightPlaces>, seeds: u64) -> Vec<Film> {
     let scene = scene(text);
     let asked = Method { bright: bright.cloned(), ..method(&scene, SPLITTING) };
@@ -54,10 +55,10 @@ fn learned(text: &str) -> Option<BrightPlaces> {
     room_light(&prepare_unguided(&scene, method(&scene, SPLITTING))).places
 }
 
-/// A middle, two half edges and a radiance.
+/// A center, two half edges and a radiance.
 type Listed = ([f64; 3], [f64; 3], [f64; 3], f64);
 
-/// The places of a list, aimed at from all of the room.
+/// Returns the places of a list, to be aimed at from the whole room.
 fn places(list: &[Listed]) -> BrightPlaces {
     let place = |&(center, u, v, radiance): &Listed| {
         let (center, half) = (DVec3::from(center), [DVec3::from(u), DVec3::from(v)]);
@@ -67,7 +68,7 @@ fn places(list: &[Listed]) -> BrightPlaces {
     BrightPlaces { within, places: list.iter().map(place).collect(), elsewhere: 0.05, missed: 0.0, are_openings: false }
 }
 
-/// Sum of the variances of all pixels.
+/// Returns the sum of the variances of all pixels.
 pub fn variance(films: &[Film]) -> f64 {
     let of_pixel = |i: usize| moments(films.iter().map(move |film| f64::from(film.pixels[i].rgb[1]))).1;
     (0..films[0].pixels.len()).map(of_pixel).sum()
@@ -79,17 +80,17 @@ pub fn assert_same(one: &[Film], other: &[Film], claims: usize, what: &str) {
     one.beside(&other).assert_near(other.value, claims, what);
 }
 
-/// A point of a floor that a rectangle lights which stands at right angles to it, by the irradiance over the radiance
-/// times pi: Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4: a corner of the rectangle,
-/// `width` x `height`, at the foot of the perpendicular from the point, at a distance.
+/// Returns the irradiance of a point of a floor over pi times the radiance of a rectangle at right angles to it:
+/// Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-4. A corner of the rectangle, `width` x
+/// `height`, is at the foot of the perpendicular from the point, at a distance.
 pub fn upright(distance: f64, width: f64, height: f64) -> f64 {
     let (x, y) = (height / width, distance / width);
     let root = (x * x + y * y).sqrt();
     ((1.0 / y).atan() - y / root * (1.0 / root).atan()) / (2.0 * PI)
 }
 
-/// The sky above and below the horizon, through one hole, at a point of a black room's floor; and with places that are
-/// right, beside what is bright, tilted, in the floor's own plane, or all of these.
+/// A point on the floor of a black room sees the sky above and below the horizon through one hole. The places to aim at
+/// are right, beside what is bright, tilted, in the floor's own plane, or all of these.
 #[test]
 fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
     let text = view([0.5, 2.0, 0.0], [0.500_01, 0.0, 0.0], 0.05, 8)
@@ -102,7 +103,7 @@ fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
         + &body("floor", "diffuse = { reflectance = 0.5 }", &[walls(&[])[0].as_str()])
         + &environment(2.0);
     let of = |height: f64| 2.0 * upright(2.5, 1.0, height);
-    // What the black walls send on is less than a thousandth of it.
+    // The black walls reflect less than a thousandth of it.
     let expected = 0.5 * 2.0 * (of(2.2) - of(1.0));
     let right = ([-2.0, 1.6, 0.0], [0.0, 0.0, 1.0], [0.0, 0.6, 0.0], 2.0);
     let beside = ([-2.0, 1.6, 1.4], [0.0, 0.0, 0.7], [0.0, 0.5, 0.0], 2.0);
@@ -112,7 +113,7 @@ fn an_even_sky_through_an_opening_gives_its_form_factor_wherever_bounces_aim() {
     for case in &cases {
         let found = Mean::over_seeds(&films(&text, Some(&places(case)), 8));
         println!("{found:.6?} for {expected:.6}");
-        // Of the light that came in, the walls send on at most a thousandth of the room's mean.
+        // Of the light that came in, the walls reflect at most a thousandth of the room's mean.
         let mut wider = found;
         wider.error = found.error.map(|error| error + 3e-4 * expected);
         wider.assert_near([expected; 3], cases.len(), &format!("{case:?}"));
@@ -169,7 +170,7 @@ fn aimed_bounces_show_the_same_rooms_as_others() {
     }
 }
 
-/// What limits of bounces leave out is told by its weight, however bounces were aimed.
+/// The weight that limits of bounces leave out is reported, however bounces were aimed.
 #[test]
 fn aimed_bounces_leave_out_as_much_as_others() {
     let sky = environment(1.0);
@@ -192,7 +193,7 @@ fn aimed_bounces_leave_out_as_much_as_others() {
         let error = (of_aimed + of_plain).sqrt();
         println!("{limit}: {aimed:.4} of the weight is left out, {plain:.4} +- {error:.1e} where nothing is aimed");
         assert!(plain > 0.05 && error < 0.02 * plain, "{limit}: {plain} +- {error}");
-        // Means of 8 films have the tails of Student's t.
+        // Means of 8 films have the heavier tails of Student's t distribution.
         assert!((aimed - plain).abs() < 1.6 * standard_errors(3) * error, "{limit}: {aimed} for {plain} +- {error}");
     }
 }

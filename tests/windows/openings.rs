@@ -1,4 +1,4 @@
-//! Openings that light a room, however small: bounces are aimed at them, as hardly any would find them.
+//! Openings that light a room, however small: bounces are aimed at them, since hardly any would find them by chance.
 
 use abbe::plan::plan;
 use abbe::trace::{BrightPlaces, prepare_unguided, room_light};
@@ -11,8 +11,8 @@ fn openings(text: &str) -> BrightPlaces {
     room_light(&prepare_unguided(&scene, method(&scene, SPLITTING))).openings.expect("the room has openings")
 }
 
-/// A slit through which a bounce from the point of the floor that is seen finds the sky once in 50,000 times. All
-/// bounces begin there: the room is known by where they end.
+/// A bounce from the visible point of the floor finds the sky through this slit once in 50,000 times. All bounces begin
+/// at the slit: the room is known by where they end.
 #[test]
 fn l13_a_slit_that_no_bounce_finds_gives_its_form_factor() {
     let walls = walls(&[[-5e-4, 5e-4]]);
@@ -60,7 +60,7 @@ fn bounces_aimed_at_openings_show_the_same_rooms_as_others() {
     }
 }
 
-/// Two openings are two rectangles, and each holds its own.
+/// Two openings become two rectangles, each of which holds its own opening.
 #[test]
 fn each_opening_is_held_by_a_rectangle() {
     for [left, right] in [[[-2.0, -0.8], [0.2, 1.4]], [[-2.0, -1.98], [0.2, 0.23]]] {
@@ -81,8 +81,8 @@ fn each_opening_is_held_by_a_rectangle() {
     }
 }
 
-/// Of paths that stay in a white room, half of the bounces aimed would let the weight grow without end. With as many as
-/// light is lost, paths weigh nearly the same.
+/// In a white room, aiming half of the bounces would let the weight of the paths that stay there grow without bound. If
+/// as many are aimed as light is lost, paths weigh nearly the same.
 #[test]
 fn l13_a_white_room_with_a_small_opening_is_calm() {
     let text = room(&[[-0.05, 0.05]], "diffuse = { reflectance = 0.9 }", 64, &environment(1.0));
@@ -97,8 +97,8 @@ fn l13_a_white_room_with_a_small_opening_is_calm() {
     assert!(calm < 10.0 && calm < 0.5 * wild, "{calm}, {wild}");
 }
 
-/// What a ball of glass throws of a sky's light is found by chance, but not often where the light comes through a slit
-/// alone: through it photons are sent.
+/// Random paths find the light of a sky that a glass ball focuses, but not often if the light enters through a slit
+/// alone. Then photons are sent through the slit.
 #[test]
 fn the_plan_sends_photons_through_openings_alone() {
     let ball = body("ball", "dielectric = { index = 1.5 }", &["sphere = { center = [-0.5, 1, 0], radius = 0.5 }"]);

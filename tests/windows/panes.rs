@@ -1,4 +1,4 @@
-//! Light through panes against closed forms, and against paths that meet the lights by chance.
+//! Light through panes, compared with closed forms and with paths that hit the lights at random.
 
 use abbe::plan::plan;
 use abbe::spectrum::Basis;
@@ -17,14 +17,14 @@ const SKY: &str = "[[light]]\nenvironment = { radiance = 2 }\n";
 const LAMP: &str = "[material.lamp]\nemissive = { radiance = { rgb = [10, 20, 5] } }\n[[object]]\nmaterial = \"lamp\"\n\
     shape.quad = { center = [0, 3, 0], u = [0.5, 0, 0], v = [0, 0, 0.5] }\n";
 
-/// Endless panes at some heights.
+/// Returns infinite panes at some heights.
 fn panes(material: &str, heights: &[f64]) -> String {
     let shapes: Vec<String> =
         heights.iter().map(|y| format!("plane = {{ point = [0, {y:?}, 0], normal = [0, 1, 0] }}")).collect();
     body("pane", material, &shapes.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// A floor under panes, seen from below them.
+/// Returns a floor under panes, seen from below the panes.
 fn under(panes: &str, lights: &str, reflectance: &str, samples: u32) -> String {
     view([3.0, 0.8, 0.5], [0.0, 0.0, 0.0], 20.0, 12)
         + &format!("[render]\nsamples = {samples}\n")
@@ -37,8 +37,8 @@ fn mean(text: &str, transport: Transport) -> Mean {
     Mean::rendered(text, transport, 8)
 }
 
-/// Shares that go through a pane and come back, unpolarized, at a cosine, by Fresnel's equations and the sum over all
-/// reflections inside.
+/// Returns the transmitted and the reflected share of a pane for unpolarized light at a cosine, by Fresnel's equations
+/// and the sum over all internal reflections.
 fn pane(n: f64, t: f64, cos: f64) -> [f64; 2] {
     let of = |r: f64| {
         let through = (1.0 - r) * (1.0 - r) * t / (1.0 - r * r * t * t);
@@ -48,14 +48,14 @@ fn pane(n: f64, t: f64, cos: f64) -> [f64; 2] {
     [0.5 * (s[0] + p[0]), 0.5 * (s[1] + p[1])]
 }
 
-/// The mean over the hemisphere by cosine.
+/// Returns the cosine-weighted mean over the hemisphere.
 fn mean_by_cosine(value: impl Fn(f64) -> f64) -> f64 {
     let steps = 200_000;
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(steps);
     (0..steps).map(|i| 2.0 * at(i) * value(at(i))).sum::<f64>() / f64::from(steps)
 }
 
-/// A cosine toward the parallel sun.
+/// Cosine of the parallel sun.
 const COS_OF_SUN: f64 = 2.0 / 3.0;
 
 #[test]
@@ -70,12 +70,12 @@ fn l7_a_sun_shines_through_panes_as_each_lets_through() {
         ("none", "thin = { index = 1 }", vec![1.0], [1.0; 3]),
     ];
     for (name, material, heights, expected) in cases {
-        // Of a black floor nothing comes back to the panes.
+        // A black floor sends nothing back to the panes.
         let text = under(&panes(material, &heights), SUN, "0.001", 1);
         let irradiance = 3.0 * COS_OF_SUN;
         for transport in [EVERY_BRANCH, SPLITTING, SINGLE_PATH] {
             if transport == EVERY_BRANCH && heights.len() > 1 {
-                // Branches between several panes grow without end.
+                // Branches between several panes grow without bound.
                 continue;
             }
             let found = mean(&text, transport);
@@ -90,7 +90,7 @@ fn l7_a_sun_shines_through_panes_as_each_lets_through() {
 
 #[test]
 fn an_even_sky_above_endless_panes_gives_the_irradiance_of_their_sum() {
-    // Light between floor and panes, and between the panes, is met by chance: it counts once.
+    // Random paths find the light between floor and panes, and between the panes. It counts once.
     for (heights, reflectance) in [(vec![1.0], 0.8), (vec![1.0, 1.3], 0.8)] {
         let stack = |cos: f64| {
             let [t, r] = pane(1.52, 1.0, cos);
@@ -110,7 +110,8 @@ fn an_even_sky_above_endless_panes_gives_the_irradiance_of_their_sum() {
 
 #[test]
 fn every_light_shines_through_a_pane_as_without_it_times_its_transmittance() {
-    // The disc and the lamp come from many angles; a pane of index 1 has one transmittance for them all.
+    // The light of the disc and of the lamp arrives at many angles. A pane of index 1 has the same transmittance for
+    // all of them.
     for (name, lights) in [("point", POINT), ("sun", SUN), ("disc", DISC), ("lamp", LAMP), ("sky", SKY)] {
         let (tint, open) = ([0.75, 0.5, 0.1], mean(&under("", lights, "0.5", 64), SPLITTING));
         for heights in [vec![1.0], vec![1.0, 1.1, 2.0]] {
@@ -127,7 +128,7 @@ fn every_light_shines_through_a_pane_as_without_it_times_its_transmittance() {
 
 #[test]
 fn aiming_through_panes_and_meeting_the_lamp_beyond_show_the_same() {
-    // The floor is rough: both ways of finding the lamp count. One pane is tilted and half of a mask.
+    // The floor is rough, so both ways of finding the lamp count. One pane is tilted and part of a mask.
     let things = "[material.gold]\nconductor = { metal = \"Au\", roughness = 0.4 }\n\
         [material.inner]\nthin = { index = 1.8 }\n[material.matt]\ndiffuse = { reflectance = 0.7 }\n";
     let second = body(
@@ -156,7 +157,7 @@ fn a_pane_is_seen_in_alpha_and_depth_and_is_no_bounce() {
     let (film, _) = image(&(text + sun), SPLITTING);
     assert_eq!(film.pixels[0].alpha, 1.0);
     assert!((film.pixels[0].depth - 3.0).abs() < 1e-3, "{}", film.pixels[0].depth);
-    // Twice through the pane, and once off the wall.
+    // The light passes the pane twice and is reflected once by the wall.
     let through = self::pane(1.52, 1.0, 1.0)[0];
     let expected = 3.0 * 0.5 / std::f64::consts::PI * through * through;
     let found = f64::from(film.pixels[0].rgb[1]);

@@ -1,10 +1,10 @@
-//! Photons and panes: each path is found once, by the light pass or by the camera's paths.
+//! Photons and panes: each path is found once, either by the light pass or by the camera paths.
 
 use abbe::trace::{LightPass, MapPasses, Method, Smoothness};
 
 use crate::support::scenes::{Mean, SPLITTING, body, films_of, method, scene, view};
 
-/// A floor with a ball of glass, under a lamp behind a pane; another pane before the camera.
+/// Returns a floor with a glass ball, under a lamp behind a pane. There may be another pane in front of the camera.
 fn room(camera_pane: bool, more: &str) -> String {
     let mut panes = vec!["quad = { center = [0, 2.2, 0], u = [3, 0, 0], v = [0, 0, 3] }"];
     if camera_pane {
@@ -59,7 +59,7 @@ fn photons_and_paths_from_the_camera_share_out_what_passes_panes() {
         let mut photons = mean(&text, true, map).beside(&chance);
         println!("{name}: {photons:.5?} for {chance:.5?}");
         if map {
-            // A map blurs: by what it spreads over the floor's edge, less than a thousandth here.
+            // A map blurs: what it spreads across the floor's edge is less than a thousandth here.
             (0..3).for_each(|band| photons.error[band] += 0.001 * chance.value[band]);
         }
         assert!(photons.worst_error(chance.value) < 0.01, "{name}: {photons:?}");

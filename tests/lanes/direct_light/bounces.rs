@@ -4,18 +4,18 @@ use crate::support::scenes::{EVERY_BRANCH, Mean, SINGLE_PATH, SPLITTING, body, e
 
 #[test]
 fn each_diffuse_bounce_adds_its_own_share() {
-    // In a diffuse ball everything is lit alike: each bounce returns its reflectance; of a ball in the middle that
-    // shines, it loses what falls back onto that, the ratio of their areas.
+    // All points of a diffuse ball receive the same light, and each bounce returns its reflectance. A lamp in the
+    // middle also absorbs what falls on it: a fraction equal to the ratio of the areas.
     const ROOM: &str = "sphere = { center = [0, 0, 0], radius = 2 }";
     let white = body("white", "diffuse = { reflectance = 0.6 }", &[ROOM]);
     let point = "[[light]]\npoint = { position = [0, 0, 0], intensity = 3 }\n".to_owned();
     let ball = body("lamp", "emissive = { radiance = 5 }", &["sphere = { center = [0, 0, 0], radius = 0.8 }"]);
     let lost = 0.8 * 0.8 / 4.0;
     for (light, irradiance, kept) in [(point, 3.0 / 4.0, 0.6), (ball, PI * 5.0 * lost, 0.6 * (1.0 - lost))] {
-        // Light that is gathered after so many bounces leaves one more surface than it bounced off.
+        // Light gathered after n bounces leaves one more surface than it bounced off.
         let limits = [0, 1, 2, 5].into_iter().flat_map(|n| [(n, "diffuse_bounces", n), (n, "max_bounces", n + 1)]);
         for (bounces, key, limit) in limits {
-            // From beside the middle, away from it.
+            // The camera is beside the center and looks away from it.
             let text = view([1.2, 0.3, 0.2], [2.4, 0.6, 0.4], 20.0, 60)
                 + &format!("[render]\nsamples = 8\n{key} = {limit}\n")
                 + &white
@@ -40,8 +40,8 @@ fn a_diffuse_body_in_an_even_sky_shows_its_reflectance() {
 
 #[test]
 fn light_in_an_absorbing_medium_is_absorbed_on_its_way_to_a_surface() {
-    // A diffuse room filled with a medium of index 1 around a point: e^(-absorption r) on the way from the light, and
-    // again on the way to the camera in the middle.
+    // A diffuse room around a light, filled with a medium of index 1: the transmittance is e^(-absorption r) on the
+    // path from the light, and again on the path to the camera in the middle.
     let room = body("white", "diffuse = { reflectance = 0.6 }", &["sphere = { center = [0, 0, 0], radius = 2 }"]);
     let haze =
         body("haze", "dielectric = { index = 1, absorption = 0.5 }", &["sphere = { center = [0, 0, 0], radius = 3 }"]);
@@ -67,8 +67,8 @@ fn light_in_an_absorbing_medium_is_absorbed_on_its_way_to_a_surface() {
 
 #[test]
 fn longer_paths_through_glass_are_left_out_and_reported() {
-    // Straight through a plate of n = 1.5 onto an even sky: (1 - R)^2 by two surfaces, the rest of what crosses by
-    // more; what the front reflects leaves one surface.
+    // A uniform sky seen at normal incidence through a plate of n = 1.5. Two surfaces transmit (1 - R)^2, and more of
+    // them the rest of what crosses. Light that the front reflects leaves one surface.
     let plate = body("glass", "dielectric = { index = 1.5 }", &["cube = { center = [0, 0, 0], size = [90, 90, 1] }"]);
     let (r, t) = (0.04, 0.96);
     for (limit, expected) in [(0, 0.0), (1, r), (2, r + t * t), (3, r + t * t + t * r * t), (40, 1.0)] {

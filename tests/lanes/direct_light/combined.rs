@@ -5,7 +5,7 @@ use abbe::math::DVec3;
 use super::{BANDS, Case, assert_closed_forms, by_quad, case, lamp};
 use crate::support::scenes::quad;
 
-/// Sides, a sky beside a lamp, and more lights than are all aimed at.
+/// Returns cases of one-sided lamps, a sky beside a lamp, and more lights than are all sampled.
 fn combined_lights() -> Vec<Case> {
     let square = "quad = { center = [0, 1, 0], u = [1, 0, 0], v = [0, 0, 1] }";
     let irradiance = 4.0 * 0.5f64.sqrt() * libm::atan(0.5f64.sqrt());
@@ -15,7 +15,7 @@ fn combined_lights() -> Vec<Case> {
     };
     let down = "quad = { center = [0, 1, 0], u = [1, 0, 0], v = [0, 0, 1] }";
     let up = "quad = { center = [0, 1, 0], u = [0, 0, 1], v = [1, 0, 0] }";
-    // Ten squares on a ring, each tilted another way; none hides another from the place.
+    // Ten squares on a ring, each with a different tilt. None hides another from the point.
     let ring: Vec<(DVec3, DVec3, DVec3)> = (0..10)
         .map(|i| {
             let (sin, cos) = libm::sincos(f64::from(i) * 0.2 * PI);
@@ -26,7 +26,7 @@ fn combined_lights() -> Vec<Case> {
     let quads: Vec<String> = ring.iter().map(|&(center, u, v)| quad(center, u, v)).collect();
     let quads: Vec<&str> = quads.iter().map(String::as_str).collect();
     let by_ring: f64 = ring.iter().map(|&(c, u, v)| by_quad([0.0; 3], c, u, v)).sum();
-    // A disc wholly above the floor sends its irradiance times the cosine of its middle, however wide it is.
+    // A disc wholly above the floor gives its irradiance times the cosine of its center, however wide it is.
     let sun = |name, others: &str, diameter: f64, irradiance| {
         let (sin, cos) = libm::sincos(0.7);
         let scene = if others.contains("quad") { others.to_owned() } else { lamp("", &[]) + others };
@@ -55,7 +55,7 @@ fn combined_lights() -> Vec<Case> {
             ..case("ten squares before a sky", &[], by_ring + 0.7 * (PI - by_ring))
         },
         Case { scene: lamp("", &[]) + &sky, ..case("sky alone", &[], 0.7 * PI) },
-        // Straight above at height 2, tilted by 20 degrees: within the full part of its cone.
+        // Straight above at height 2 and tilted by 20 degrees: the point is in the full part of the cone.
         Case {
             scene: lamp("", &[])
                 + &format!(
@@ -67,7 +67,8 @@ fn combined_lights() -> Vec<Case> {
         sun("parallel sun", "", 0.0, 3.0 * libm::cos(0.7)),
         sun("sun as we see it", "", 0.533, 3.0 * libm::cos(0.7)),
         sun("wide sun before a sky", &sky, 80.0, 3.0 * libm::cos(0.7) + 0.7 * PI),
-        // The lamp reaches as far as 45 degrees, the sun to 44.1; at 10 across, its rim would shine past the lamp.
+        // The lamp extends to 45 degrees and the sun to 44.1. With a diameter of 10, the sun's rim would shine past the
+        // lamp.
         sun("sun hidden by a lamp", &lamp("", &[square]), 8.0, irradiance),
         Case {
             scene: lamp("", &[square])
@@ -77,7 +78,7 @@ fn combined_lights() -> Vec<Case> {
     ]
 }
 
-/// Squares in one plane, which do not hide each other, and points below them, which hide nothing.
+/// Returns cases of squares in one plane, which do not hide each other, and points below them, which hide nothing.
 fn crowds() -> Vec<Case> {
     let crowd = |name, rows: i32, others: &str, more: f64| {
         let (mut squares, mut points, mut irradiance) = (Vec::new(), String::new(), more);
@@ -100,7 +101,7 @@ fn crowds() -> Vec<Case> {
         Case { scene: lamp("", &squares) + &points + others, ..case(name, &[], irradiance) }
     };
     let (sin, cos) = libm::sincos(0.7);
-    // Behind the squares: what of it they hide is part of what they send.
+    // The sun is behind the plane of the squares and shines between them.
     let sun = format!(
         "[[light]]\nsun = {{ toward = [0, {cos}, {sin}], angular_diameter = 0, irradiance = {{ rgb = {BANDS:?} }} }}\n"
     );

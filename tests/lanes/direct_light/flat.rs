@@ -5,7 +5,7 @@ use abbe::math::DVec3;
 use super::{Case, assert_closed_forms, by_polygon, by_quad, case};
 use crate::support::scenes::quad;
 
-/// Discs and polygons.
+/// Returns cases of discs and polygons.
 fn flat_lights() -> Vec<Case> {
     let [low, high] = [0.3, 2.0].map(|height: f64| PI / (1.0 + height * height));
     let square = 4.0 * 0.5f64.sqrt() * libm::atan(0.5f64.sqrt());

@@ -4,18 +4,19 @@ use abbe::math::DVec3;
 
 use super::{Case, assert_closed_forms, by_ball, by_quad, case, lamp};
 
-/// Balls, ellipsoids and boxes.
+/// Returns cases of balls, ellipsoids and boxes.
 fn round_lights() -> Vec<Case> {
     let ball = |center: [f64; 3], radius: f64| format!("sphere = {{ center = {center:?}, radius = {radius:?} }}");
     let over = |name, center, radius| case(name, &[&ball(center, radius)], by_ball([0.0; 3], center, radius));
     let touching = |name, x: f64| Case {
         point: [x, 0.0, 0.0],
-        // Below the ball's flank.
+        // The camera looks in below the side of the ball.
         camera: [x + 9.0, 9.0 * x, 0.0],
         irradiance: by_ball([x, 0.0, 0.0], [0.0, 1.0, 0.0], 1.0),
         ..case(name, &[&ball([0.0, 1.0, 0.0], 1.0)], 0.0)
     };
-    // Half of a ball above the horizon: the segment that its edge cuts off the unit disc (Nusselt 1928).
+    // Half of the ball is above the horizon. Its projection is the segment that its edge cuts off the unit disc
+    // (Nusselt 1928).
     let angle = libm::asin(0.5);
     let stretched = |name, steps: &str, irradiance| Case {
         scene: lamp("", &[])
@@ -25,7 +26,7 @@ fn round_lights() -> Vec<Case> {
             ),
         ..case(name, &[], irradiance)
     };
-    // The cone that touches an upright ellipsoid of half axes a, h, b meets height 1 in an ellipse; over that,
+    // The cone tangent to an upright ellipsoid of half axes a, h, b meets height 1 in an ellipse. Over that ellipse,
     // the integral of 1 / (1 + x^2 + z^2)^2 is pi A B / sqrt((1 + A^2) (1 + B^2)).
     let (a, h, b, height) = (1.0, 0.3, 0.5, 2.0f64);
     let [a, b] = [a, b].map(|x: f64| x / (height * height - h * h).sqrt());
@@ -57,7 +58,7 @@ fn round_lights() -> Vec<Case> {
         case("L2 inside a ball", &[&ball([0.5, 0.3, 0.2], 20.0)], PI),
         stretched("ellipsoid overhead", turned, ellipse),
         stretched("inside an ellipsoid", "{ scale = [20, 30, 15] }, { translate = [1, 2, 3] }", PI),
-        // Of this box, the faces at -x and -y are toward the place.
+        // The faces of this box at -x and -y are toward the point.
         case("box", &[cube], sides),
         case("box of a mesh", &[&box_mesh], sides),
     ]
