@@ -40,7 +40,7 @@ Examples:
   render --error 0.01 --exr scenes/prism.toml     stop at an error of 1 %
   render --layers all --exr scenes/prism.toml     write layers beside the image
   render --spectral --exr scenes/prism.toml       write spectra beside the image
-  render --checkpoint 60s --exr scenes/prism.toml lose nothing: --resume continues
+  render --checkpoint 60s --exr scenes/prism.toml save progress for --resume
   render --shard 1/4 --exr scenes/prism.toml      make one of four parts
   render merge prism.exr prism.*.part             combine them
   render --plan s.toml --plan-file s.plan         make a plan for all parts
