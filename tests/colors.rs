@@ -39,14 +39,15 @@ fn text(body: &str, space: ColorSpace, model: &str, caustics: &str) -> String {
 }
 
 /// The films of a scene in some color spaces, under a model. How many photons there are is learned from samples that do
-/// choose lights: it is asked once.
+/// choose lights, and so is whether polarization matters beside them: both are asked once.
 fn films<const S: usize>(body: &str, spaces: [ColorSpace; S], model: &str) -> [Film; S] {
     let caustics = |space| if space == spaces[0] { "auto" } else { "off" };
     let scenes = spaces.map(|space| scene(&text(body, space, model, caustics(space))));
     let methods = scenes.each_ref().map(|scene| plan(scene).method);
-    let light_pass = &methods[0].light_pass;
+    let Method { light_pass, polarization, .. } = &methods[0];
     std::array::from_fn(|i| {
-        let method = Method { transport: ALL_LIGHTS, light_pass: light_pass.clone(), ..methods[i].clone() };
+        let (light_pass, polarization) = (light_pass.clone(), *polarization);
+        let method = Method { transport: ALL_LIGHTS, light_pass, polarization, ..methods[i].clone() };
         film_of(&scenes[i], method)
     })
 }
