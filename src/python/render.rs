@@ -24,7 +24,7 @@ const PERIOD: Duration = Duration::from_millis(500);
 /// The maximum time to wait for a stopped render that keeps nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How a scene will be rendered, as JSON, and on how many threads.
+/// Plans a render, and returns the plan as JSON and the number of threads that it would use.
 #[pyfunction]
 pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> PyResult<(String, usize)> {
     let (scene, options) = (scene.0.clone(), options(asked)?);
@@ -38,7 +38,7 @@ pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> 
     Ok((work::run(py, planned)?.map_err(raised)?, threads))
 }
 
-/// Renders; `progress` gets how much is done, of how much, after how many seconds.
+/// Renders a scene. Calls `progress` with the work done, all work, and the seconds since the render began.
 #[pyfunction]
 pub(super) fn render(
     py: Python<'_>,
