@@ -71,7 +71,7 @@ impl Format {
         let layers = self.layers.iter().filter(is_spoiled).map(|layer| layer.name());
         let spoiled: Vec<&str> = depth.into_iter().chain(layers).collect();
         (!spoiled.is_empty()).then(|| {
-            let message = format!("the compression {name} alters data that is not color: {}", spoiled.join(", "));
+            let message = format!("the compression {name} alters data that must stay exact: {}", spoiled.join(", "));
             let help = "write multipart = true, which stores it without loss in parts of its own";
             (message, format!("{help}; or compression = \"piz\""))
         })
