@@ -134,7 +134,7 @@ impl Image {
         let rank = layers.iter().find(|rank| rank.starts_with(layer)).map(String::as_str);
         let help = match rank.or_else(|| nearest(layer, known)) {
             Some(near) if layers.iter().any(|layer| layer == near) => format!("did you mean {near:?}? "),
-            Some(near) => format!("layers=[{near:?}] asks for it; "),
+            Some(near) => format!("ask for it with layers=[{near:?}]; "),
             None => String::new(),
         };
         PyKeyError::new_err(format!("the image has no layer {name:?}: {help}it has {}", layers.join(", ")))

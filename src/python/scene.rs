@@ -41,7 +41,7 @@ impl Scene {
             let key: String = key.extract()?;
             if key.is_empty() || key.chars().any(|letter| letter == '=' || letter.is_control()) {
                 return refuse(
-                    format!("{key:?} is no path of a key"),
+                    format!("{key:?} is not the path of a key"),
                     "such as \"film.width\" or \"object.ball.material\"",
                 );
             }
@@ -90,7 +90,7 @@ impl Scene {
 
     /// Raises `TypeError`, because a scene cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
-        no_pickle("a scene", "send the path or the dict that it is made of")
+        no_pickle("a scene", "send the path or the dict that it is made from")
     }
 
     /// Returns the same object, because it is immutable.

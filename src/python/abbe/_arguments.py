@@ -23,7 +23,7 @@ def path(name: str, value: Any, wanted: str = "the path of a file or folder") ->
 def text(name: str, value: Any) -> str:
     """Returns `value` if it is a string, or raises `TypeError`."""
     if not isinstance(value, str):
-        raise TypeError(f"{name} is a text, not {_shown(value)}")
+        raise TypeError(f"{name} is a string, not {_shown(value)}")
     return value
 
 
@@ -54,7 +54,7 @@ def _is_truth(value: Any) -> bool:
 def truth(name: str, value: Any) -> bool:
     """Returns `value` as a bool if it is a boolean of Python or numpy, or raises `OptionsError`."""
     if not _is_truth(value):
-        raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) says all arguments")
+        raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) lists all arguments")
     return bool(value)
 
 
@@ -71,7 +71,7 @@ def settings(value: Any) -> dict[str, Any]:
         raise OptionsError(f"set is a dict, not {_shown(value)}", 'such as set={"film.width": 320}')
     for key in value:
         if not isinstance(key, str):
-            raise OptionsError(f"a key of set is a text, not {_shown(key)}", 'such as set={"film.width": 320}')
+            raise OptionsError(f"a key of set is a string, not {_shown(key)}", 'such as set={"film.width": 320}')
     return dict(value)
 
 
