@@ -199,6 +199,6 @@ mod tests {
         bytes[kind.len() + HEAD] ^= 1;
         std::fs::write(&path, bytes).expect("it can be written");
         let damaged = told(read().expect_err("a bit is wrong"));
-        assert!(damaged.contains("it is damaged or cut short"), "{damaged}");
+        assert!(damaged.contains("it is damaged or truncated"), "{damaged}");
     }
 }
