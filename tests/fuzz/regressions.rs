@@ -75,7 +75,7 @@ fn a_header_alone_gets_no_memory() {
         for at in [at, second] {
             bytes[at..at + 16].copy_from_slice(&window(16383, 8191));
         }
-        assert!(refusals(&exr, &bytes)[0].starts_with("case.exr is no OpenEXR image"));
+        assert!(refusals(&exr, &bytes)[0].starts_with("case.exr is not a valid OpenEXR image"));
     }
 }
 
@@ -86,7 +86,7 @@ fn an_image_without_texels_is_refused() {
     for (from, to) in [("-Y 2", "-Y 0"), ("+X 6", "+X 0")] {
         let bytes = replaced(corpus::hdr().last().expect("a file"), from, to);
         for refusal in refusals(&kind("hdr"), &bytes) {
-            assert!(refusal.starts_with("case.hdr is no Radiance image ("), "{refusal}");
+            assert!(refusal.starts_with("case.hdr is not a valid Radiance image ("), "{refusal}");
         }
     }
 }
