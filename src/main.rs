@@ -84,7 +84,7 @@ fn check_ends(jobs: &Jobs, first: &Job, source: &Source) -> Result<()> {
         if let (Some(frame), Err(error)) = (job.frame.filter(|_| job.frame != first.frame), checked(&job, source)) {
             // A mistake that all frames share is reported for the first frame.
             checked(first, source)?;
-            messages::say(&format!("frame {frame} is wrong, so none is rendered"));
+            messages::say(&format!("frame {frame} has a mistake, so no frame is rendered"));
             return Err(error);
         }
     }

@@ -38,15 +38,16 @@ fn text(body: &str, space: ColorSpace, model: &str, caustics: &str) -> String {
     )
 }
 
-/// Renders a scene in several color spaces under a model. The number of photons is planned only once, with samples that
-/// do select lights.
+/// Renders a scene in several color spaces under a model. The number of photons, and whether polarization matters, are
+/// planned only once, with samples that do select lights.
 fn films<const S: usize>(body: &str, spaces: [ColorSpace; S], model: &str) -> [Film; S] {
     let caustics = |space| if space == spaces[0] { "auto" } else { "off" };
     let scenes = spaces.map(|space| scene(&text(body, space, model, caustics(space))));
     let methods = scenes.each_ref().map(|scene| plan(scene).method);
-    let light_pass = &methods[0].light_pass;
+    let Method { light_pass, polarization, .. } = &methods[0];
     std::array::from_fn(|i| {
-        let method = Method { transport: ALL_LIGHTS, light_pass: light_pass.clone(), ..methods[i].clone() };
+        let (light_pass, polarization) = (light_pass.clone(), *polarization);
+        let method = Method { transport: ALL_LIGHTS, light_pass, polarization, ..methods[i].clone() };
         film_of(&scenes[i], method)
     })
 }

@@ -114,9 +114,9 @@ fn one_scene_is_asked_for() {
     assert_refuses(&["--exr"], 2, refusal);
     assert_refuses(&["--exr", "frame.exr"], 2, refusal);
     let refusal = "error: one scene is rendered at a time, and box.toml is another\n\
-        help: render each by a command of its own\n";
+        help: render each with its own command\n";
     assert_refuses(&["ball.toml", "box.toml"], 2, refusal);
-    let refusal = |file: &str, flag: &str| format!("error: {file} is no scene\nhelp: write {flag} {file}\n");
+    let refusal = |file: &str, flag: &str| format!("error: {file} is not a scene\nhelp: write {flag} {file}\n");
     assert_refuses(&["ball.toml", "out/frame.exr"], 2, &refusal("out/frame.exr", "--exr"));
     assert_refuses(&["ball.toml", "look.png"], 2, &refusal("look.png", "--png"));
 }
@@ -126,7 +126,7 @@ fn words_that_stand_apart_and_belong_together_are_told() {
     let setting = "error: a setting is one word: a key, `=` and a value\nhelp: for instance: --set film.width=320\n";
     assert_refuses(&["--set", "film.width", "64", "ball.toml"], 2, setting);
     assert_refuses(&["ball.toml", "--set", "film.width", "=", "64"], 2, setting);
-    let second = "error: film.height=9 stands without --set\nhelp: write --set film.height=9\n";
+    let second = "error: film.height=9 needs --set before it\nhelp: write --set film.height=9\n";
     assert_refuses(&["ball.toml", "--set", "film.width=16", "film.height=9"], 2, second);
     let crop = "error: the numbers of a crop are joined by commas, without spaces\nhelp: write --crop 0,0,8,8\n";
     assert_refuses(&["ball.toml", "--crop", "0", "0", "8", "8"], 2, crop);
@@ -172,7 +172,7 @@ fn what_other_renderers_call_an_argument_is_refused_with_what_it_is_called_here(
     assert_refuses(&["--threads", "1", "info", "a.exr"], 2, before);
     for mark in ["####", "@@@", "$F4", "$frame", "{frame}", "%s"] {
         let name = format!("f.{mark}.exr");
-        let every = format!("error: {name} would be the name of every frame\nhelp: write %04d in place of {mark}\n");
+        let every = format!("error: {name} would be written by every frame\nhelp: write %04d in place of {mark}\n");
         assert_refuses(&["ball.toml", "--exr", &name, "--frame", "3"], 2, &every);
     }
 }
@@ -204,7 +204,7 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
 
 #[test]
 fn an_image_that_cannot_be_written_is_refused_before_anything_is_rendered() {
-    let file = "a file stands where its folder should be";
+    let file = "there is a file where its folder should be";
     let cannot = |path: &str, reason: &str| format!("error: cannot write {path}: {reason}\n");
     assert_refuses(&["ball.toml", "--exr", "ball.toml/a.exr"], 1, &cannot("ball.toml/a.exr", file));
     assert_refuses(&["ball.toml", "--exr", "ball.toml/b/a.exr"], 1, &cannot("ball.toml/b/a.exr", file));
@@ -236,7 +236,7 @@ fn numbers_on_the_command_line_are_checked() {
     is_refused("--layers", "N,albdo", "there is no layer `albdo`: did you mean albedo?");
     is_refused("--layers", "depth", "there is no layer `depth` (leave it out: Z is in every file)");
     is_refused("--layers", "N,normals", "there is no layer `normals` (normals are in N)");
-    let of_a_light = "there is no layer `light_key` (ask for lights: it brings one such layer for each light)";
+    let of_a_light = "there is no layer `light_key` (ask for lights: it writes one such layer for each light)";
     is_refused("--layers", "light_key", of_a_light);
     let both = "there are no layers `albdo` (did you mean albedo?), `varianc` (did you mean variance?)";
     is_refused("--layers", "albdo,N,varianc", both);
@@ -360,7 +360,7 @@ fn a_picture_alone_leaves_an_image_of_the_same_scene_as_it_is() {
 
 #[test]
 fn an_exposure_without_a_picture_is_refused() {
-    let refusal = "error: --exposure brightens the picture of --png alone, and none is asked for\n\
+    let refusal = "error: --exposure brightens only the picture of --png, and --png is not given\n\
                    help: add --png look.png, or leave --exposure out\n";
     assert_refuses(&["ball.toml", "--exposure", "1"], 2, refusal);
     assert_refuses(&["--exr", "ball.toml", "--exposure", "0"], 2, refusal);

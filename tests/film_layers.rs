@@ -70,9 +70,9 @@ fn too_few_samples_tell_no_variance_and_that_is_said() {
     };
     assert_eq!(
         told(&[Layer::Variance, Layer::HalfA, Layer::Normal], 3),
-        ["variance, half_a tell the noise of 4 samples per pixel or more, not of 3"]
+        ["variance, half_a show the noise only with 4 or more samples per pixel, not with 3"]
     );
-    assert_eq!(told(&[Layer::HalfB], 1), ["half_b tells the noise of 4 samples per pixel or more, not of 1"]);
+    assert_eq!(told(&[Layer::HalfB], 1), ["half_b shows the noise only with 4 or more samples per pixel, not with 1"]);
     assert!(told(&[Layer::Variance, Layer::HalfB], 4).is_empty() && told(&[Layer::Samples], 1).is_empty());
 }
 

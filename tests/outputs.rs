@@ -55,8 +55,8 @@ fn a_film_that_does_not_fit_in_memory_is_refused_and_planned_all_the_same() {
     assert_eq!(code, Some(0));
     assert!(plan.contains("\nfilm: 16384 x 16384 pixels take 19.3 GB of memory\n"), "{plan}");
     let (code, _, told) = run("--exr");
-    let expected = "error: cannot keep the film in memory, 19.3 GB: not that much is free; \
-                    --crop and --shard render a part of the image\n";
+    let expected = "error: cannot keep the film in memory, 19.3 GB: not enough memory is free; --crop and --shard \
+                    render a part of the image\n";
     assert_eq!((code, &*told), (Some(1), expected));
     assert_eq!(folder.listing(), ["ball.toml"]);
 }
@@ -342,12 +342,16 @@ fn no_words_take_the_place_of_an_image() {
     let folder = folder();
     folder.write("old.exr", "an image of last week");
     for (arguments, message, help) in [
-        ("--report old.exr", "--report writes no image, and old.exr is called one", "--report frame.json"),
-        ("--report a.PNG", "--report writes no image, and a.PNG is called one", "--report frame.json"),
+        (
+            "--report old.exr",
+            "--report does not write an image, but old.exr has the name of one",
+            "--report frame.json",
+        ),
+        ("--report a.PNG", "--report does not write an image, but a.PNG has the name of one", "--report frame.json"),
         ("--report -", "--report writes a file, and - is standard output", "--report frame.json"),
         (
             "--plan --plan-file old.exr",
-            "--plan-file writes no image, and old.exr is called one",
+            "--plan-file does not write an image, but old.exr has the name of one",
             "--plan-file frame.plan",
         ),
         ("--plan --plan-file -", "--plan-file writes a file, and - is standard output", "--plan-file frame.plan"),

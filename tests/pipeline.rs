@@ -79,17 +79,21 @@ fn what_standard_input_and_output_cannot_do_is_refused() {
     for (arguments, expected) in [
         (
             &["-"][..],
-            "error: a scene from standard input has no name for its image\n\
+            "error: a scene from standard input has no file name to name the image after\n\
              help: name the image, as in render - --exr out/frame.exr\n"
                 .to_owned(),
         ),
         (
             &["scene.toml", "--spectral", "--exr", "-"],
-            format!("error: spectra are written beside the image, and standard output has no place beside it\n{name}"),
+            format!(
+                "error: spectra are written to a file beside the image, which standard output does not allow\n{name}"
+            ),
         ),
         (
             &["scene.toml", "--set", "film.spectral=true", "--exr", "-"],
-            format!("error: spectra are written beside the image, and standard output has no place beside it\n{name}"),
+            format!(
+                "error: spectra are written to a file beside the image, which standard output does not allow\n{name}"
+            ),
         ),
         (
             &["scene.toml", "--plan", "--exr", "-"],
@@ -235,7 +239,7 @@ fn a_farm_is_told_in_one_line_why_a_task_fails() {
             "scene.toml --sampels 3",
             2,
             "unexpected argument '--sampels' found",
-            "help: render --help tells all arguments",
+            "help: render --help lists all arguments",
         ),
         (
             "scene.toml --exr -",
@@ -246,10 +250,10 @@ fn a_farm_is_told_in_one_line_why_a_task_fails() {
         (
             "scene.toml --exr scene.toml/a.exr",
             1,
-            "cannot write scene.toml/a.exr: a file stands where its folder should be",
+            "cannot write scene.toml/a.exr: there is a file where its folder should be",
             "error: cannot write scene.toml/a.exr",
         ),
-        ("merge a.exr scene.toml", 2, "scene.toml is no part of an image", "help: parts are made by --shard"),
+        ("merge a.exr scene.toml", 2, "scene.toml is not a part of an image", "help: parts are made by --shard"),
     ] {
         let failed = for_farm(&folder, words, code);
         assert_eq!(failed.stdout, format!("openjd_fail: {why}\n"), "{words}");
@@ -280,8 +284,7 @@ fn a_frame_is_a_variable_and_a_number_in_the_names_of_files() {
     assert_eq!(bytes("seven.exr"), bytes("turn.0007.exr"));
     assert_ne!(bytes("seven.exr"), bytes("out/12/turn.0012.exr"));
     let nameless = render(&folder, &["scene.toml", "--exr", "turn.%04d.exr"]);
-    let expected =
-        "error: turn.%04d.exr is named after a frame, and no frame is given\nhelp: give its number: --frame 1\n";
+    let expected = "error: turn.%04d.exr has a place for the frame number, but no frame is given\nhelp: give its number: --frame 1\n";
     assert_eq!((nameless.code, &*nameless.stderr), (Some(2), expected));
 }
 
@@ -309,7 +312,7 @@ fn a_frame_beyond_what_a_value_may_be_is_told_before_any_is_rendered() {
     for frames in ["178-181", "178,0,179"] {
         let answer = render(&folder, &["zoom.toml", "--frame", frames, "--exr", "z.%d.exr"]);
         let wrong = if frames == "178-181" { 181 } else { 0 };
-        let told = format!("\nframe {wrong} is wrong, so none is rendered\nerror: ");
+        let told = format!("\nframe {wrong} has a mistake, so no frame is rendered\nerror: ");
         assert!(answer.code == Some(2) && answer.stderr.contains(&told), "{}", answer.stderr);
         assert_eq!(folder.listing(), ["zoom.toml"]);
     }
@@ -350,18 +353,18 @@ fn frames_are_rendered_one_after_another() {
     for (arguments, message) in [
         (
             &["--exr", "one.exr"][..],
-            "one.exr would be the name of every frame\nhelp: put its number into it: one.%04d.exr",
+            "one.exr would be written by every frame\nhelp: put the frame number into the name: one.%04d.exr",
         ),
-        (&["--exr", "-"], "- would be the name of every frame"),
+        (&["--exr", "-"], "- would be written by every frame"),
         (
             &["--png", "a/one.png"],
-            "a/one.png would be the name of every frame\nhelp: put its number into it: a/one.%04d.png",
+            "a/one.png would be written by every frame\nhelp: put the frame number into the name: a/one.%04d.png",
         ),
-        (&["--report", "one.json"], "one.json would be the name of every frame"),
-        (&["--progress", "openjd"], "--progress is of one frame"),
+        (&["--report", "one.json"], "one.json would be written by every frame"),
+        (&["--progress", "openjd"], "--progress reports a single frame"),
         (
             &["--plan-file", "p.plan"],
-            "p.plan would be the name of every frame\nhelp: put its number into it: p.%04d.plan",
+            "p.plan would be written by every frame\nhelp: put the frame number into the name: p.%04d.plan",
         ),
     ] {
         let refused = frames(&[&["--frame", "1-2"], arguments].concat());

@@ -82,7 +82,7 @@ fn the_classic_scene_is_said_to_part_its_lanes_in_every_dispersive_glass() {
         assert_says(line.expect("a line about the glass"), "so lanes separate");
     }
     assert_says(&because, "material ruby: index 1.5200 in every lane, so lanes stay together");
-    assert_says(&because, "diffuse surfaces are lit directly by the lights alone");
+    assert_says(&because, "diffuse surfaces receive only direct light");
 }
 
 #[test]

@@ -481,7 +481,7 @@ fn parts_take_all_samples_and_say_so() {
     let shard = Shard::new(1, 2).expect("there is such a part");
     let refused = Rendering::new(&text, &Options { shard, error: Some(0.1), ..Options::default() });
     let message = refused.map(|_| ()).expect_err("no part tells the error of the whole").to_string();
-    assert!(message.contains("does not tell the error of the whole"), "{message}");
+    assert!(message.contains("shows neither the error of the whole nor how many"), "{message}");
     let part = Rendering::new(&text, &Options { shard, ..asks(0.1, 128) }).expect("so many samples are taken");
     assert!(part.plan().method.stop.is_none() && part.plan().method.samples == 128);
     assert!(part.plan().because.iter().any(|line| line.starts_with("takes all 128 samples")));

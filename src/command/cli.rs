@@ -251,7 +251,7 @@ impl Jobs {
             return Ok(());
         }
         if progress.is_some() {
-            return Error::refuse("--progress is of one frame", "give the farm a task for each: --frame 1");
+            return Error::refuse("--progress reports a single frame", "give the farm one task per frame: --frame 1");
         }
         // Without a scene argument, the argument of --exr is the scene.
         let exr = exr.iter().flatten().filter(|_| scene.is_some());
@@ -382,7 +382,7 @@ fn told(said: clap::Error) -> Result<Request> {
     if said.use_stderr() && matches!(listener(), Listener::Program | Listener::Farm) {
         let text = said.render().to_string();
         let (message, _) = text.split_once("\n\n").unwrap_or((&text, ""));
-        return Error::refuse(message.strip_prefix("error: ").unwrap_or(message), "render --help tells all arguments");
+        return Error::refuse(message.strip_prefix("error: ").unwrap_or(message), "render --help lists all arguments");
     }
     if said.use_stderr() {
         said.exit();
@@ -407,13 +407,13 @@ fn job(arguments: Arguments, frame: Option<u32>) -> Result<Job> {
     check_exposure(arguments.exposure)?;
     if arguments.exposure.is_some() && arguments.png.is_none() {
         let help = "add --png look.png, or leave --exposure out";
-        return Error::refuse("--exposure brightens the picture of --png alone, and none is asked for", help);
+        return Error::refuse("--exposure brightens only the picture of --png, and --png is not given", help);
     }
     check_png(arguments.png.as_deref())?;
     arguments.keep.check(idle, with_exr, arguments.png.is_some(), arguments.stamp)?;
     if arguments.spectral && !with_exr && arguments.png.is_some() {
         let help = "add --exr, or leave --spectral out";
-        return Error::refuse("--spectral writes spectra beside an EXR, and --png alone writes none", help);
+        return Error::refuse("--spectral writes spectra beside an EXR, and --png alone writes no EXR", help);
     }
     let mut plan_file = arguments.plan_file.map(|path| numbered(&path, frame)).transpose()?;
     let output = if arguments.plan {
@@ -485,7 +485,7 @@ fn scene_and_image(
 /// Returns the name of the scene, followed by the number of its frame and `.exr`, in the current folder.
 fn beside(scene: &Path, frame: Option<u32>) -> Result<PathBuf> {
     if is_standard(scene) {
-        let message = "a scene from standard input has no name for its image";
+        let message = "a scene from standard input has no file name to name the image after";
         return Error::refuse(message, "name the image, as in render - --exr out/frame.exr");
     }
     let mut name = scene.file_stem().unwrap_or(OsStr::new("image")).to_owned();

@@ -99,7 +99,7 @@ fn compared(query: &Query) -> Result<bool> {
         let what = match (white > 0.0, found.torn) {
             (true, _) => format!("white is a difference of {} or more", number(white)),
             (false, 0) => "all of it is black, as nothing differs".into(),
-            (false, _) => "white is what differs and is not finite".into(),
+            (false, _) => "white marks pixels that differ and are not finite".into(),
         };
         say(&format!("wrote {}: {what}", png.display()));
     }
@@ -132,7 +132,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
     if let Some(color) = found.color.filter(|_| !found.is_equal) {
         let clipped = match color.clipped {
             0.0 => String::new(),
-            share => format!(", of colors clipped to 0..1, as {:.1} % of the pixels are", 100.0 * share),
+            share => format!(", for colors clipped to 0..1, which affects {:.1} % of the pixels", 100.0 * share),
         };
         put("dE2000", format!("mean {:.3}, worst {:.2}{clipped}", color.mean, color.worst));
     }
@@ -141,7 +141,7 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
         let known = if alpha.contradicts() {
             format!("{} pixels are empty in one and full in the other, more than chance explains", alpha.opposite)
         } else {
-            "of its noise nothing is known".into()
+            "its noise is unknown".into()
         };
         put("alpha", format!("up to {largest} apart, relMSE {error}; {known}; --layer A compares it"));
     }
@@ -150,17 +150,19 @@ fn figures(found: &Difference, tolerance: Option<f64>, gathers: bool) -> Vec<Vec
         let means: Vec<String> = noise.means.iter().map(|z| format!("{z:.1}")).collect();
         put("z of means", format!("{} in {}", means.join(", "), found.channels.join(", ")));
         if noise.changed > 0 {
-            put("no noise", format!("{} values differ though neither file says that they vary", noise.changed));
+            put("no noise", format!("{} values differ although neither file gives them any variance", noise.changed));
         }
         if noise.beyond > 0 && gathers {
             put(
                 "photon map",
-                "its noise is known in part: a few values may differ more by chance, fewer with more samples".into(),
+                "its noise is only partly known: by chance, a few values may differ more, fewer with more samples"
+                    .into(),
             );
         }
     }
     if !found.is_equal && found.noise.is_none() && tolerance.is_none() {
-        let untold = format!("no variance layers of {TELL_VARIANCE} samples per pixel or more tell the noise");
+        let untold =
+            format!("the noise is unknown without variance layers from {TELL_VARIANCE} or more samples per pixel");
         put("judged by", format!("equality: {untold}, and no --tolerance is given"));
     }
     if let Some(worst) = &found.worst {
@@ -186,6 +188,6 @@ fn of_pixel(pixel: &WorstPixel) -> String {
 fn of_noise(found: &Difference, noise: &Noise) -> String {
     let [pixel, channel] = noise.at;
     let ([x, y], channel) = (found.bounds.place(pixel), &found.channels[channel]);
-    let beyond = if noise.beyond > 0 { format!("; {} beyond it", noise.beyond) } else { String::new() };
+    let beyond = if noise.beyond > 0 { format!("; {} above that", noise.beyond) } else { String::new() };
     format!("worst {:.1} in {channel} of ({x}, {y}), chance explains up to {:.1}{beyond}", noise.worst, noise.threshold)
 }

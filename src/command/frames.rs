@@ -100,7 +100,7 @@ pub fn numbered(path: &Path, frame: Option<u32>) -> Result<PathBuf> {
             after
         } else if let Some((digits, after)) = digits(after) {
             let Some(frame) = frame else {
-                let message = format!("{text} is named after a frame, and no frame is given");
+                let message = format!("{text} has a place for the frame number, but no frame is given");
                 return Error::refuse(message, "give its number: --frame 1");
             };
             name.push_str(&format!("{frame:0digits$}"));
@@ -131,11 +131,14 @@ pub fn check_numbered(path: &Path) -> Result<()> {
         (Some(stem), Some(end)) => path.with_file_name(format!("{stem}.%04d.{end}")),
         _ => "turn.%04d.exr".into(),
     };
-    Error::refuse(one_name(&path.display().to_string()), format!("put its number into it: {}", example.display()))
+    Error::refuse(
+        one_name(&path.display().to_string()),
+        format!("put the frame number into the name: {}", example.display()),
+    )
 }
 
 fn one_name(path: &str) -> String {
-    format!("{path} would be the name of every frame")
+    format!("{path} would be written by every frame")
 }
 
 /// Parses what follows a percent sign, as in `%04d`, `%4d` or `%d`: returns the minimum number of digits, and the rest
@@ -215,8 +218,8 @@ mod tests {
         };
         assert_eq!(help("out/turn.%04d.exr"), None);
         let [message, told] = help("out/turn.exr").expect("it is refused");
-        assert_eq!(message, "out/turn.exr would be the name of every frame");
-        assert_eq!(told, "put its number into it: out/turn.%04d.exr");
+        assert_eq!(message, "out/turn.exr would be written by every frame");
+        assert_eq!(told, "put the frame number into the name: out/turn.%04d.exr");
         assert!(help("-").is_some() && help("100%%d.exr").is_some());
     }
 

@@ -117,7 +117,7 @@ fn window(full: &PixelBounds, there: &PixelBounds) -> Option<(&'static str, Stri
         (true, true) => "crop and overscan",
     };
     let [width, height] = there.size;
-    Some((key, format!("{width} x {height} pixels are there, ({left}, {top}) to ({right}, {bottom})")))
+    Some((key, format!("{width} x {height} pixels are stored, ({left}, {top}) to ({right}, {bottom})")))
 }
 
 fn chromaticities(found: &Primaries) -> String {
@@ -148,7 +148,7 @@ fn camera(file: &ExrFile, part: &Part) -> Vec<Vec<String>> {
         }
         Some(_) => row("view", &format!("{} across, {} up", number(width), number(height))),
     });
-    rows.extend(said("screenWindowCenter").map(|center| row("view's middle", center)));
+    rows.extend(said("screenWindowCenter").map(|center| row("view center", center)));
     rows
 }
 
@@ -184,7 +184,7 @@ fn line(layer: &ExrLayer, channel: &Channel) -> Vec<String> {
     if let [across, down] = channel.sampling
         && [across, down] != [1, 1]
     {
-        told.push(format!("a value for {across} x {down} pixels"));
+        told.push(format!("one value per {across} x {down} pixels"));
     }
     let [layer, name] = [&layer.name, &channel.name].map(|text| short(text));
     vec![layer, name, channel.kind().into(), min, mean, max, told.join(", ")]

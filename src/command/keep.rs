@@ -50,7 +50,7 @@ fn shard(text: &str) -> std::result::Result<Shard, String> {
     let parts = text.split_once('/');
     let numbers = parts.and_then(|(number, count)| Some([number.parse().ok()?, count.parse().ok()?]));
     let shard = numbers.and_then(|[number, count]| Shard::new(number, count));
-    shard.ok_or_else(|| "a part is its number and how many there are, such as 1/16, 2/16, up to 16/16".into())
+    shard.ok_or_else(|| "a part is given as its number and the number of parts, such as 1/16, 2/16, up to 16/16".into())
 }
 
 impl Flags {
@@ -74,13 +74,16 @@ impl Flags {
         }
         if self.shard.is_some() && !is_planned && (!exr || png) {
             let help = "leave --png out, and make a picture of the merged image";
-            return Error::refuse("--shard makes a part of an EXR, and no picture", help);
+            return Error::refuse("--shard makes a part of an EXR, not a picture", help);
         }
         if self.shard.is_some() && stamp {
-            return Error::refuse("parts of an image say no time, so --stamp has no place in them", "leave it out");
+            return Error::refuse(
+                "parts of an image record no time, so --stamp cannot be used with --shard",
+                "leave it out",
+            );
         }
         if self.snapshot.is_some() && (!exr || self.shard.is_some()) {
-            return Error::refuse("--snapshot keeps an EXR fresh, and none is rendered", "leave it out");
+            return Error::refuse("--snapshot keeps an EXR up to date, but no EXR is written", "leave it out");
         }
         Ok(())
     }
@@ -92,7 +95,7 @@ impl Flags {
     pub fn check_standard(&self) -> Result<()> {
         let keeps = self.checkpoint.or(self.snapshot).is_some() || self.resume || self.shard.is_some();
         if keeps {
-            let message = "--checkpoint, --resume, --snapshot and --shard write files beside the image, and standard output has none";
+            let message = "--checkpoint, --resume, --snapshot and --shard write files beside the image, which standard output does not allow";
             return Error::refuse(message, "name the image, as in --exr out/frame.exr");
         }
         Ok(())
@@ -168,10 +171,10 @@ impl Keep {
             let name = there.display();
             if !is_checkpoint(there)? {
                 let help = "name another image, or move that file away";
-                return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), help);
+                return Error::refuse(format!("{name} would be overwritten, but it is not a checkpoint"), help);
             }
             let help = "add --resume to go on from it, or delete it to start over";
-            return Error::refuse(format!("{name} is there from an earlier run"), help);
+            return Error::refuse(format!("{name} already exists from an earlier run"), help);
         }
         let snapshot = flags.snapshot.map(|_| file.to_owned());
         Ok(Self {
@@ -201,7 +204,7 @@ impl Keep {
     pub fn resume(&self, rendering: &mut Rendering, outputs: &[&Path]) -> Result<bool> {
         let Some(path) = self.files.checkpoint.as_deref().filter(|_| self.resume) else { return Ok(true) };
         if !path.exists() {
-            say(&format!("there is no {}: the render begins", path.display()));
+            say(&format!("there is no {} yet: the render starts from the beginning", path.display()));
             return Ok(true);
         }
         let name = path.display();
@@ -221,11 +224,11 @@ impl Keep {
             Resumed::Finished => Ok(true),
             Resumed::HasMore(samples) => match missing {
                 None => {
-                    say(&format!("{name} has {samples} samples per pixel, more than that: nothing is left to do"));
+                    say(&format!("{name} has {samples} samples per pixel, more than asked for: nothing is left to do"));
                     Ok(false)
                 }
                 Some(missing) => Error::refuse(
-                    format!("{name} has {samples} samples per pixel, and has not written {}", missing.display()),
+                    format!("{name} has {samples} samples per pixel, but {} was not written", missing.display()),
                     format!("add --samples {samples} to write it"),
                 ),
             },
@@ -277,7 +280,7 @@ impl Keep {
             (Ok(()), Ok(())) => {}
             (Err(_), Err(error)) => progress.say(&format!("stopped; {}", problem(error))),
             (Err(_), Ok(())) if self.files.has_snapshot.get() => {
-                progress.say("stopped; the snapshot is kept, and no checkpoint");
+                progress.say("stopped; the snapshot is kept, but no checkpoint");
             }
             _ => progress.say("stopped; what is done is not kept"),
         }
@@ -309,7 +312,7 @@ impl Keep {
             if !self.files.has_snapshot.get() {
                 return say(signals::NOTHING_KEPT);
             }
-            return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also go on later");
+            return say("stopped; the snapshot is kept. With --checkpoint 60s, a render can also be continued later");
         };
         let mut words: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
         if !self.resume {

@@ -111,7 +111,7 @@ fn unset(given: &str, words: &[OsString]) -> Option<(String, String)> {
         return Some((message, "for instance: --set film.width=320".into()));
     }
     let follows = |pair: &[OsString]| pair[1] == given && is_setting(&pair[0]) && is_setting(&pair[1]);
-    let said = || (format!("{given} stands without --set"), format!("write --set {given}"));
+    let said = || (format!("{given} needs --set before it"), format!("write --set {given}"));
     words.windows(2).any(follows).then(said)
 }
 
@@ -131,9 +131,9 @@ fn out_of_place(given: &str) -> Option<(String, String)> {
     match given.rsplit_once('.')?.1 {
         "toml" => {
             let message = format!("one scene is rendered at a time, and {given} is another");
-            Some((message, "render each by a command of its own".into()))
+            Some((message, "render each with its own command".into()))
         }
-        ending @ ("exr" | "png") => Some((format!("{given} is no scene"), format!("write --{ending} {given}"))),
+        ending @ ("exr" | "png") => Some((format!("{given} is not a scene"), format!("write --{ending} {given}"))),
         _ => None,
     }
 }

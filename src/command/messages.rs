@@ -259,7 +259,7 @@ pub fn print_plan(plan: &Plan) {
         Listener::Farm => plan.because.iter().for_each(|line| print(line)),
         _ if std::io::stderr().is_terminal() => {
             plan.because.iter().take(plan.summary_lines).for_each(|line| say(line));
-            say("(--plan tells how, and why)");
+            say("(--plan explains how and why)");
         }
         _ => plan.because.iter().for_each(|line| say(line)),
     }

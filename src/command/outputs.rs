@@ -21,11 +21,14 @@ pub fn is_standard(path: &Path) -> bool {
 /// Refuses an image on standard output if that is a terminal, or if the image has spectra, which need a second file.
 pub fn check_standard(spectral: bool) -> Result<()> {
     if spectral {
-        let message = "spectra are written beside the image, and standard output has no place beside it";
+        let message = "spectra are written to a file beside the image, which standard output does not allow";
         return Error::refuse(message, "name the image, as in --exr out/frame.exr");
     }
     if std::io::stdout().is_terminal() {
-        return Error::refuse("an EXR on standard output is no text for a terminal", "send it on: --exr - > frame.exr");
+        return Error::refuse(
+            "an EXR is binary, and standard output is a terminal",
+            "redirect it: --exr - > frame.exr",
+        );
     }
     Ok(())
 }
@@ -48,7 +51,7 @@ pub fn check_words(flag: &str, example: &str, file: Option<&Path>) -> Result<()>
     match file {
         Some(file) if is_standard(file) => refused(format!("{flag} writes a file, and - is standard output")),
         Some(file) if ["exr", "png"].iter().any(|ending| ends_in(file, ending)) => {
-            refused(format!("{flag} writes no image, and {} is called one", file.display()))
+            refused(format!("{flag} does not write an image, but {} has the name of one", file.display()))
         }
         _ => Ok(()),
     }

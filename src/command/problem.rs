@@ -17,11 +17,11 @@ pub fn reason(doing: &str, error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound if doing == "read" => "there is no such file".into(),
         ErrorKind::NotFound => "its folder does not exist and cannot be made".into(),
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".into(),
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "there is a file where its folder should be".into(),
         ErrorKind::PermissionDenied => "permission is denied".into(),
-        ErrorKind::ReadOnlyFilesystem => "nothing can be written or deleted on that disk".into(),
+        ErrorKind::ReadOnlyFilesystem => "that disk is read-only".into(),
         ErrorKind::StorageFull => "the disk is full".into(),
-        ErrorKind::OutOfMemory => "not that much is free; --crop and --shard render a part of the image".into(),
+        ErrorKind::OutOfMemory => "not enough memory is free; --crop and --shard render a part of the image".into(),
         _ => error.to_string(),
     }
 }

@@ -60,7 +60,7 @@ impl ExrFile {
         match guarded(|| Ok::<_, String>(Self::decode(bytes))) {
             Ok(Ok(file)) => Ok(file),
             Ok(Err(exr::error::Error::NotSupported(what))) => {
-                let message = format!("it is an OpenEXR image of a kind that is not read: {what}");
+                let message = format!("OpenEXR images of this kind are not supported: {what}");
                 Err(Error::Decode { path: path.to_owned(), message })
             }
             Ok(Err(error)) => Err(decode_error(path, &error.to_string())),
@@ -176,7 +176,7 @@ impl ExrFile {
     pub fn layer(&self, wanted: Option<&str>, shown: &str) -> Result<ExrLayer<'_>> {
         let mut layers = self.layers();
         if layers.is_empty() {
-            return Error::refuse(format!("{shown} has no channels"), "render info says what a file holds");
+            return Error::refuse(format!("{shown} has no channels"), "render info lists what a file holds");
         }
         let named = |wanted: &str| layers.iter().position(|layer| layer.name == wanted);
         let Some(wanted) = wanted else {
@@ -255,7 +255,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     });
     match read.map_err(|error| (error.kind(), error)) {
         Ok(()) if start.len() as u64 > MOST_BYTES => {
-            let message = "it has more than 4 GiB, which is the most that is read".into();
+            let message = "it is larger than 4 GiB, the most that can be read".into();
             Err(Error::Decode { path: path.to_owned(), message })
         }
         Ok(()) if start.starts_with(&MAGIC) => Ok(start),
@@ -265,10 +265,10 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
         }
         Ok(()) => match PICTURES.iter().find(|(signature, _)| start.starts_with(signature)) {
             Some((_, kind)) => {
-                let help = format!("{an_image}; --exr writes it beside a picture");
+                let help = format!("{an_image}; --exr writes one beside the picture");
                 Error::refuse(format!("{shown} is a {kind}, not an OpenEXR image"), help)
             }
-            None => Err(decode_error(path, "it does not begin as one does")),
+            None => Err(decode_error(path, "it does not begin like one")),
         },
         Err((ErrorKind::NotFound | ErrorKind::NotADirectory, _)) => {
             let near = nearest_file(path, &["exr"]).map(|near| format!("did you mean {}?", near.display()));
@@ -280,7 +280,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
 }
 
 fn decode_error(path: &Path, said: &str) -> Error {
-    Error::Decode { path: path.to_owned(), message: format!("it is no complete OpenEXR image ({said})") }
+    Error::Decode { path: path.to_owned(), message: format!("it is not a complete OpenEXR image ({said})") }
 }
 
 /// Returns why the pixels of a file are not read, if that is so.

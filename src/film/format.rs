@@ -56,7 +56,7 @@ impl Format {
     pub fn objection(&self) -> Option<(String, String)> {
         let name = self.compression.name();
         if self.compression.is_of_16_bits() && self.precision == Precision::Float {
-            let message = format!("the compression {name} holds colors of 16 bits, not of 32");
+            let message = format!("the compression {name} holds colors in 16 bits, not in 32");
             return Some((message, "write precision = \"half\", or compression = \"zip\"".into()));
         }
         if !self.compression.is_lossy() || self.multipart {
@@ -71,8 +71,8 @@ impl Format {
         let layers = self.layers.iter().filter(is_spoiled).map(|layer| layer.name());
         let spoiled: Vec<&str> = depth.into_iter().chain(layers).collect();
         (!spoiled.is_empty()).then(|| {
-            let message = format!("the compression {name} changes what is no color: {}", spoiled.join(", "));
-            let help = "write multipart = true, which packs that without loss in parts of its own";
+            let message = format!("the compression {name} alters data that must stay exact: {}", spoiled.join(", "));
+            let help = "write multipart = true, which stores it without loss in parts of its own";
             (message, format!("{help}; or compression = \"piz\""))
         })
     }

@@ -30,7 +30,7 @@ pub(crate) fn guarded<T, E: Display>(decode: impl FnOnce() -> Result<T, E>) -> R
     QUIET.set(was_quiet);
     match answer {
         Ok(answer) => answer.map_err(|error| error.to_string()),
-        Err(_) => Err("its data contradict themselves".into()),
+        Err(_) => Err("its data is inconsistent".into()),
     }
 }
 

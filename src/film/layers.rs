@@ -219,10 +219,10 @@ pub fn layer_elsewhere(name: &str) -> Option<&'static str> {
         }
         "normal" | "normals" | "denoising normal" => Some("normals are in N"),
         "diffuse_color" | "diffcol" | "base_color" | "denoising albedo" => Some("colors of surfaces are in albedo"),
-        "position" | "positions" => Some("places are in P"),
-        "luminance" => Some("the image has it: it is Y of its colors, in cd/m2 of absolute light"),
+        "position" | "positions" => Some("positions are in P"),
+        "luminance" => Some("the image has it: the Y of its colors, in cd/m2 if the light is absolute"),
         "illuminance" | "irradiance" => Some("it is pi times what a white matte surface shows"),
-        light if light.starts_with("light_") => Some("ask for lights: it brings one such layer for each light"),
+        light if light.starts_with("light_") => Some("ask for lights: it writes one such layer for each light"),
         "crypto" | "cryptomatte" => Some("ask for CryptoObject, CryptoMaterial or CryptoAsset"),
         _ => None,
     }

@@ -233,20 +233,20 @@ fn comparable(files: [&ExrFile; 2], layers: &[ExrLayer; 2], shown: [&str; 2]) ->
             let ([x, y], [width, height], full) = (bounds[i].corner, bounds[i].size, files[i].display.size);
             format!("{width} x {height} pixels at ({x}, {y}) of {} x {}", full[0], full[1])
         };
-        return refuse([0, 1].map(place), "images of one size can be compared where both have pixels");
+        return refuse([0, 1].map(place), "images of the same full size can be compared where both have pixels");
     }
     let names = layers
         .each_ref()
         .map(|layer| layer.values().iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>().join(", "));
     if names[0] != names[1] {
-        return refuse(names.map(|names| format!("the channels {names}")), "--layer names another layer");
+        return refuse(names.map(|names| format!("the channels {names}")), "use --layer to compare another layer");
     }
     if layers[0].color().is_some() {
         let matrices = files.map(|file| to_rec709(file).0);
         let pairs = matrices[0].as_flattened().iter().zip(matrices[1].as_flattened());
         if pairs.into_iter().any(|(a, b)| (a - b).abs() > SAME_SPACE) {
             let space = |file: &ExrFile| space_of_file(file.attribute("colorInteropID"), file.chromaticities);
-            return refuse(files.map(space), "colors of other spaces cannot be compared");
+            return refuse(files.map(space), "colors of different color spaces cannot be compared");
         }
     }
     Ok(())

@@ -27,7 +27,7 @@ impl Shows {
     pub fn told_of(self, picture: &str) -> String {
         match self {
             Self::White => format!("nearly all of {picture} is brighter than white"),
-            Self::WhiteObjects => format!("nearly all that objects show in {picture} is brighter than white"),
+            Self::WhiteObjects => format!("nearly everything on the objects in {picture} is brighter than white"),
             Self::Black => format!("nearly all of {picture} is too dark to be seen"),
         }
     }

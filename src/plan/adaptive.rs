@@ -31,8 +31,8 @@ pub(super) fn reason(adaptive: &Adaptive) -> String {
     let powers = &adaptive.density.powers;
     let times = |power: Option<&i8>| SampleDensity::times(*power.unwrap_or(&0));
     format!(
-        "adaptive sampling: pixels take {} to {} times the samples, most where the noise is; with as many everywhere, the \
-         same error would take about {:.1} times as long",
+        "adaptive sampling: pixels take {} to {} times the samples, most where the noise is; with the same number \
+         everywhere, the same error would take about {:.1} times as long",
         times(powers.iter().min()),
         times(powers.iter().max()),
         adaptive.gain

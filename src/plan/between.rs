@@ -83,7 +83,7 @@ impl IndirectMethod<'_> {
         let with_vertices = with_light_vertices(&self.world, openings).filter(light_paths_reach)?;
         self.improved(with_vertices, |world, without| {
             let light = carried(world);
-            format!("{light} is looked for at light vertices; without them, {without}")
+            format!("{light} is found at light vertices; without them, {without}")
         })
     }
 
@@ -91,7 +91,7 @@ impl IndirectMethod<'_> {
     fn aimed(&self, RoomLight { places, openings, .. }: RoomLight) -> Option<Self> {
         let at = |places: BrightPlaces| {
             let what = described(&places);
-            self.improved(self.world.with_bright(Some(places)), |_, without| format!("{what}; without, {without}"))
+            self.improved(self.world.with_bright(Some(places)), |_, without| format!("{what}; otherwise, {without}"))
         };
         let [places, openings] = [places.and_then(at), openings.and_then(at)];
         let pays = |way: &Option<Self>| way.as_ref().map_or(0.0, |way| way.gain);
@@ -100,7 +100,7 @@ impl IndirectMethod<'_> {
 
     /// Aims bounces at openings so small that a pilot without aim would find too little light to compare with.
     fn aimed_at_rare(self, openings: BrightPlaces) -> Self {
-        let reason = format!("{}; without, hardly any would find light", described(&openings));
+        let reason = format!("{}; otherwise, hardly any would find light", described(&openings));
         let world = self.world.with_bright(Some(openings));
         Self { world, reasons: vec![reason], noise: OnceCell::new(), ..self }
     }
@@ -131,7 +131,7 @@ fn carried(world: &World) -> String {
     let of_openings = !world.method().openings.openings.is_empty() && lights.iter().any(is_sky);
     let kinds = [
         ("suns", of_some(&|light| matches!(light, Light::Sun(_)))),
-        ("what is bright in the image of the sky", of_some(&|light| matches!(light, Light::Environment(_)))),
+        ("the bright parts of the image of the sky", of_some(&|light| matches!(light, Light::Environment(_)))),
         ("the sky through openings", of_openings),
         ("lamps", lights.iter().any(|light| !light.is_infinite())),
     ];

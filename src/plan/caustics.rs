@@ -128,7 +128,7 @@ impl<'a> SeenPhotons<'a> {
         let to = aim(scene, &Smoothness::ALL);
         let unseen = (!unseen.is_empty()).then(|| {
             let from = named(scene, &unseen);
-            format!("no caustic of {from} in sight: none of some thousand photons toward {to} was seen")
+            format!("no caustic from {from} in sight: of thousands of photons toward {to}, none was seen")
         });
         if seen.is_empty() {
             return Err(CausticChoice::not(unseen.into_iter().collect(), false));
@@ -152,7 +152,7 @@ impl<'a> SeenPhotons<'a> {
             return CausticChoice::not(lines, gain.is_none_or(|gain| of_smooth && !gain.is_equal(NOTHING)));
         }
         if !large.is_empty() {
-            lines.push(format!("left to chance: caustics of {}", named(scene, &large)));
+            lines.push(format!("left to chance: caustics from {}", named(scene, &large)));
         }
         let seen = sending.iter().map(|&(id, _)| self.share[id]).fold(0.0, f64::max);
         let smooth: Vec<_> =
@@ -187,7 +187,7 @@ fn nowhere_to_aim(scene: &Scene<Curve>, world: &World) -> Option<String> {
     let targets = targets(scene, &Smoothness::ALL);
     let name = &scene.objects[*targets.first()?].name;
     (!world.reaches_without_end() && !targets.iter().any(has_end)).then(|| {
-        let why = format!("{name} has no end and is not seen, so photons cannot be aimed at it");
+        let why = format!("{name} is unbounded and not seen, so photons cannot be aimed at it");
         format!("no photon tracing: {why}{}", missing(scene))
     })
 }
@@ -198,12 +198,12 @@ pub(super) fn without_end(scene: &Scene<Curve>, world: &World) -> Option<String>
     let endless = targets(scene, &pass.to).into_iter().find(|&object| !scene.objects[object].shape.is_bounded())?;
     let where_left = if world.reaches_without_end() { ", far beyond where it is seen" } else { " and is not seen" };
     let name = &scene.objects[endless].name;
-    Some(format!("left to chance: caustics of {name}, which has no end{where_left}{}", missing(scene)))
+    Some(format!("left to chance: caustics of {name}, which is unbounded{where_left}{}", missing(scene)))
 }
 
 /// Explains why photons that are seen are not sent: how long an equal error would take with them, or nothing is lit.
 fn not_worth(gain: Option<Effort>) -> String {
-    let Some(gain) = gain else { return "what they land on is black".into() };
+    let Some(gain) = gain else { return "the surfaces they land on are black".into() };
     let is_small = gain.judged() > 1.0 && gain.of_whole.is_none_or(|of_whole| of_whole > 1.0);
     let small = if is_small { ", which is too small a gain to be sure of" } else { "" };
     format!("with them, {}{small}", as_long(gain.inverse()))
@@ -257,17 +257,17 @@ fn sources(scene: &Scene<Curve>, world: &World) -> Result<Sources, Option<String
     }
     let places = lit_places(scene);
     if places.is_empty() {
-        let why = "the camera sees no diffuse or rough surface but through glass or in mirrors, where caustics";
+        let why = "the camera sees no diffuse or rough surface except through glass or in mirrors, where caustics";
         return Err(Some(format!("no photon tracing: {why} are left to chance{}", missing(scene))));
     }
     let sources = Sources::new(world, &places, SMALL);
     if sources.small.is_empty() {
         let why = match sources.large.as_slice() {
             [] if scene.lights.iter().any(|light| light.polarization().is_some() && !light.is_even_sky()) => {
-                "caustics of a polarized image of the sky are left to chance".into()
+                "caustics from a polarized image of the sky are left to chance".into()
             }
-            [] => "rays find the sky by chance often enough".into(),
-            lights => format!("{} large enough for rays to meet by chance", named(scene, lights)),
+            [] => "rays find the sky often enough by chance".into(),
+            lights => format!("rays hit {} often enough by chance", named(scene, lights)),
         };
         return Err(Some(format!("no photon tracing: {why}")));
     }
@@ -281,7 +281,7 @@ fn no_caustics(scene: &Scene<Curve>) -> Option<&'static str> {
     } else if scene.materials.iter().any(|named| may_receive(scene, &named.material)) {
         scene.lights.is_empty().then_some("nothing shines")
     } else if scene.materials.iter().any(|named| named.material.lobes().is_diffuse()) {
-        Some("with diffuse_bounces 0, diffuse surfaces are lit directly by the lights alone")
+        Some("with diffuse_bounces 0, diffuse surfaces receive only direct light")
     } else {
         Some("there is no diffuse or rough surface to show one")
     }
@@ -305,7 +305,7 @@ fn of_openings(openings: &[Opening], places: &[DVec3]) -> Option<f64> {
 
 /// Describes what cannot be hit by chance at all.
 fn missing(scene: &Scene<Curve>) -> &'static str {
-    if scene.lights.iter().all(Light::is_extended) { "" } else { "; those of points are left out" }
+    if scene.lights.iter().all(Light::is_extended) { "" } else { "; caustics from point lights are left out" }
 }
 
 /// Describes which light of points is left out that smooth surfaces cast on surfaces called `lit`, diffuse or rough.
@@ -313,9 +313,9 @@ pub(super) fn left_of_points(scene: &Scene<Curve>, method: &Method, lit: &str) -
     let smooth = || (0..scene.objects.len()).filter(|&object| scene.material_of(object as u32).is_smooth_somewhere());
     let line = |ways: &str, object: usize, but: &str| {
         let name = &scene.materials[scene.objects[object].material as usize].name;
-        format!("left out: light of point lights that reaches a {lit} surface via {ways} ({name}){but}")
+        format!("left out: light from point lights that reaches {lit} surfaces via {ways} ({name}){but}")
     };
-    let sent_on = if method.light_vertices { "; some of what it sends on is found at light vertices" } else { "" };
+    let sent_on = if method.light_vertices { "; some of it is found at light vertices" } else { "" };
     let Some(pass) = &method.light_pass else {
         return smooth().next().map(|object| line("smooth ones", object, sent_on)).into_iter().collect();
     };
@@ -339,11 +339,11 @@ fn named(scene: &Scene<Curve>, lights: &[SizedLight]) -> String {
     let name = |&(id, size): &SizedLight| {
         let name = match &scene.lights[id] {
             Light::Area(area) => scene.objects[area.object as usize].name.clone(),
-            Light::Point(_) => "a point".into(),
-            Light::Spot(_) => "a spot".into(),
+            Light::Point(_) => "a point light".into(),
+            Light::Spot(_) => "a spotlight".into(),
             Light::Sun(_) => "the sun".into(),
             Light::Environment(environment) if environment.bright().is_none() => "the sky through openings".into(),
-            Light::Environment(_) => "what is bright in the image of the sky".into(),
+            Light::Environment(_) => "the bright parts of the image of the sky".into(),
         };
         if size > 0.0 { format!("{name} (solid angle {size:.1e} sr)") } else { name }
     };

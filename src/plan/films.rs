@@ -144,8 +144,8 @@ pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String
         "its light interferes over each lane's band of wavelengths".to_owned()
     } else {
         format!(
-            "layers of an optical thickness above {COHERENT_NM} nm show no interference, but that of emission lines: the \
-             mean over all phases"
+            "layers of an optical thickness above {COHERENT_NM} nm show interference only for emission lines, and the \
+             mean over all phases otherwise"
         )
     };
     let total = optical.iter().sum::<f64>().round();
@@ -155,7 +155,7 @@ pub(super) fn spoken(material: &Material<Curve>, basis: &Basis) -> Option<String
 /// Describes where three bands read what has fringes.
 fn of_three_bands(basis: &Basis) -> String {
     let [red, green, blue] = [0, 1, 2].map(|band| basis.wavelengths_nm()[band].round());
-    format!("at {red}, {green} and {blue} nm alone, for three bands have no other wavelengths")
+    format!("at {red}, {green} and {blue} nm only, as three bands have no other wavelengths")
 }
 
 fn spoken_plate(plate: PathDifference, basis: &Basis, waves: &[[f64; 2]]) -> String {
@@ -165,7 +165,7 @@ fn spoken_plate(plate: PathDifference, basis: &Basis, waves: &[[f64; 2]]) -> Str
     } else if widest <= PHASE_STEP {
         "its phase is that at each lane's own wavelength".to_owned()
     } else {
-        "its phase is averaged over each lane's band of wavelengths, but not that of emission lines".to_owned()
+        "its phase is averaged over each lane's band of wavelengths, except for emission lines".to_owned()
     };
     format!("a retardation of {} nm; {how}", plate.nm)
 }

@@ -157,12 +157,12 @@ fn lights(scene: &Scene<Curve>, method: &Method) -> Vec<String> {
         lines.extend(left_of_points(scene, method, lit));
     }
     if let Some(bounces) = scene.render.max_bounces {
-        lines.push(format!("max_bounces {bounces}: light of longer paths is left out; the report says how much"));
+        lines.push(format!("max_bounces {bounces}: light from longer paths is left out; the report says how much"));
     }
     match scene.render.diffuse_bounces.filter(|_| wide(true)) {
-        Some(0) => lines.push("diffuse_bounces 0: diffuse surfaces are lit directly by the lights alone".into()),
+        Some(0) => lines.push("diffuse_bounces 0: diffuse surfaces receive only direct light".into()),
         Some(bounces) => lines.push(format!(
-            "diffuse_bounces {bounces}: light of more diffuse bounces is left out; the report says how much"
+            "diffuse_bounces {bounces}: light after more diffuse bounces is left out; the report says how much"
         )),
         None => {}
     }

@@ -68,7 +68,7 @@ pub(super) fn model(scene: &Scene<Curve>) -> Model {
         ModelText::Rgb => (three_bands(&survey), "the scene asks for it".to_owned()),
         ModelText::Bands(count) => (bands_beside(&survey, count as usize, 0), "the scene asks for it".to_owned()),
         _ if spectral => {
-            (bands_showing(&survey, MAX_LANES, 0, shown), "the most there are, for the spectra".to_owned())
+            (bands_showing(&survey, MAX_LANES, 0, shown), "the most lanes available, for the spectra".to_owned())
         }
         _ => (candidates[chosen].basis.clone(), least(&candidates, chosen, tolerance, is_exact)),
     };
@@ -122,16 +122,16 @@ fn three_bands(survey: &Survey) -> Basis {
 }
 
 /// The message where no number of lanes is enough.
-const BEYOND: &str = "some color may be missed by more than is tolerated";
+const BEYOND: &str = "some color may be off by more than is tolerated";
 
 fn least(candidates: &[Candidate], chosen: usize, tolerance: f64, plain: bool) -> String {
     match candidates[chosen].bound() {
         _ if plain => {
             "every color is a number or rgb under the film's white, so more lanes would change nothing".into()
         }
-        bound if bound <= tolerance => "the fewest lanes that miss no color by more than is tolerated".into(),
-        _ if chosen + 1 == candidates.len() => format!("the most lanes there are; {BEYOND}"),
-        _ => format!("more lanes would miss no less; {BEYOND}"),
+        bound if bound <= tolerance => "the fewest lanes that keep every color within the tolerance".into(),
+        _ if chosen + 1 == candidates.len() => format!("the most lanes available; {BEYOND}"),
+        _ => format!("more lanes would be no more accurate; {BEYOND}"),
     }
 }
 
@@ -191,10 +191,10 @@ fn spoken(dispersion: &Dispersion, visible: bool, hero: bool) -> String {
         p if p == 0.0 || p >= 0.5 => format!("{p:.0} %"),
         p => format!("{p:.1e} %"),
     };
-    let unseen = format!("no ray of the probe saw anything through the dispersive glass in {share} of the view");
+    let unseen = format!("no probe ray saw anything through the dispersive glass in {share} of the view");
     let (pulls, lit) = (format!("pulls {from} and {to} nm up to"), pixels(dispersion.lit_pixels));
     let shown = match dispersion.dark {
-        true if dispersion.lit_pixels == 0.0 => format!("{unseen}, where it is assumed"),
+        true if dispersion.lit_pixels == 0.0 => format!("{unseen}, where dispersion is assumed"),
         true => format!("{unseen}, which {pulls} {lit} pixels apart where it lights surfaces"),
         false => {
             let seen =
@@ -266,7 +266,7 @@ fn about_material(material: &Material<Curve>, basis: &Basis) -> Vec<String> {
                 _ => format!("index {low:.4} to {high:.4}{source}, so lanes separate"),
             })
         }
-        Material::Conductor(metal) => provenance(&metal.n).map(|source| format!("n and k of {source}")),
+        Material::Conductor(metal) => provenance(&metal.n).map(|source| format!("n and k from {source}")),
         _ => None,
     };
     [spoken_dyes(&dyes, basis), spoken_film(material, basis), numbers].into_iter().flatten().collect()

@@ -94,8 +94,8 @@ fn described(map: &MapPasses, samples: f64, method: &Method) -> String {
         ),
     };
     format!(
-        "photon map: {photons}, for caustics that are seen in mirrors or through glass or light other surfaces; it blurs them by \
-         {:.2} pixels{less}{chance}",
+        "photon map: {photons}, for caustics that are seen in mirrors or through glass or that light other surfaces; \
+         it blurs them by {:.2} pixels{less}{chance}",
         map.radius
     )
 }

@@ -43,7 +43,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
     let bound = most_changed(world);
     let tolerated = tolerance(scene);
     if bound <= tolerated {
-        let within = |what: String| format!("{what}, within the {} that are tolerated", percent(tolerated));
+        let within = |what: String| format!("{what}, within the {} that is tolerated", percent(tolerated));
         return off(None, left_out(bound).map(within));
     }
     let error = polarization_error(world);
@@ -60,7 +60,7 @@ pub(super) fn decide(scene: &Scene<Curve>, world: &World) -> Decided {
 /// Describes what in a scene has no meaning without polarization, if anything.
 fn asking(scene: &Scene<Curve>) -> Option<String> {
     if scene.camera.filter().is_some() {
-        return Some("there is a filter before the camera".into());
+        return Some("there is a filter in front of the camera".into());
     }
     if scene.format.has_stokes() {
         return Some("the film asks for Stokes vectors".into());

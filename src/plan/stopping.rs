@@ -58,7 +58,7 @@ pub(super) fn reason(scene: &Scene<Curve>, stop: Option<&Stop>, model_error: f64
     };
     let rules = [error.map(within), time.map(after), Some(format!("at {} samples per pixel", stop.most))];
     let rules: Vec<String> = rules.into_iter().flatten().collect();
-    Some(format!("stops {}, whichever is first", rules.join(", or ")))
+    Some(format!("stops {}, whichever comes first", rules.join(", or ")))
 }
 
 /// Formats a time as people say it, also a short one.

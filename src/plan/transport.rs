@@ -30,7 +30,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
     let scattering = scene.objects.iter().find(is_wide);
     let anywhere = || {
         let filter = scene.film.filter;
-        let place = if filter == Filter::Box { "anywhere in" } else { "somewhere about" };
+        let place = if filter == Filter::Box { "anywhere in" } else { "somewhere around" };
         (filter != Filter::Center)
             .then(|| format!("each sample falls {place} its pixel (filter \"{}\")", filter.name()))
     };
@@ -42,7 +42,9 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
         Some(object) => match (scene.render.diffuse_bounces, rough, extended_light(scene)) {
             (Some(0), Some(rough), _) => leaves(rough),
             (Some(0), None, None) => anywhere(),
-            (Some(0), None, Some(light)) => Some(format!("{} is lit by {light}, which has many points", object.name)),
+            (Some(0), None, Some(light)) => {
+                Some(format!("{} is lit by {light}, which is larger than a point", object.name))
+            }
             _ => leaves(object),
         },
     };
@@ -50,7 +52,7 @@ pub(super) fn transport(scene: &Scene<Curve>, basis: &Basis, together: f64) -> (
         None => (
             DETERMINISTIC,
             format!(
-                "transport deterministic: no random light path, 1 sample per pixel is exact{}; branches end below weight {CUTOFF:e}",
+                "transport deterministic: no random light paths, 1 sample per pixel is exact{}; branches end below weight {CUTOFF:e}",
                 if asks_for_more(scene) { " and more samples repeat it, so samples = 1 is enough" } else { "" }
             ),
         ),
@@ -103,7 +105,7 @@ fn too_many_ways(scene: &Scene<Curve>, basis: &Basis, together: f64) -> Option<S
     match branching(&World::new(scene, method), AFFORDABLE) {
         Branching::Affordable(_) => None,
         Branching::Beyond([x, y]) => Some(format!(
-            "light has too many paths through glass and over mirrors to follow all of them, as at pixel ({x}, {y})"
+            "light has too many paths through glass and via mirrors to follow all of them, as at pixel ({x}, {y})"
         )),
     }
 }

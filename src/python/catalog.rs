@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use super::plane::Plane;
 
-/// What every entry tells, whatever it is of.
+/// The name, the source and the wavelength range of an entry of the catalog.
 #[derive(Clone)]
 #[pyclass(frozen, get_all, module = "abbe._abbe")]
 pub(super) struct Entry {
@@ -61,7 +61,7 @@ impl Glass {
         self.glass.n_d()
     }
 
-    /// Not a number where it is not known.
+    /// The Abbe number. NaN if the index is not known at its lines.
     #[getter]
     fn v_d(&self) -> f64 {
         self.glass.v_d().unwrap_or(f64::NAN)
@@ -71,7 +71,7 @@ impl Glass {
         each(nm, |nm| self.glass.index(nm))
     }
 
-    /// Not a number where it is not known.
+    /// Returns the extinction coefficient at each wavelength. NaN if it is not known.
     fn extinction(&self, nm: &[u8]) -> Plane {
         each(nm, |nm| self.glass.extinction(nm).unwrap_or(f64::NAN))
     }
@@ -98,7 +98,7 @@ impl Metal {
 
 #[pymethods]
 impl Tabulated {
-    /// The illuminant or the reflectance of a name.
+    /// Finds an illuminant or a reflectance by its name.
     #[new]
     fn new(kind: &str, name: &str) -> PyResult<Self> {
         let grid = match kind {
@@ -115,7 +115,7 @@ impl Tabulated {
     }
 }
 
-/// The full names of all entries of a kind.
+/// Returns the full names of all entries of a kind.
 #[pyfunction]
 pub(super) fn names(kind: &str) -> Vec<&'static str> {
     match kind {

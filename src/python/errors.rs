@@ -87,7 +87,7 @@ pub(super) fn output(path: &Path, ending: &str) -> PyResult<()> {
 
 /// Returns an exception for something that should never happen.
 pub(super) fn defect(what: &str) -> PyErr {
-    RenderError::new_err((format!("this is a defect of Abbe: {what}"), None::<String>))
+    RenderError::new_err((format!("this is a bug in Abbe: {what}"), None::<String>))
 }
 
 fn mistake(found: &Diagnostic, lines: &mut Lines) -> Mistake {

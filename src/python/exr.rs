@@ -36,7 +36,7 @@ impl Exr {
         Ok(Self { file: Arc::new(file), path })
     }
 
-    /// The same of an image that was rendered, as its file would be.
+    /// Converts a rendered image to the file that it would be written to.
     #[staticmethod]
     fn of(py: Python<'_>, image: &Image) -> PyResult<Self> {
         let (image, path) = (image.image.clone(), PathBuf::from(IMAGE));
@@ -44,13 +44,13 @@ impl Exr {
         Ok(Self { file: Arc::new(work::run(py, file)?.map_err(raised)?), path })
     }
 
-    /// The names of its layers.
+    /// The names of the layers.
     #[getter]
     fn layers(&self) -> Vec<String> {
         self.file.layers().into_iter().map(|layer| layer.name).collect()
     }
 
-    /// Columns and rows of the first part.
+    /// The width and height of the first part in pixels.
     #[getter]
     fn size(&self) -> (usize, usize) {
         self.file.parts.first().map_or([0; 2], |part| part.bounds.size).into()
@@ -62,13 +62,13 @@ impl Exr {
         self.file.parts.first().map_or([0; 2], |part| part.bounds.corner).into()
     }
 
-    /// Columns and rows of the format.
+    /// The width and height of the format in pixels.
     #[getter]
     fn format(&self) -> (usize, usize) {
         self.file.display.size.into()
     }
 
-    /// What the file says of itself.
+    /// The attributes of all parts as pairs of names and values, in the order of the parts.
     #[getter]
     fn attributes(&self) -> Vec<(String, String)> {
         let numbers = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
@@ -79,7 +79,7 @@ impl Exr {
         self.file.parts.iter().flat_map(of_part).collect()
     }
 
-    /// A layer, or a channel by its full name.
+    /// Returns a layer, or a channel by its full name.
     fn plane(&self, name: &str) -> PyResult<Plane> {
         match self.file.layer(Some(name), &self.path.display().to_string()) {
             Ok(layer) => Ok(plane(&layer, self.is_matte(&layer.name))),
@@ -90,25 +90,25 @@ impl Exr {
         }
     }
 
-    /// The bytes of a picture.
+    /// Returns an 8-bit PNG, brightened by 2^`exposure`.
     fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
         let (file, path, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
         work::run(py, move || picture(&file, &path, stops)?.png())?.map_err(raised)
     }
 
-    /// Writes a picture.
+    /// Writes an 8-bit PNG, brightened by 2^`exposure`.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
         output(&path, "png")?;
         let (file, of, stops) = (self.file.clone(), self.path.clone(), stops(exposure)?);
         work::run(py, move || picture(&file, &of, stops)?.write_png(&path))?.map_err(raised)
     }
 
-    /// Says what can be sent to other processes.
+    /// Raises `TypeError`, because an image cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
         no_pickle("an image", "send its arrays, such as image.rgb, or the path of its file")
     }
 
-    /// The same: nothing of it changes.
+    /// Returns the same object, because it is immutable.
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
@@ -142,7 +142,7 @@ fn plane(layer: &ExrLayer, whole: bool) -> Plane {
     }
 }
 
-/// How far two images are apart, and whether that is noise: the fields of `abbe.Difference`.
+/// Compares two images, and returns the fields of `abbe.Difference`.
 #[pyfunction]
 pub(super) fn diff<'py>(
     py: Python<'py>,

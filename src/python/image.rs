@@ -28,19 +28,19 @@ const ALWAYS: [&str; 3] = [BEAUTY, "A", "Z"];
 
 #[pymethods]
 impl Image {
-    /// Columns and rows.
+    /// The width and height in pixels.
     #[getter]
     fn size(&self) -> (u32, u32) {
         (self.image.width(), self.image.height())
     }
 
-    /// Column and row of the first pixel, counted from the top left of the format.
+    /// Column and row of the first pixel, relative to the top left of the format.
     #[getter]
     fn corner(&self) -> (i32, i32) {
         self.image.film().corner.into()
     }
 
-    /// The names of its layers.
+    /// The names of the layers.
     #[getter]
     fn layers(&self) -> Vec<String> {
         let names = ALWAYS.iter().map(|name| (*name).to_owned());
@@ -52,14 +52,14 @@ impl Image {
         &self.account
     }
 
-    /// A layer, or a channel by its name in the file.
+    /// Returns a layer, or a channel by its name in the file.
     fn plane(&self, name: &str) -> PyResult<Plane> {
         let film = self.image.film();
         let place = of_pixels(film, name).or_else(|| of_layers(film, name)).ok_or_else(|| self.missing(name))?;
         Ok(Plane::of(self.image.clone(), place))
     }
 
-    /// The centers of the spectral bands in nm, and the radiance of all pixels in them.
+    /// Returns the centers of the spectral bands in nm, and the radiance of all pixels in each band.
     fn spectra(&self) -> Option<(Vec<f64>, Plane)> {
         let film = self.image.film();
         let spectral = film.spectral.as_ref()?;
@@ -73,7 +73,7 @@ impl Image {
         Some((spectral.bands.centers_nm().collect(), Plane::of(self.image.clone(), place)))
     }
 
-    /// S1, S2 and S3 of all pixels in the bands of their spectra.
+    /// Returns S1, S2 and S3 of all pixels in each spectral band.
     fn stokes_spectra(&self) -> Option<Plane> {
         let film = self.image.film();
         let spectral = film.spectral.as_ref().filter(|spectral| spectral.has_stokes)?;
@@ -86,39 +86,39 @@ impl Image {
         Some(Plane::of(self.image.clone(), place))
     }
 
-    /// Writes the linear image; answers how many values were too large for 16 bits.
+    /// Writes the linear image. Returns the number of values that were too large for 16 bits.
     fn write_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<u64> {
         output(&path, "exr")?;
         let image = self.image.clone();
         work::run(py, move || image.write_exr(path))?.map_err(raised)
     }
 
-    /// Writes the spectra.
+    /// Writes the spectra of all pixels.
     fn write_spectral_exr(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         output(&path, "exr")?;
         let image = self.image.clone();
         work::run(py, move || image.write_spectral_exr(path))?.map_err(raised)
     }
 
-    /// The bytes of a picture.
+    /// Returns an 8-bit PNG, brightened by 2^`exposure`.
     fn png(&self, py: Python<'_>, exposure: f64) -> PyResult<Vec<u8>> {
         let (image, stops) = (self.image.clone(), stops(exposure)?);
         work::run(py, move || image.png_bytes(stops))?.map_err(raised)
     }
 
-    /// Writes a picture.
+    /// Writes an 8-bit PNG, brightened by 2^`exposure`.
     fn write_png(&self, py: Python<'_>, path: PathBuf, exposure: f64) -> PyResult<()> {
         output(&path, "png")?;
         let (image, stops) = (self.image.clone(), stops(exposure)?);
         work::run(py, move || image.write_png(path, stops))?.map_err(raised)
     }
 
-    /// Says what can be sent to other processes.
+    /// Raises `TypeError`, because an image cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
         no_pickle("an image", "send its arrays, such as image.rgb, or write it to a file")
     }
 
-    /// The same: nothing of it changes.
+    /// Returns the same object, because it is immutable.
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }
@@ -134,7 +134,7 @@ impl Image {
         let rank = layers.iter().find(|rank| rank.starts_with(layer)).map(String::as_str);
         let help = match rank.or_else(|| nearest(layer, known)) {
             Some(near) if layers.iter().any(|layer| layer == near) => format!("did you mean {near:?}? "),
-            Some(near) => format!("layers=[{near:?}] asks for it; "),
+            Some(near) => format!("ask for it with layers=[{near:?}]; "),
             None => String::new(),
         };
         PyKeyError::new_err(format!("the image has no layer {name:?}: {help}it has {}", layers.join(", ")))

@@ -20,7 +20,7 @@ pub(super) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     let threads: Option<usize> = number(given, "threads", "a whole number of 1 or more")?;
     let most = Options::MOST_THREADS;
     if threads.is_some_and(|threads| !(1..=usize::from(most)).contains(&threads)) {
-        return refuse(format!("a render has 1 to {most} threads"), "leave threads out to take them all");
+        return refuse(format!("a render has 1 to {most} threads"), "leave threads out to use all processors");
     }
     Ok(Options {
         samples: number(given, "samples", "a whole number from 1 to 2**32 - 1")?,
@@ -65,7 +65,7 @@ fn is_truth(value: &Bound<'_, PyAny>) -> bool {
 }
 
 fn refuse_value<T>(name: &str, wanted: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
-    refuse(format!("{name} is {wanted}, not {}", shown(value)), "help(abbe.render) says all arguments")
+    refuse(format!("{name} is {wanted}, not {}", shown(value)), "help(abbe.render) lists all arguments")
 }
 
 /// Checks an exposure in stops.
@@ -96,7 +96,7 @@ pub(super) fn time(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Duration> {
     match found {
         Some(time) => Ok(time),
         None => refuse(
-            format!("{name} is a number of seconds above 0 or a text such as \"10m\", not {}", shown(value)),
+            format!("{name} is a number of seconds above 0 or a string such as \"10m\", not {}", shown(value)),
             "units are ms, s, m and h",
         ),
     }
@@ -149,7 +149,7 @@ fn layers(value: &Bound<'_, PyAny>) -> PyResult<Vec<Layer>> {
     }
     match value.extract::<Vec<String>>() {
         Ok(names) => {
-            Layer::of_names(names.iter().map(String::as_str)).or_else(|said| refuse(said, "abbe.LAYERS has them all"))
+            Layer::of_names(names.iter().map(String::as_str)).or_else(|said| refuse(said, "abbe.LAYERS lists them all"))
         }
         Err(_) => refuse(format!("layers is a list of names, not {}", shown(value)), "such as [\"albedo\", \"N\"]"),
     }

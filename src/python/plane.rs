@@ -6,7 +6,8 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// Numbers in memory that somebody owns, by the array interface of numpy: they are not copied, and cannot be written.
+/// A read-only array of numbers in memory that another object owns. Numpy reads it by its array interface, without a
+/// copy.
 #[pyclass(frozen, module = "abbe._abbe")]
 pub(super) struct Plane {
     /// The owner of the memory, kept alive as long as numpy uses it.

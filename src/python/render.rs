@@ -24,7 +24,7 @@ const PERIOD: Duration = Duration::from_millis(500);
 /// The maximum time to wait for a stopped render that keeps nothing.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How a scene will be rendered, as JSON, and on how many threads.
+/// Plans a render, and returns the plan as JSON and the number of threads that it would use.
 #[pyfunction]
 pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> PyResult<(String, usize)> {
     let (scene, options) = (scene.0.clone(), options(asked)?);
@@ -38,7 +38,7 @@ pub(super) fn plan(py: Python<'_>, scene: &Scene, asked: &Bound<'_, PyDict>) -> 
     Ok((work::run(py, planned)?.map_err(raised)?, threads))
 }
 
-/// Renders; `progress` gets how much is done, of how much, after how many seconds.
+/// Renders a scene. Calls `progress` with the work done, all work, and the seconds since the render began.
 #[pyfunction]
 pub(super) fn render(
     py: Python<'_>,
@@ -72,7 +72,7 @@ pub(super) fn render(
         let patience = if keeps && state.has_begun() { Duration::MAX } else { PATIENCE };
         let _ = work.wait(py, patience);
     });
-    let image = rendered?.map_err(raised)?.ok_or_else(|| defect("a render stopped that nobody stopped"))?;
+    let image = rendered?.map_err(raised)?.ok_or_else(|| defect("a render stopped although nobody stopped it"))?;
     progress.map_or(Ok(()), |progress| state.tell(&progress))?;
     Ok(image)
 }
@@ -195,12 +195,15 @@ impl Checkpoint {
             return Ok(());
         }
         if !is_checkpoint(&self.path)? {
-            return Error::refuse(format!("{name} would be overwritten, and is no checkpoint"), "name another file");
+            return Error::refuse(
+                format!("{name} would be overwritten, but it is not a checkpoint"),
+                "name another file",
+            );
         }
         match self.resume {
             true => Ok(()),
             false => Error::refuse(
-                format!("{name} is there from an earlier run"),
+                format!("{name} already exists from an earlier run"),
                 "add resume=True to go on from it, or delete it to start over",
             ),
         }
@@ -214,7 +217,7 @@ impl Checkpoint {
         match rendering.resume(&self.path)? {
             Resumed::Continues | Resumed::Finished => Ok(()),
             Resumed::HasMore(samples) => {
-                let message = format!("{} has {samples} samples per pixel, more than that", self.path.display());
+                let message = format!("{} has {samples} samples per pixel, more than asked for", self.path.display());
                 Error::refuse(message, format!("ask for samples={samples}"))
             }
         }

@@ -28,7 +28,7 @@ pub(super) struct Scene(pub(super) Arc<scene::Scene>);
 
 #[pymethods]
 impl Scene {
-    /// Reads a file, or what a dict says; files that a dict names are looked for in `folder`.
+    /// Reads a scene file or a dict, and checks it. Looks in `folder` for the files that a dict names.
     #[staticmethod]
     fn compile(
         py: Python<'_>,
@@ -41,7 +41,7 @@ impl Scene {
             let key: String = key.extract()?;
             if key.is_empty() || key.chars().any(|letter| letter == '=' || letter.is_control()) {
                 return refuse(
-                    format!("{key:?} is no path of a key"),
+                    format!("{key:?} is not the path of a key"),
                     "such as \"film.width\" or \"object.ball.material\"",
                 );
             }
@@ -70,30 +70,30 @@ impl Scene {
         Ok(Self(Arc::new(scene?)))
     }
 
-    /// How many objects there are.
+    /// The number of objects.
     #[getter]
     fn objects(&self) -> usize {
         self.0.objects.len()
     }
 
-    /// What its author should know.
+    /// Warnings about the scene, in sentences.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.0.warnings.iter().map(|warning| for_python(warning)).collect()
     }
 
-    /// Pixels per row and rows.
+    /// The width and height of the format in pixels.
     #[getter]
     fn size(&self) -> (u32, u32) {
         (self.0.film.width, self.0.film.height)
     }
 
-    /// Says what can be sent to other processes.
+    /// Raises `TypeError`, because a scene cannot be pickled.
     fn __reduce__(&self) -> PyResult<()> {
-        no_pickle("a scene", "send the path or the dict that it is made of")
+        no_pickle("a scene", "send the path or the dict that it is made from")
     }
 
-    /// The same: nothing of it changes.
+    /// Returns the same object, because it is immutable.
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
         slf
     }

@@ -89,7 +89,7 @@ impl Writer {
         let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = entry.extract()?;
         let name = key.cast::<PyString>().ok().and_then(|key| key.extract::<String>().ok());
         let Some(name) = name else {
-            return self.refuse(format!("a key is a text, not {}", shown(&key)), "write the names of a scene file");
+            return self.refuse(format!("a key is a string, not {}", shown(&key)), "use the names of a scene file");
         };
         self.quoted(&name);
         self.text.push_str(" = ");
@@ -101,17 +101,15 @@ impl Writer {
 
     fn value(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         if self.path.len() > DEEPEST {
-            return self.refuse(
-                format!("more than {DEEPEST} dicts and lists stand within one another"),
-                "is one within itself?",
-            );
+            return self
+                .refuse(format!("dicts and lists are nested more than {DEEPEST} deep"), "does one contain itself?");
         }
         if let Ok(truth) = value.cast::<PyBool>() {
             self.text.push_str(if truth.is_true() { "true" } else { "false" });
         } else if let Ok(text) = value.cast::<PyString>() {
             match text.extract::<String>() {
                 Ok(text) => self.quoted(&text),
-                Err(_) => return self.refuse("this text is not Unicode", "decode it another way"),
+                Err(_) => return self.refuse("this string is not valid Unicode", "decode it differently"),
             }
         } else if value.is_instance_of::<PyInt>() {
             return match value.extract::<i128>() {
@@ -140,7 +138,7 @@ impl Writer {
         if is("tolist") {
             if is_masked(value) {
                 let help = "fill them, as by array.filled(0), or leave them out";
-                return self.refuse("masked values are none of a scene", help);
+                return self.refuse("a scene cannot hold masked values", help);
             }
             let list = self.list_of_mesh();
             if let Some(rows) = list.map(|list| rows(value, list == FACES)).transpose()?.flatten() {
@@ -203,11 +201,11 @@ impl Writer {
 
     fn foreign(&mut self, value: &Bound<'_, PyAny>) -> PyResult<()> {
         if value.is_none() {
-            return self.refuse("None is no value of a scene", "leave the key out");
+            return self.refuse("a scene cannot hold None", "leave the key out");
         }
         let kind = value.get_type().name().map_or_else(|_| "object".into(), |name| name.to_string());
-        let help = "a scene has numbers, texts, True and False, dicts, lists and arrays of numpy";
-        self.refuse(format!("a value of the type {kind} is none of a scene"), help)
+        let help = "a scene holds numbers, strings, True and False, dicts, lists and numpy arrays";
+        self.refuse(format!("a scene cannot hold a value of the type {kind}"), help)
     }
 
     fn table(&mut self, table: &Bound<'_, PyMapping>) -> PyResult<()> {

@@ -79,7 +79,7 @@ impl<T: Send + 'static> Work<T> {
         match answer {
             Ok(Some(answer)) => Ok(Some(answer)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(defect("it panicked, as stderr says")),
+            Ok(None) | Err(RecvTimeoutError::Disconnected) => Err(defect("it panicked; stderr says why")),
         }
     }
 }

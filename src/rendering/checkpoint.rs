@@ -105,7 +105,7 @@ pub(super) fn resume(
     passes: &mut trace::Rendering,
 ) -> Result<(Resumed, Vec<Written>)> {
     let Some(mut blocks) = BlockReader::open(path, CHECKPOINT)? else {
-        return refuse(path, "it is no checkpoint", "name another image, or move that file away");
+        return refuse(path, "it is not a checkpoint", "name another image, or move that file away");
     };
     let saved: Identity = blocks.block()?;
     if let Some(difference) = identity.difference(&saved) {

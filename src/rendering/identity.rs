@@ -78,8 +78,8 @@ impl Identity {
         Some(match name.as_str() {
             SCENE => "it was made from another scene, or from this one before it was changed".into(),
             PLAN => {
-                "it was made by another plan: other --samples or another --error may need one, as where photons are \
-                 gathered, or light vertices or adaptive sampling begin"
+                "it was made with another plan: other --samples or another --error may lead to one, as where photons \
+                 are gathered, or where light vertices or adaptive sampling come into use"
                     .into()
             }
             _ => format!("its {name} is {theirs}, not {}", value(name).map_or("known", String::as_str)),

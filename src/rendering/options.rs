@@ -91,7 +91,10 @@ impl Options {
     pub(super) fn threads(&self) -> Result<usize> {
         let most = Self::MOST_THREADS;
         if self.threads.is_some_and(|threads| !(1..=usize::from(most)).contains(&threads)) {
-            return Error::refuse(format!("a render has 1 to {most} threads"), "leave threads out to take them all");
+            return Error::refuse(
+                format!("a render has 1 to {most} threads"),
+                "leave threads out to use all processors",
+            );
         }
         Ok(self.threads.unwrap_or(0))
     }
@@ -106,8 +109,9 @@ fn check_render(render: &RenderText) -> Result<()> {
         return Error::refuse(message, "--error 0.01 asks for one percent");
     }
     if render.is_part && render.samples.is_none() && (render.error.is_some() || render.time.is_some()) {
-        let message = "a part of an image shows neither the error of the whole nor what others do in a given time";
-        return Error::refuse(message, "say how many samples all parts take: --samples 512");
+        let message = "a part of an image shows neither the error of the whole nor how many samples other \
+                       parts take in a given time";
+        return Error::refuse(message, "give the number of samples for all parts: --samples 512");
     }
     Ok(())
 }
@@ -119,10 +123,7 @@ fn check_film(film: &FilmSettings) -> Result<()> {
         return Error::refuse(message, "give the film of the scene a width and a height");
     }
     if let Some(message) = film.objection_to_overscan() {
-        return Error::refuse(
-            message,
-            "--overscan takes one number of pixels, or those to the left, above, to the right and below",
-        );
+        return Error::refuse(message, "--overscan takes one number of pixels, or four: left, top, right and bottom");
     }
     match film.objection_to_crop() {
         Some(message) => Error::refuse(message, "--crop takes first column, first row, width and height"),
@@ -146,10 +147,10 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
         return Error::refuse(message, "ask for fewer layers, or render a part of the image at a time with --crop");
     }
     if scene.format.has_stokes() && scene.render.polarization == PolarizationText::Off {
-        let message = "Stokes vectors are asked for, and the scene turns polarization off";
+        let message = "Stokes vectors are asked for, but the scene turns polarization off";
         return Error::refuse(
             message,
-            "leave `polarization` out of its [render], or ask for no S1, S2, S3 and polarization",
+            "leave `polarization` out of its [render], or do not ask for S1, S2, S3 and polarization",
         );
     }
     if scene.format.spectral.is_some() && scene.render.model == ModelText::Rgb {
@@ -164,7 +165,7 @@ pub(super) fn check_layers(scene: &Scene, shard: Shard) -> Result<()> {
     for group in &scene.light_groups {
         let name = light_layer_name(group);
         if name.len() + ".R".len() > LONGEST_NAME {
-            let message = format!("the layer {name} would have a name that not every program reads: it is too long");
+            let message = format!("the name of the layer {name} is too long for some programs");
             return Error::refuse(message, help);
         }
         let other = known.entry(name.clone()).or_insert(group);

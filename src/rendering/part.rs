@@ -64,7 +64,7 @@ pub(super) fn open(path: &Path) -> Result<(PartHeader, BlockReader)> {
         return Error::refuse(format!("there is no part {}", path.display()), made);
     }
     let Some(mut blocks) = BlockReader::open(path, PART)? else {
-        return Error::refuse(format!("{} is no part of an image", path.display()), made);
+        return Error::refuse(format!("{} is not a part of an image", path.display()), made);
     };
     let identity: Identity = blocks.block()?;
     if let Some(objection) = identity.objection() {

@@ -80,7 +80,7 @@ pub(super) fn read_plan(path: &Path, scene: &Scene) -> Result<Plan> {
         return Error::refuse(format!("there is no plan {}", path.display()), AGAIN);
     }
     let Some(mut blocks) = BlockReader::open(path, PLAN)? else {
-        return Error::refuse(format!("{} is no plan", path.display()), AGAIN);
+        return Error::refuse(format!("{} is not a plan", path.display()), AGAIN);
     };
     let head: PlanHeader = blocks.block()?;
     if let Some(objection) = head.identity.objection() {

@@ -283,7 +283,7 @@ impl Rendering {
     /// [`Error::Arguments`] if samples are left to take. If the file cannot be written, an existing one is untouched.
     pub fn write_part(&self, path: impl AsRef<Path>) -> Result<()> {
         if !self.passes.is_finished() {
-            let message = "a part of an image is written when all its samples are taken".to_owned();
+            let message = "a part of an image can be written only once all its samples are taken".to_owned();
             return Err(Error::Arguments { message, help: None });
         }
         part::write(path.as_ref(), &self.identity, self.shard, self.summary(), &self.passes)

@@ -23,14 +23,15 @@ pub(super) fn warnings(report: &Report, error: Option<&ImageError>) -> Vec<Strin
     });
     if report.unmatched > 0 {
         let times = if report.unmatched == 1 { "once".into() } else { format!("{} times", report.unmatched) };
-        let times = format!("{times} light left a clear body it had not entered");
+        let times = format!("{times}, light left a clear body it had not entered");
         let crowded = format!(", or do more than {MOST_MEDIA} clear materials overlap in one place");
         let crowded = if report.has_many_media { &crowded } else { "" };
-        warnings.push(format!("{times} and went straight on: is the surface of a dielectric open{crowded}?"));
+        warnings.push(format!("{times} and passed through undeflected: is the surface of a dielectric open{crowded}?"));
     }
     if report.by_chance > 0 {
         let share = format!("in {} of {} camera samples", report.by_chance, report.samples);
-        let what = "light had too many paths to follow all, and some were chosen at random: these pixels have noise";
+        let what =
+            "light had too many paths to follow them all, and some were chosen at random: these pixels have noise";
         warnings.push(format!("{share} {what}"));
     }
     warnings
@@ -52,8 +53,8 @@ pub(super) fn few_samples(layers: &[Layer], samples: u64) -> Option<String> {
     let of_halves = [Layer::Variance, Layer::HalfA, Layer::HalfB];
     let asked: Vec<&str> = of_halves.iter().filter(|layer| layers.contains(layer)).map(|layer| layer.name()).collect();
     (!asked.is_empty() && samples < TELL_VARIANCE.into()).then(|| {
-        let (layers, tell) = (asked.join(", "), if asked.len() == 1 { "tells" } else { "tell" });
-        format!("{layers} {tell} the noise of {TELL_VARIANCE} samples per pixel or more, not of {samples}")
+        let (layers, tell) = (asked.join(", "), if asked.len() == 1 { "shows" } else { "show" });
+        format!("{layers} {tell} the noise only with {TELL_VARIANCE} or more samples per pixel, not with {samples}")
     })
 }
 
@@ -63,8 +64,8 @@ fn outlier(error: &ImageError) -> Option<String> {
     let ([x, y], share) = (outlier.pixel, percent(outlier.share));
     let light = error.rare_light.as_ref().map_or("light".into(), told);
     Some(format!(
-        "pixel ({x}, {y}) makes {share} of the noise: one of eight renders found {light} there, and no other did. \
-         There may be more such light than the samples tell"
+        "pixel ({x}, {y}) accounts for {share} of the noise: one of eight renders found {light} there, and no other \
+         did. There may be more such light than the samples show"
     ))
 }
 
@@ -76,7 +77,7 @@ fn missed(error: &ImageError) -> Option<String> {
     } else if error.alpha.is_some_and(|alpha| alpha.at_most > error.noise.at_most.hypot(error.blur.at_most)) {
         ": most of it is noise of alpha, where shadow catchers are".into()
     } else if error.blur.at_most > error.noise.at_most {
-        ": most of it is the blur of gathered photons, half as much after 8 to 64 times as many samples".into()
+        ": most of it is the blur of gathered photons, which halves with 8 to 64 times as many samples".into()
     } else {
         String::new()
     };
@@ -104,8 +105,7 @@ mod tests {
     #[test]
     fn too_many_clear_materials_are_told_of_only_where_there_are_so_many() {
         let told = |has_many_media| warnings(&Report { unmatched: 1, has_many_media, ..Report::default() }, None);
-        let once =
-            "once light left a clear body it had not entered and went straight on: is the surface of a dielectric open";
+        let once = "once, light left a clear body it had not entered and passed through undeflected: is the surface of a dielectric open";
         assert_eq!(told(false), [format!("{once}?")]);
         assert_eq!(told(true), [format!("{once}, or do more than 16 clear materials overlap in one place?")]);
     }

@@ -75,7 +75,7 @@ fn overscan_that_cannot_be_is_refused() {
         (answer.code, answer.stderr)
     };
     let wide = "error: an image with its overscan has at most 65536 pixels along each side, not 80008\n\
-                help: --overscan takes one number of pixels, or those to the left, above, to the right and below\n";
+                help: --overscan takes one number of pixels, or four: left, top, right and bottom\n";
     assert_eq!(refused(&["--overscan", "40000"]), (Some(2), wide.to_owned()));
     let beyond = "error: this crop ends before column 10, row 6, but the image with its overscan before column 9, row 5\n\
                   help: --crop takes first column, first row, width and height\n";

@@ -278,30 +278,30 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
         let plan = room(&extra);
         assert!(plan.method.light_pass.is_none() && because(&plan).contains(words), "{extra}{}", because(&plan));
     };
-    asks(format!("{ball}{point}"), "photons from a point toward ball");
+    asks(format!("{ball}{point}"), "photons from a point light toward ball");
     asks(format!("{ball}{}", lamp(0.1)), "photons from bulb (");
     asks(
         format!("{ball}[[light]]\nsun = {{ toward = [1, 2, 0], irradiance = 1 }}\n"),
         "photons from the sun (solid angle 6.8e-5 sr)",
     );
-    asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics of bulb");
+    asks(format!("{ball}{point}{}", lamp(2.0)), "left to chance: caustics from bulb");
     leaves(point.into(), "no caustics: no surface is smooth");
     let coated = "[material.coat]\nplastic = { reflectance = 0.5, index = 1.5 }\n[[object]]\nmaterial = \"coat\"\n\
                   shape.cube = { center = [2, 0.5, 0], size = 1 }\n";
-    asks(format!("{ball}{coated}{point}"), "photons from a point toward 2 smooth objects");
-    asks(format!("{coated}{point}"), "photons from a point toward object ");
+    asks(format!("{ball}{coated}{point}"), "photons from a point light toward 2 smooth objects");
+    asks(format!("{coated}{point}"), "photons from a point light toward object ");
     let frosted = |roughness: f64| {
         let ball = ball.replace("\"glass\"", "\"frosted\"");
         format!("[material.frosted]\ndielectric = {{ index = 1.5, roughness = {roughness} }}\n{ball}{point}")
     };
-    asks(frosted(0.2), "photons from a point toward ball");
+    asks(frosted(0.2), "photons from a point light toward ball");
     let plan = room(&frosted(0.35));
     let all = because(&plan);
-    assert!(all.contains("no caustics: no surface is smooth") && !all.contains("left out: light of point"), "{all}");
-    leaves(format!("{ball}{}", lamp(2.0)), "large enough for rays to meet by chance");
+    assert!(all.contains("no caustics: no surface is smooth") && !all.contains("left out: light from point"), "{all}");
+    leaves(format!("{ball}{}", lamp(2.0)), "no photon tracing: rays hit bulb (solid angle ");
     let screen = "[material.screen]\nemissive = { radiance = { checker = [3, 1] } }\n";
     asks(format!("{screen}{ball}{}", lamp(0.1).replace("\"lamp\"", "\"screen\"")), "photons from bulb (");
-    leaves(format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"), "rays find the sky by chance");
+    leaves(format!("{ball}[[light]]\nenvironment = {{ radiance = 1 }}\n"), "rays find the sky often enough by chance");
     let folder = tempfile::tempdir().unwrap();
     let sky = |sun: f32, more: &str| {
         let file = folder.path().join(format!("{sun}.exr"));
@@ -309,20 +309,21 @@ fn the_plan_asks_for_photons_where_they_are_needed_and_says_why_where_not() {
         exr::prelude::write_rgb_file(&file, 128, 64, at).unwrap();
         format!("{ball}[[light]]\nenvironment = {{ radiance = {{ image = {file:?} }}{more} }}\n")
     };
-    asks(sky(1e4, ""), "photons from what is bright in the image of the sky (solid angle 1.8e-2 sr) toward ball");
-    leaves(sky(9.0, ""), "rays find the sky by chance");
+    asks(sky(1e4, ""), "photons from the bright parts of the image of the sky (solid angle 1.8e-2 sr) toward ball");
+    leaves(sky(9.0, ""), "rays find the sky often enough by chance");
     let polarized = ", polarization = { sun = [0, 1, 1], degree = 0.7 }";
-    leaves(sky(1e4, polarized), "caustics of a polarized image of the sky are left to chance");
+    leaves(sky(1e4, polarized), "caustics from a polarized image of the sky are left to chance");
     let wall = "[[object]]\nname = \"wall\"\nmaterial = \"mirror\"\nshape.plane = { point = [0, 0, -3], normal = [0, 0, 1] }\n";
-    asks(format!("{wall}{point}"), "from a point toward wall");
-    let beyond = "left to chance: caustics of wall, which has no end, far beyond where it is seen; those of points";
+    asks(format!("{wall}{point}"), "from a point light toward wall");
+    let beyond =
+        "left to chance: caustics of wall, which is unbounded, far beyond where it is seen; caustics from point";
     asks(format!("{ball}{wall}{point}"), beyond);
     let behind = wall.replace("-3]", "9]");
-    let unseen = "wall has no end and is not seen, so photons cannot be aimed at it; those of points";
+    let unseen = "wall is unbounded and not seen, so photons cannot be aimed at it; caustics from point";
     leaves(format!("{behind}{point}"), unseen);
     asks(
         format!("{ball}{behind}{point}"),
-        "left to chance: caustics of wall, which has no end and is not seen; those of points",
+        "left to chance: caustics of wall, which is unbounded and is not seen; caustics from point",
     );
     leaves(format!("{ball}{point}").replace("0.8, 0]", "-0.8, 0]"), "in sight");
     leaves(format!("[render]\ncaustics = \"off\"\n{ball}{point}"), "caustics \"off\"");

@@ -41,7 +41,11 @@ fn modified(folder: &Folder, name: &str) -> SystemTime {
 fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     let folder = folder();
     let begun = done(&folder, "s.toml --resume");
-    assert!(begun.stderr.contains("there is no s.checkpoint: the render begins\n"), "{}", begun.stderr);
+    assert!(
+        begun.stderr.contains("there is no s.checkpoint yet: the render starts from the beginning\n"),
+        "{}",
+        begun.stderr
+    );
     assert_eq!(folder.listing(), ["s.checkpoint", "s.exr", "s.toml"]);
     let times = ["s.checkpoint", "s.exr"].map(|name| modified(&folder, name));
     for (words, told) in [
@@ -78,7 +82,7 @@ fn a_finished_render_that_is_resumed_says_so_and_rewrites_nothing() {
     refused(
         &folder,
         "s.toml --checkpoint 1h",
-        "error: s.checkpoint is there from an earlier run\nhelp: add --resume to go on from it, or delete it to start over",
+        "error: s.checkpoint already exists from an earlier run\nhelp: add --resume to go on from it, or delete it to start over",
     );
 }
 
@@ -107,7 +111,7 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
         let pipe = folder.path_of("s.checkpoint");
         fs::remove_file(&pipe).expect("it is there");
         assert!(Command::new("mkfifo").arg(&pipe).status().expect("there is mkfifo").success());
-        let message = "error: cannot go on from s.checkpoint: it is no checkpoint\nhelp: name another image, or move that file away";
+        let message = "error: cannot go on from s.checkpoint: it is not a checkpoint\nhelp: name another image, or move that file away";
         refused(&folder, "s.toml --resume", message);
         fs::remove_file(&pipe).expect("it is there");
     }
@@ -115,12 +119,12 @@ fn a_checkpoint_of_something_else_is_refused_in_one_line_that_says_what_differs(
     refused(
         &folder,
         "s.toml --resume",
-        "error: cannot go on from s.checkpoint: it is no checkpoint\nhelp: name another image, or move that file away",
+        "error: cannot go on from s.checkpoint: it is not a checkpoint\nhelp: name another image, or move that file away",
     );
     refused(
         &folder,
         "s.toml --checkpoint 1h",
-        "error: s.checkpoint would be overwritten, and is no checkpoint\n\
+        "error: s.checkpoint would be overwritten, but it is not a checkpoint\n\
          help: name another image, or move that file away",
     );
     assert_eq!(folder.read("s.checkpoint"), b"something else");
@@ -165,7 +169,7 @@ fn parts_that_do_not_make_one_image_are_refused_by_name() {
         (format!("{one} layers.2-of-2.part"), other("layers.2-of-2.part", "its list of layers is N, not empty")),
         (
             format!("{one} s.toml"),
-            "error: s.toml is no part of an image\n\
+            "error: s.toml is not a part of an image\n\
              help: parts are made by --shard, as in render --shard 1/4 scene.toml"
                 .into(),
         ),
@@ -212,7 +216,7 @@ fn a_plan_is_made_once_and_followed_and_one_of_something_else_is_refused() {
         refused(&folder, &format!("{words} --plan-file new/folder/s.plan"), &format!("error: {message}\n{help}"));
     }
     refused(&folder, "s.toml --plan-file s.plan", &format!("error: there is no plan s.plan\n{help}"));
-    refused(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is no plan\n{help}"));
+    refused(&folder, "s.toml --plan-file s.toml", &format!("error: s.toml is not a plan\n{help}"));
     refused(&folder, "s.toml --plan --plan-file s.toml", "error: s.toml is the scene itself\nhelp: name another file");
     assert_eq!(folder.read("s.toml"), GLASS.as_bytes());
 }
@@ -276,24 +280,27 @@ fn flags_that_have_no_place_are_refused() {
         ),
         (
             "s.toml --png a.png --shard 1/2",
-            "error: --shard makes a part of an EXR, and no picture\n\
+            "error: --shard makes a part of an EXR, not a picture\n\
              help: leave --png out, and make a picture of the merged image",
         ),
         (
             "s.toml --png a.png --snapshot 1s",
-            "error: --snapshot keeps an EXR fresh, and none is rendered\nhelp: leave it out",
+            "error: --snapshot keeps an EXR up to date, but no EXR is written\nhelp: leave it out",
         ),
         (
             "s.toml --stamp --shard 1/2",
-            "error: parts of an image say no time, so --stamp has no place in them\nhelp: leave it out",
+            "error: parts of an image record no time, so --stamp cannot be used with --shard\nhelp: leave it out",
         ),
     ] {
         refused(&folder, words, message);
     }
     for (words, part) in [
         ("s.toml --checkpoint 60", "a time is a number with a unit, such as 60s, 5m or 1h"),
-        ("s.toml --shard 0/4", "a part is its number and how many there are, such as 1/16, 2/16, up to 16/16"),
-        ("s.toml --shard 5/4", "a part is its number and how many there are"),
+        (
+            "s.toml --shard 0/4",
+            "a part is given as its number and the number of parts, such as 1/16, 2/16, up to 16/16",
+        ),
+        ("s.toml --shard 5/4", "a part is given as its number and the number of parts"),
     ] {
         let answer = run(&folder, words);
         assert!(answer.code == Some(2) && answer.stderr.contains(part), "{words}: {}", answer.stderr);

@@ -139,10 +139,10 @@ fn a_lossy_file_of_one_part_holds_no_data() {
     assert!(lossy["R"] != exact["R"]);
     assert_eq!(asked(Compression::Pxr24, float, true, &Layer::all()), None);
     for (compression, precision, layers, message) in [
-        (Compression::Dwab, half, &[Layer::Albedo, Layer::Direct][..], "dwab changes what is no color: albedo"),
-        (Compression::Dwaa, half, &[Layer::Normal, Layer::HalfA], "dwaa changes what is no color: N, half_a"),
-        (Compression::Pxr24, half, &[Layer::Direct], "pxr24 changes what is no color: Z"),
-        (Compression::Dwaa, float, &[], "dwaa holds colors of 16 bits, not of 32"),
+        (Compression::Dwab, half, &[Layer::Albedo, Layer::Direct][..], "dwab alters data that must stay exact: albedo"),
+        (Compression::Dwaa, half, &[Layer::Normal, Layer::HalfA], "dwaa alters data that must stay exact: N, half_a"),
+        (Compression::Pxr24, half, &[Layer::Direct], "pxr24 alters data that must stay exact: Z"),
+        (Compression::Dwaa, float, &[], "dwaa holds colors in 16 bits, not in 32"),
     ] {
         assert_eq!(asked(compression, precision, false, layers), Some(format!("the compression {message}")));
     }

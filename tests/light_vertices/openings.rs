@@ -171,7 +171,7 @@ fn light_paths_of_suns_start_through_openings_that_bounces_find_no_light_of() {
 fn the_plan_starts_light_paths_of_skies_through_openings() {
     let text = room("", &[environment(1.0)]).replace("width = 12\nheight = 12", "width = 384\nheight = 384");
     let decided = plan(&scene(&text));
-    let told = "light between surfaces that comes from the sky through openings is looked for at light vertices";
+    let told = "light between surfaces that comes from the sky through openings is found at light vertices";
     assert!(decided.because.iter().any(|line| line.starts_with(told)), "{:?}", decided.because);
     let SkyOpenings { openings, missed } = &decided.method.openings;
     assert!(openings.len() == 1 && *missed < 0.01, "{openings:?}, {missed}");

@@ -106,7 +106,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
     assert!((noise.threshold - 4.281).abs() < 2e-3, "{noise:?}");
     let lines = [
         "a.exr and b.exr differ",
-        "z worst 10.0 in G of (7, 3), chance explains up to 4.3; 1 beyond it",
+        "z worst 10.0 in G of (7, 3), chance explains up to 4.3; 1 above that",
         "worst pixel (7, 3): 0.5 0.5 0.5 and 0.5 0.35858 0.5",
     ];
     assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
@@ -116,7 +116,7 @@ fn a_pixel_that_is_ten_standard_deviations_off_is_found() {
     assert_says(
         &diff(&folder, &a, &gathered, &[]),
         1,
-        &["a.exr and b.exr differ", "photon map its noise is known in part"],
+        &["a.exr and b.exr differ", "photon map its noise is only partly known"],
     );
     // Four deviations are within the largest of so many values by chance.
     b.channel("G")[67] = 0.5 - 4.0 * 2e-4_f32.sqrt();
@@ -234,7 +234,7 @@ fn images_whose_alpha_alone_differs_do_not_agree() {
     };
     let (a, b) = (with_alpha(0.3), with_alpha(0.7));
     // 0.4^2 / (0.7^2 + 0.01).
-    let lines = ["a.exr and b.exr differ", "alpha up to 0.4 apart, relMSE 0.32; of its noise nothing is known"];
+    let lines = ["a.exr and b.exr differ", "alpha up to 0.4 apart, relMSE 0.32; its noise is unknown"];
     assert_says(&diff(&folder, &a, &b, &[]), 1, &lines);
     assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.1"]), 1, &lines);
     assert_says(&diff(&folder, &a, &b, &["--tolerance", "0.4"]), 0, &["a.exr and b.exr agree"]);
@@ -251,7 +251,7 @@ fn images_whose_alpha_alone_differs_do_not_agree() {
 #[test]
 fn alpha_that_is_empty_here_and_full_there_is_no_noise() {
     let folder = Folder::new();
-    let [told_apart, unknown] = ["more than chance explains", "of its noise nothing is known"];
+    let [told_apart, unknown] = ["more than chance explains", "its noise is unknown"];
     for (samples, opposite, code, said) in
         [("4", 157, 1, told_apart), ("4", 156, 0, unknown), ("16", 1, 1, told_apart), ("", 200, 0, unknown)]
     {
@@ -358,7 +358,7 @@ fn a_pixel_that_is_no_number_in_one_image_alone_is_white_and_named() {
     let (a, mut b) = (ramp(), ramp());
     b.channel("G")[6] = f32::NAN;
     let answer = diff(&folder, &a, &b, &["--png", "where.png"]);
-    assert_eq!(answer.stderr, "wrote where.png: white is what differs and is not finite\n");
+    assert_eq!(answer.stderr, "wrote where.png: white marks pixels that differ and are not finite\n");
     assert!(answer.stdout.contains("\nfirst of them  (2, 1): "), "{}", answer.stdout);
     let picture = read_png(&folder.path_of("where.png"));
     assert_eq!((0..8).filter(|&i| picture.pixels[i] == [255; 3]).collect::<Vec<_>>(), [6]);
@@ -408,12 +408,12 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
     let mut crop = ramp();
     (crop.corner, crop.full) = ([2, 1], [8, 4]);
     let size = "error: a.exr has 4 x 2 pixels at (0, 0) of 4 x 2, b.exr 4 x 2 pixels at (2, 1) of 8 x 4\n\
-                help: images of one size can be compared where both have pixels\n";
+                help: images of the same full size can be compared where both have pixels\n";
     diff(&folder, &ramp(), &crop, &[]).assert_refused(2, size);
     let mut aces = ramp();
     aces.texts.push(("colorInteropID", "lin_ap1_scene".into()));
     let space = "error: b.exr has the color space lin_ap1_scene, a.exr no color space, which means lin_rec709_scene\n\
-         help: colors of other spaces cannot be compared\n";
+         help: colors of different color spaces cannot be compared\n";
     diff(&folder, &ramp(), &aces, &[]);
     render(&folder, &["diff", "b.exr", "a.exr", "--png", "c.png"]).assert_refused(2, space);
     let layer = "error: a.exr has no layer Z\nhelp: it has beauty\n";
@@ -423,7 +423,7 @@ fn what_cannot_be_compared_is_refused_with_an_exit_code_of_its_own() {
         diff(&folder, &ramp(), &ramp(), &["--tolerance", number]).assert_refused(2, tolerance);
     }
     folder.write("b.exr", "no image");
-    let broken = "error: cannot read b.exr: it is no complete OpenEXR image (it does not begin as one does)\n";
+    let broken = "error: cannot read b.exr: it is not a complete OpenEXR image (it does not begin like one)\n";
     render(&folder, &["diff", "a.exr", "b.exr", "--png", "c.png"]).assert_refused(2, broken);
     let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
     render(&folder, &["diff", "a.exr", "A.exr"]).assert_refused(2, missing);

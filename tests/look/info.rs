@@ -31,7 +31,7 @@ fn assert_says(lines: &[String], expected: &[&str]) {
 fn a_render_says_its_overscan() {
     let folder = Folder::with("ball.toml", SCENE);
     assert_eq!(render(&folder, &["ball.toml", "--overscan", "4,2,6,5"]).code, Some(0));
-    let expected = ["size 12 x 8 pixels", "overscan 22 x 15 pixels are there, (-4, -2) to (17, 12)"];
+    let expected = ["size 12 x 8 pixels", "overscan 22 x 15 pixels are stored, (-4, -2) to (17, 12)"];
     assert_says(&lines(&folder, "ball.exr"), &expected);
 }
 
@@ -46,7 +46,7 @@ fn a_render_says_size_crop_color_camera_origin_and_channels() {
         &[
             "ball.exr: OpenEXR, 1 part, ",
             "size 12 x 8 pixels",
-            "crop 6 x 5 pixels are there, (4, 2) to (9, 6)",
+            "crop 6 x 5 pixels are stored, (4, 2) to (9, 6)",
             "storage zip, scan lines from the top",
             "chromaticities red 0.7130 0.2930, green 0.1650 0.8300, blue 0.1280 0.0440, white 0.3217 0.3377 (lin_ap1_scene)",
             "camera at (0, 1, 6), looks along (0, 0, -1)",
@@ -91,7 +91,7 @@ fn overscan_and_parts_of_other_programs_are_told() {
         &[
             "a.exr: OpenEXR, 3 parts, ",
             "part 1 rgba",
-            "overscan 4 x 3 pixels are there, (-1, -1) to (2, 1)",
+            "overscan 4 x 3 pixels are stored, (-1, -1) to (2, 1)",
             "storage not compressed, scan lines from the top",
             // Nothing in a file can control the terminal.
             "comments2 two\u{fffd}lines \u{fffd}[31m and \u{e9}",
@@ -116,7 +116,7 @@ fn of_a_file_whose_values_are_not_read_all_else_is_told() {
     let why = "channel subsampling, by which several pixels share a value";
     assert!(told[0].ends_with(&format!("; its values are not read: {why}")), "{told:?}");
     assert_says(&told, &["size 4 x 2 pixels", "beauty B float - - - a value for 2 x 2 pixels"]);
-    let refusal = "error: cannot read chroma.exr: it is an OpenEXR image of a kind that is not read: ";
+    let refusal = "error: cannot read chroma.exr: OpenEXR images of this kind are not supported: ";
     let viewed = render(&folder, &["view", "chroma.exr"]);
     assert_eq!((viewed.code, viewed.stderr), (Some(1), format!("{refusal}{why}\n")));
 }
@@ -137,12 +137,12 @@ fn a_file_that_cannot_be_read_is_told_in_one_line() {
     info(".").assert_refused(2, &format!("error: . is a folder, not an image\n{help}"));
     for file in ["text.exr", "empty.exr"] {
         let refusal =
-            format!("error: cannot read {file}: it is no complete OpenEXR image (it does not begin as one does)\n");
+            format!("error: cannot read {file}: it is not a complete OpenEXR image (it does not begin like one)\n");
         info(file).assert_refused(1, &refusal);
     }
     let answer = info("half.exr");
     assert_eq!((answer.code, &*answer.stdout), (Some(1), ""));
-    assert!(answer.stderr.starts_with("error: cannot read half.exr: it is no complete OpenEXR image ("));
+    assert!(answer.stderr.starts_with("error: cannot read half.exr: it is not a complete OpenEXR image ("));
     assert_eq!(answer.stderr.lines().count(), 1, "{}", answer.stderr);
     assert_eq!(folder.listing(), ["empty.exr", "half.exr", "ramp.exr", "text.exr"]);
 }
@@ -160,7 +160,7 @@ fn a_file_that_is_no_openexr_image_is_told_what_it_is() {
     for (file, kind) in [("a.png", "PNG"), ("a.jpg", "JPEG"), ("a.hdr", "Radiance picture")] {
         let refusal = format!(
             "error: {file} is a {kind}, not an OpenEXR image\n\
-             help: an image is an OpenEXR file, such as prism.exr; --exr writes it beside a picture\n"
+             help: an image is an OpenEXR file, such as prism.exr; --exr writes one beside the picture\n"
         );
         render(&folder, &["info", file]).assert_refused(2, &refusal);
     }

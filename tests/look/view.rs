@@ -86,7 +86,7 @@ fn a_band_of_a_spectrum_is_shown_by_its_wavelength_and_bands_are_not_taken_for_c
         assert!(said.starts_with("S0.385,000000nm: black is 1.0, white 3.0"), "{name}: {said}");
     }
     assert!(said(&["S1.385nm"]).starts_with("S1.385,000000nm: black is 4.0"));
-    assert!(said(&[]).starts_with("there are no R, G and B: this is S0.385,000000nm\n"));
+    assert!(said(&[]).starts_with("there are no R, G and B: showing S0.385,000000nm\n"));
     let refused = |layer: &str| render(&folder, &["view", "a.exr", layer, "--png", "look.png"]);
     refused("S0")
         .assert_refused(2, "error: S0 holds the 3 bands of a spectrum\nhelp: name one by its wavelength: S0.385nm\n");
@@ -99,7 +99,7 @@ fn where_there_are_no_colors_the_first_layer_is_shown_and_named() {
     folder.write("a.exr", Exr::new([2, 1], vec![("Y", vec![1.0, 3.0])]).bytes());
     let (shown, said) = pixels(&folder, &[]);
     assert_eq!(shown, [[0; 3], [255; 3]]);
-    assert!(said.starts_with("there are no R, G and B: this is Y\nY: black is 1.0, white 3.0, "), "{said}");
+    assert!(said.starts_with("there are no R, G and B: showing Y\nY: black is 1.0, white 3.0, "), "{said}");
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_gray_comes_before_its_alpha_and_small_letters_are_colors() {
     Exr::new([2, 1], vec![("A", vec![1.0; 2]), ("Y", vec![1.0, 3.0])]).write(&path);
     let (shown, said) = pixels(&folder, &[]);
     assert_eq!(shown, [[0; 3], [255; 3]]);
-    assert!(said.starts_with("there are no R, G and B: this is Y\nY: black is 1.0, white 3.0, "), "{said}");
+    assert!(said.starts_with("there are no R, G and B: showing Y\nY: black is 1.0, white 3.0, "), "{said}");
     Exr::new([1, 1], vec![("b", vec![0.0]), ("g", vec![0.5]), ("r", vec![1.0])]).write(&path);
     assert_eq!(pixels(&folder, &[]), (vec![[255, 188, 0]], String::new()));
 }
@@ -199,7 +199,7 @@ fn what_cannot_be_shown_is_refused_and_nothing_is_written() {
     let missing = "error: there is no image file A.exr\nhelp: did you mean a.exr?\n";
     view(&["A.exr", "--png", "b.png"]).assert_refused(2, missing);
     assert_eq!(view(&["a.exr", "--png", "b.png", "--sixel"]).code, Some(2));
-    let place = "error: cannot write a.exr/b.png: a file stands where its folder should be\n";
+    let place = "error: cannot write a.exr/b.png: there is a file where its folder should be\n";
     view(&["a.exr", "--png", "a.exr/b.png"]).assert_refused(1, place);
     std::fs::copy(folder.path_of("a.exr"), folder.path_of("a.png")).expect("files can be copied");
     let itself = "error: a.png is the image itself\nhelp: name another file\n";

@@ -139,9 +139,12 @@ fn where_no_number_of_lanes_is_enough_those_that_miss_least_are_taken() {
         let plan = film(index, nm, "");
         let least = plan.candidates.iter().map(|candidate| candidate.bound()).fold(f64::INFINITY, f64::min);
         assert!(least > 0.001 && plan.model_error == least, "{nm} nm: {:?}", plan.because);
-        let said =
-            if plan.method.basis.lanes() == 32 { "the most lanes there are" } else { "more lanes would miss no less" };
-        let said = format!("{said}; some color may be missed by more than is tolerated");
+        let said = if plan.method.basis.lanes() == 32 {
+            "the most lanes available"
+        } else {
+            "more lanes would be no more accurate"
+        };
+        let said = format!("{said}; some color may be off by more than is tolerated");
         assert!(plan.because.iter().any(|line| line.ends_with(&said)), "{nm} nm: {:?}", plan.because);
         lanes.push(plan.method.basis.lanes());
     }
@@ -153,9 +156,9 @@ fn where_spectra_are_asked_for_it_is_still_said_that_colors_are_missed() {
     let said = |nm: u32| {
         let because = film(1.33, nm, "spectral = true").because;
         let line = because.iter().find(|line| line.starts_with("model bands 32: ")).expect("it is told").clone();
-        line.split_once("the most there are, for the spectra").expect("spectra are asked for").1.to_owned()
+        line.split_once("the most lanes available, for the spectra").expect("spectra are asked for").1.to_owned()
     };
-    assert_eq!([3000, 100].map(said), ["; some color may be missed by more than is tolerated", ""]);
+    assert_eq!([3000, 100].map(said), ["; some color may be off by more than is tolerated", ""]);
 }
 
 #[test]
@@ -342,7 +345,7 @@ fn polarization_that_is_left_out_is_told_beside_what_is_tolerated() {
          [[light]]\nenvironment.radiance = 1\n"
     )));
     let said = plan.left_out.iter().find(|line| line.starts_with("left out: polarization")).expect("it is left out");
-    assert!(said.ends_with("% of the light seen, within the 1.0 % that are tolerated"), "{said}");
+    assert!(said.ends_with("% of the light seen, within the 1.0 % that is tolerated"), "{said}");
 }
 
 #[test]

@@ -254,7 +254,7 @@ fn dispersion_is_assumed_where_no_ray_sees_anything_through_the_glass() {
     let dark = glass(9e3);
     assert!(parts(&dark), "{:?}", dark.because);
     let told =
-        "no ray of the probe saw anything through the dispersive glass in 2 % of the view, where it is assumed; so";
+        "no probe ray saw anything through the dispersive glass in 2 % of the view, where dispersion is assumed; so";
     assert!(dark.because.iter().any(|line| line.contains(told)), "{:?}", dark.because);
 }
 

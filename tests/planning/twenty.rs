@@ -47,7 +47,7 @@ pub fn rooms() -> Vec<Room> {
     let mut room = |name, things: String, asks, words| {
         rooms.push(Room { name, text: format!("{CAMERA}{MATERIALS}{things}"), asks, words });
     };
-    room("a glass ball under a point", on("white", &[&ball(), POINT]), true, "photons from a point toward ball");
+    room("a glass ball under a point", on("white", &[&ball(), POINT]), true, "photons from a point light toward ball");
     room("a glass ball under a small lamp", on("white", &[&ball(), &bulb(0.1)]), true, "photons from bulb");
     room("a glass ball in the sun", on("white", &[&ball(), SUN]), true, "photons from the sun");
     let tilted = object("mirror", "mirror", "quad = { center = [-1, 0.7, 0], u = [0.2, 0.6, 0], v = [0, 0, 0.8] }");
@@ -60,13 +60,13 @@ pub fn rooms() -> Vec<Room> {
         "a prism in the light of a spot",
         on("white", &[&object("prism", "flint", PRISM), spot]),
         true,
-        "photons from a spot",
+        "photons from a spotlight",
     );
     let block = object("block", "silver", "cube = { center = [-0.5, 0.5, 0], size = [0.6, 1, 0.6] }");
     room("a block of polished silver in the sun", on("white", &[&block, SUN, SKY]), true, "photons from the sun");
     // Light passes straight through a pane, so next-event estimation finds it. What the pane reflects goes up.
     let pane = object("pane", "pane", "quad = { center = [0, 1, 0], u = [0.8, 0, 0], v = [0, 0, 0.8] }");
-    room("a pane of window glass in the sun", on("white", &[&pane, SUN, SKY]), false, "no caustic of the sun");
+    room("a pane of window glass in the sun", on("white", &[&pane, SUN, SKY]), false, "no caustic from the sun");
     let glass = object("glass", "glass", "cube = { center = [0, 0.6, 0], size = [0.8, 1, 0.8] }")
         + &object("water", "water", "cube = { center = [0, 0.6, 0], size = [0.7, 0.8, 0.7] }");
     room("a vessel of water in the sun", on("white", &[&glass, SUN, SKY]), true, "photons from the sun");
@@ -76,7 +76,12 @@ pub fn rooms() -> Vec<Room> {
         true,
         "photons from bulb",
     );
-    room("a glass ball on brushed metal under a point", on("brushed", &[&ball(), POINT]), true, "photons from a point");
+    room(
+        "a glass ball on brushed metal under a point",
+        on("brushed", &[&ball(), POINT]),
+        true,
+        "photons from a point light",
+    );
 
     room(
         "a chalk ball under a point",
@@ -94,24 +99,29 @@ pub fn rooms() -> Vec<Room> {
         "a glass ball under a huge lamp",
         on("white", &[&ball(), &bulb(2.0)]),
         false,
-        "large enough for rays to meet by chance",
+        "no photon tracing: rays hit bulb (solid angle ",
     );
     let past = "[[light]]\nspot = { position = [-3, 3, 0], toward = [1, -3, 0], cone_angle = 20, intensity = 20 }\n";
     room(
         "a glass ball beside the cone of a spot",
         on("white", &[&ball(), past]),
         false,
-        "no caustic of a spot in sight",
+        "no caustic from a spotlight in sight",
     );
     room(
         "a glass ball under the floor",
         on("white", &[&ball().replace("0.8, 0]", "-0.8, 0]"), POINT]),
         false,
-        "no caustic of a point in sight",
+        "no caustic from a point light in sight",
     );
     let wall = object("wall", "white", "quad = { center = [0.6, 1.5, 0], u = [0, 1.5, 0], v = [0, 0, 3] }");
     let low = "[[light]]\npoint = { position = [2, 1.5, 0], intensity = 3 }\n";
-    room("a glass ball behind a wall", on("white", &[&ball(), &wall, low]), false, "no caustic of a point in sight");
+    room(
+        "a glass ball behind a wall",
+        on("white", &[&ball(), &wall, low]),
+        false,
+        "no caustic from a point light in sight",
+    );
     room(
         "a glass ball on a mirror under a point",
         on("mirror", &[&ball(), POINT]),
@@ -124,6 +134,6 @@ pub fn rooms() -> Vec<Room> {
         false,
         "no caustics: with diffuse_bounces 0",
     );
-    room("a glass ball on a black floor", on("black", &[&ball(), POINT]), false, "what they land on is black");
+    room("a glass ball on a black floor", on("black", &[&ball(), POINT]), false, "the surfaces they land on are black");
     rooms
 }

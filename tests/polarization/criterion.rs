@@ -121,3 +121,44 @@ fn polarization_stays_off_only_where_that_changes_little() {
     assert!(off > 20 && on > 20, "off {off}, on {on}");
     assert!(f64::from(kept) >= 0.95 * f64::from(off), "{kept} of {off}");
 }
+
+/// A floor lit through a coated ball of glass, beside a film, in 8 x 8 pixels.
+fn coated_ball(x: f64) -> String {
+    format!(
+        r#"
+        camera = {{ position = [0.6, 1.4, 3], look_at = [0, 0.5, 0], vertical_fov = 38 }}
+        film = {{ width = 8, height = 8 }}
+        render.caustics = "off"
+        [material]
+        floor.diffuse.reflectance = 0.3
+        film.thin = {{ index = 1.33, thickness_nm = 600 }}
+        coated.dielectric = {{ index = 1.5, coating = [{{ index = 2.2, thickness_nm = 370 }}] }}
+        lamp.emissive.radiance = 8
+        [[object]]
+        shape.plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}
+        material = "floor"
+        [[object]]
+        shape.quad = {{ center = [0.55, 0.5, 0.1], u = [0.4, 0, 0.2], v = [0, 0.45, 0] }}
+        material = "film"
+        [[object]]
+        shape.sphere = {{ center = [{x}, 0.5, -0.9], radius = 0.45 }}
+        material = "coated"
+        [[object]]
+        shape.quad = {{ center = [0.5, 3, 1], u = [1, 0, 0], v = [0, 0, 1] }}
+        material = "lamp"
+        [[light]]
+        environment.radiance = 0.5
+        "#
+    )
+}
+
+/// Leaving out polarization is wrong by 3.1 to 4.2 % in each of these images, as measured with 2048 samples per pixel.
+/// When each pixel was visited nine times with the same random numbers, the plan found less than 0.5 % in five of them.
+#[test]
+fn an_image_of_few_pixels_is_looked_at_by_as_many_samples() {
+    for place in -4..=4 {
+        let planned = plan(&scene(&coated_ball(0.1 * f64::from(place))));
+        let error = planned.polarization_error;
+        assert_eq!(planned.method.polarization, Polarizing::Traced, "ball {place}: {error:?}");
+    }
+}

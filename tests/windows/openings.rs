@@ -27,7 +27,7 @@ fn l13_a_slit_that_no_bounce_finds_gives_its_form_factor() {
     let scene = scene(&text);
     assert!(scene.warnings.iter().all(|line| !line.contains("lights nothing")), "{:?}", scene.warnings);
     let decided = plan(&scene);
-    let told = "bounces in the room are aimed at 1 opening that lets light in; without, hardly any would find light";
+    let told = "bounces in the room are aimed at 1 opening that lets light in; otherwise, hardly any would find light";
     assert!(decided.because.iter().any(|line| line == told), "{:?}", decided.because);
     let found = Mean::over_seeds(&films(&text, decided.method.bright.as_ref(), 8));
     println!("{found:?} for {}, {:?}", 0.5 * 2.0 * share, decided.method.bright);
@@ -112,5 +112,5 @@ fn the_plan_sends_photons_through_openings_alone() {
         + &ball
         + &environment(1.0);
     let outside = plan(&scene(&outside)).because;
-    assert!(outside.iter().any(|line| line.contains("rays find the sky by chance often enough")), "{outside:?}");
+    assert!(outside.iter().any(|line| line.contains("rays find the sky often enough by chance")), "{outside:?}");
 }

@@ -107,14 +107,14 @@ def unwritable(folder, request):
     place = folder / "place"
     if request.param == "file":
         place.write_text("no folder", "utf-8")
-        yield "a file stands where its folder should be"
+        yield "there is a file where its folder should be"
         return
     place.mkdir()
     mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", str(place)], check=False)
     if mounted.returncode:
         pytest.skip("no disk can be mounted here")
     try:
-        yield "nothing can be written or deleted on that disk"
+        yield "that disk is read-only"
     finally:
         subprocess.run(["umount", str(place)], check=True)
 

@@ -159,6 +159,6 @@ def test_on_a_terminal_a_render_says_what_matters_of_its_plan_and_elsewhere_all(
     os.close(ours)
     assert run.returncode == 0
     lines = [line.strip() for line in said.decode("utf-8").splitlines()]
-    end = lines.index("(--plan tells how, and why)")
+    end = lines.index("(--plan explains how and why)")
     assert lines[0].startswith("cost: ") and lines[1:end] == all_of_it[1:end] and end < 5
     assert all_of_it[end].startswith("model ") and not any(line.startswith("model ") for line in lines)

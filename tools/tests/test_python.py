@@ -222,7 +222,7 @@ def test_ctrl_c_stops_a_render_and_leaves_a_checkpoint(tmp_path):
     run = subprocess.run(ask, capture_output=True, text=True, timeout=120, cwd=TURNTABLE.parent)
     assert run.stdout == "stopped\n", run.stderr
     assert kept.stat().st_size > 0
-    with pytest.raises(abbe.OptionsError, match=r"is there from an earlier run \(add resume=True"):
+    with pytest.raises(abbe.OptionsError, match=r"already exists from an earlier run \(add resume=True"):
         abbe.render(scene, folder=TURNTABLE.parent, samples=1 << 20, checkpoint=kept)
 
 
@@ -242,9 +242,9 @@ def test_a_render_that_stopped_goes_on_to_the_same_bits(tmp_path):
     assert np.array_equal(image.rgb, abbe.render(scene, samples=1024).rgb)
     # All samples are already there, so nothing is rendered.
     assert np.array_equal(abbe.render(scene, samples=1024, checkpoint=kept, resume=True).rgb, image.rgb)
-    with pytest.raises(abbe.OptionsError, match="1024 samples per pixel, more than that"):
+    with pytest.raises(abbe.OptionsError, match="1024 samples per pixel, more than asked for"):
         abbe.render(scene, samples=16, checkpoint=kept, resume=True)
-    with pytest.raises(abbe.OptionsError, match="made of another scene"):
+    with pytest.raises(abbe.OptionsError, match="made from another scene"):
         abbe.render(with_(film={"width": 64, "height": 49}), samples=1024, checkpoint=kept, resume=True)
     with pytest.raises(abbe.OptionsError, match="no checkpoint to resume from"):
         abbe.render(scene, resume=True)
@@ -339,7 +339,7 @@ def test_words_name_arguments_and_no_flags_of_the_command(tmp_path):
         ],
     )
     abbe.render(gathered, samples=1, checkpoint=kept)
-    with pytest.raises(abbe.OptionsError, match="other samples or another error may need one"):
+    with pytest.raises(abbe.OptionsError, match="other samples or another error may lead to one"):
         abbe.render(gathered, samples=2, checkpoint=kept, resume=True)
 
 
@@ -371,17 +371,17 @@ def test_settings_replace_values_and_options_settings():
         ({"crop": (0, 0, True, True)}, "crop is four whole numbers: first column, first row, width and height, not (0, 0, T"),
         ({"error": np.True_}, "error is a number, not "),
         ({"time": np.True_}, "time is a number of seconds above 0"),
-        ({"set": {"": 1}}, '"" is no path of a key'),
+        ({"set": {"": 1}}, '"" is not the path of a key'),
         ({"seed": -1}, "seed is a whole number from 0 to 2**64 - 1, not -1"),
         ({"crop": (1, 2)}, "crop is four whole numbers: first column, first row, width and height, not (1, 2)"),
         ({"layers": [3]}, "layers is a list of names, not [3]"),
         ({"samples": 2**32}, "samples is a whole number from 1 to 2**32 - 1, not 4294967296"),
-        ({"time": [1]}, 'time is a number of seconds above 0 or a text such as "10m", not [1]'),
-        ({"every": "x"}, "every is a number of seconds above 0 or a text such as \"10m\", not 'x'"),
+        ({"time": [1]}, 'time is a number of seconds above 0 or a string such as "10m", not [1]'),
+        ({"every": "x"}, "every is a number of seconds above 0 or a string such as \"10m\", not 'x'"),
         ({"resume": 1}, "resume is True or False, not 1"),
         ({"progress": 3}, "progress is a function, not 3"),
         ({"set": "film.width=16"}, "set is a dict, not 'film.width=16'"),
-        ({"set": {1: 2}}, "a key of set is a text, not 1"),
+        ({"set": {1: 2}}, "a key of set is a string, not 1"),
         ({"error": 3}, "a relative error lies between 0.000001 and 1, not 3 (error 0.01 asks for one percent)"),
         ({"time": "soon"}, "time is a number of seconds above 0"),
         ({"time": -1}, "time is a number of seconds above 0"),
@@ -409,9 +409,9 @@ def test_options_that_are_wrong_say_what_to_do(options, said):
         (lambda: abbe.read_exr(None), "path is the path of a file or folder, not None"),
         (lambda: abbe.diff("a.exr", 3), "a.exr|an image is the path of a file or folder, not 3"),
         (lambda: abbe.diff(3, "a.exr"), "an image is an abbe.Image, an abbe.ExrImage or the path of a file, not 3"),
-        (lambda: abbe.catalog.glass(3), "the name of a glass is a text, not 3"),
-        (lambda: abbe.diff(abbe.render(SCENE), abbe.render(SCENE), layer=3), "layer is a text, not 3"),
-        (lambda: abbe.render(SCENE)[0, 0], r"the name of a layer is a text, not \(0, 0\)"),
+        (lambda: abbe.catalog.glass(3), "the name of a glass is a string, not 3"),
+        (lambda: abbe.diff(abbe.render(SCENE), abbe.render(SCENE), layer=3), "layer is a string, not 3"),
+        (lambda: abbe.render(SCENE)[0, 0], r"the name of a layer is a string, not \(0, 0\)"),
         (lambda: abbe.render(SCENE, spectral=True).spectrum(True, 0), "x is a whole number, not True"),
         (lambda: abbe.render(SCENE, spectral=True).spectrum(0, 1.5), "y is a whole number, not 1.5"),
         (lambda: abbe.render("[camera]\nposition = [0, 0, 5]"), "tomllib.loads makes a dict of its text"),
@@ -432,7 +432,8 @@ def test_a_checkpoint_is_no_folder_and_no_other_file(tmp_path):
     photo = tmp_path / "photo.jpg"
     photo.write_bytes(b"a photo")
     for resume in (False, True):
-        with pytest.raises(abbe.OptionsError, match=r"photo.jpg would be overwritten, and is no checkpoint \(name an"):
+        refusal = r"photo.jpg would be overwritten, but it is not a checkpoint \(name an"
+        with pytest.raises(abbe.OptionsError, match=refusal):
             abbe.render(SCENE, checkpoint=photo, resume=resume)
     assert photo.read_bytes() == b"a photo"
 
@@ -487,7 +488,7 @@ def test_masked_arrays_are_refused_and_long_doubles_taken():
     entry = {"shape": {"mesh": mesh}, "material": "matte"}
     for key, hidden in [("points", np.ma.masked_equal(points, 1)), ("faces", np.ma.masked_equal(faces, 2))]:
         scene = with_(object=[entry | {"shape": {"mesh": mesh | {key: hidden}}}])
-        with pytest.raises(abbe.SceneError, match=f"{key}: masked values are none of a scene .fill them"):
+        with pytest.raises(abbe.SceneError, match=f"{key}: a scene cannot hold masked values .fill them"):
             abbe.Scene(scene)
     whole = np.ma.masked_array(np.array(points, dtype=float))
     abbe.Scene(with_(object=[entry | {"shape": {"mesh": mesh | {"points": whole}}}]))
@@ -552,8 +553,8 @@ def test_files_are_read_as_others_read_them(tmp_path):
     [
         ("albdo", 'no layer "albdo": did you mean "albedo"? it has beauty, A, Z, albedo'),
         ("albedo.Q", 'did you mean "albedo"?'),
-        ("N", 'layers=["N"] asks for it; it has'),
-        ("variance.R", 'layers=["variance"] asks for it'),
+        ("N", 'ask for it with layers=["N"]; it has'),
+        ("variance.R", 'ask for it with layers=["variance"]'),
         ("what", 'no layer "what": it has'),
     ],
 )
@@ -605,7 +606,7 @@ def test_two_images_are_told_apart_by_more_than_their_noise(tmp_path):
             abbe.diff(a, b, tolerance=tolerance)
     part = abbe.diff(a, abbe.render(SCENE, samples=256, layers=["variance"], seed=1, crop=(3, 2, 5, 4)))
     assert part.is_part and part.is_equal and part.absolute.shape == (4, 5) and not noise.is_part
-    with pytest.raises(abbe.OptionsError, match="images of one size can be compared where both have pixels"):
+    with pytest.raises(abbe.OptionsError, match="images of the same full size can be compared where both have pixels"):
         abbe.diff(a, abbe.render(SCENE, set={"film.width": 8}))
 
 
@@ -773,5 +774,5 @@ def test_a_checkpoint_knows_the_arrays_of_its_scene(tmp_path):
     kept = tmp_path / "a.checkpoint"
     abbe.render(mesh_scene(points=points, faces=faces), checkpoint=kept)
     points[0, 0] += 1e-6
-    with pytest.raises(abbe.OptionsError, match="made of another scene"):
+    with pytest.raises(abbe.OptionsError, match="made from another scene"):
         abbe.render(mesh_scene(points=points, faces=faces), checkpoint=kept, resume=True)

@@ -136,20 +136,20 @@ def test_a_task_that_runs_out_of_time_goes_on_in_another_turn(cluster, folder):
     expected = whole(folder, samples=2000)
     array, merge = cluster.submit(folder, 2, "--samples", "2000")
     log = folder / "2.log"
-    until(lambda: log.exists() and "the render begins" in log.read_text("utf-8"), "the task has not begun")
+    until(lambda: log.exists() and "the render starts" in log.read_text("utf-8"), "the task has not begun")
     time.sleep(1)
     # Slurm sends this signal before the time limit. The last task has the number of the array.
     cluster.run("scancel", "--batch", "--signal=USR1", f"{array}_2")
     assert cluster.wait(merge) == "COMPLETED", logs(folder)
     said = log.read_text("utf-8")
     assert "out/s.2-of-2.checkpoint keeps what is done" in said and "going on from out/s.2-of-2.checkpoint" in said, said
-    assert logs(folder).count("the render begins") == 2, logs(folder)
+    assert logs(folder).count("the render starts") == 2, logs(folder)
     assert (folder / "out/s.exr").read_bytes() == expected
 
 
 def test_a_task_that_is_canceled_keeps_what_is_done_and_the_merge_is_canceled(cluster, folder):
     array, merge = cluster.submit(folder, 2, "--samples", "100000")
-    until(lambda: "the render begins" in logs(folder), "no task has begun")
+    until(lambda: "the render starts" in logs(folder), "no task has begun")
     cluster.run("scancel", array)
     assert cluster.wait(merge) == "CANCELLED", logs(folder)
     until(lambda: "keeps what is done" in logs(folder), "no checkpoint was told")

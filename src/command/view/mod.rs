@@ -103,7 +103,7 @@ fn one_band<'f>(query: &Query, file: &'f ExrFile, layer: ExrLayer<'f>, shown: &s
 /// Returns a layer as a picture, and prints what to know about it.
 fn of_layer(query: &Query, file: &ExrFile, layer: &ExrLayer) -> Result<Picture> {
     if query.layer.is_none() && layer.name != BEAUTY {
-        say(&format!("there are no R, G and B: this is {}", layer.name));
+        say(&format!("there are no R, G and B: showing {}", layer.name));
     }
     if layer.color().is_none() {
         refuse_curves(query, &layer.name)?;

@@ -21,7 +21,7 @@ __all__ = [
 ]
 
 LAYERS: tuple[str, ...]
-"""The names of all layers that a render may have beside the image."""
+"""The names of all layers that `render` accepts in its argument `layers`."""
 __version__: str
 
 _Path = str | os.PathLike[str]

@@ -1,4 +1,4 @@
-"""Checks of arguments, made before anything is done with them."""
+"""Checks of arguments, made before they are used."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Path = Union[str, bytes, "os.PathLike[str]"]
 
 
 def path(name: str, value: Any, wanted: str = "the path of a file or folder") -> str:
-    """Returns `value` as a path. `wanted` describes it in the error."""
+    """Returns `value` as a path, or raises `TypeError`. `wanted` describes the argument in the error."""
     try:
         return os.fsdecode(value)
     except TypeError:
@@ -21,14 +21,14 @@ def path(name: str, value: Any, wanted: str = "the path of a file or folder") ->
 
 
 def text(name: str, value: Any) -> str:
-    """Returns `value` if it is a text."""
+    """Returns `value` if it is a string, or raises `TypeError`."""
     if not isinstance(value, str):
-        raise TypeError(f"{name} is a text, not {_shown(value)}")
+        raise TypeError(f"{name} is a string, not {_shown(value)}")
     return value
 
 
 def whole(name: str, value: Any) -> int:
-    """Returns `value` as a whole number. True and False are rejected, though they are integers to Python."""
+    """Returns `value` as an integer, or raises `TypeError`. Rejects True and False, which are integers in Python."""
     try:
         if not _is_truth(value):
             return operator.index(value)
@@ -38,7 +38,7 @@ def whole(name: str, value: Any) -> int:
 
 
 def number(name: str, value: Any) -> float:
-    """Returns `value` as a number. Truth values and texts are rejected."""
+    """Returns `value` as a number, or raises `OptionsError`. Rejects booleans and strings."""
     try:
         if not _is_truth(value) and not isinstance(value, (str, bytes)):
             return float(value)
@@ -52,26 +52,26 @@ def _is_truth(value: Any) -> bool:
 
 
 def truth(name: str, value: Any) -> bool:
-    """Returns `value` as a truth value, of Python or numpy."""
+    """Returns `value` as a bool if it is a boolean of Python or numpy, or raises `OptionsError`."""
     if not _is_truth(value):
-        raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) says all arguments")
+        raise OptionsError(f"{name} is True or False, not {_shown(value)}", "help(abbe.render) lists all arguments")
     return bool(value)
 
 
 def function(name: str, value: Any) -> Callable[..., object]:
-    """Returns `value` if it can be called."""
+    """Returns `value` if it is callable, or raises `OptionsError`."""
     if not callable(value):
         raise OptionsError(f"{name} is a function, not {_shown(value)}", f"such as {name}=print")
     return value
 
 
 def settings(value: Any) -> dict[str, Any]:
-    """Returns the values that replace those of a scene, as a dict with texts for keys."""
+    """Returns the argument `set` as a dict, or raises `OptionsError` if it is no mapping or a key is no string."""
     if not isinstance(value, Mapping):
         raise OptionsError(f"set is a dict, not {_shown(value)}", 'such as set={"film.width": 320}')
     for key in value:
         if not isinstance(key, str):
-            raise OptionsError(f"a key of set is a text, not {_shown(key)}", 'such as set={"film.width": 320}')
+            raise OptionsError(f"a key of set is a string, not {_shown(key)}", 'such as set={"film.width": 320}')
     return dict(value)
 
 

@@ -1,4 +1,4 @@
-"""What can go wrong."""
+"""Exceptions."""
 
 from __future__ import annotations
 
@@ -6,29 +6,30 @@ from typing import NamedTuple
 
 
 class Mistake(NamedTuple):
-    """A mistake in a scene."""
+    """A mistake in a scene, as listed in `SceneError.mistakes`."""
 
     key: str | None
-    """The path of the key in a dict, such as `object[2].shape.sphere.radios`: entries count from 0. None of a file."""
+    """The path of the key in a dict, such as `object[2].shape.sphere.radios`, or the key in `set`. Entries of lists
+    count from 0. None for a mistake in a scene file."""
     message: str
     """What is wrong."""
     help: str | None
-    """What to do."""
+    """How to fix it, if known."""
     file: str
-    """The scene file, of a scene given as one."""
+    """The path of the scene file. Like `line` and `column`, it is only meaningful for a mistake in a file."""
     line: int
-    """The line in the file, from 1."""
+    """The line in the file, counted from 1."""
     column: int
-    """The column in the file, from 1."""
+    """The column in the file in characters, counted from 1."""
 
 
 class RenderError(Exception):
-    """A render, or a file, that failed."""
+    """Raised if a render fails, or a file cannot be decoded or encoded. The base class of the other errors."""
 
     message: str
     """What went wrong."""
     help: str | None
-    """What to do."""
+    """How to fix it, if known."""
 
     def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message, help)
@@ -39,14 +40,14 @@ class RenderError(Exception):
 
 
 class OptionsError(RenderError, ValueError):
-    """An argument that asks for something impossible."""
+    """Raised if an argument has a value that is not allowed."""
 
 
 class SceneError(RenderError, ValueError):
-    """A scene that cannot be rendered because of its mistakes."""
+    """Raised if a scene contains mistakes. Its message includes all of them."""
 
     mistakes: list[Mistake]
-    """All its mistakes, in the order of the scene."""
+    """All mistakes found in the scene, in the order of its text."""
 
     def __init__(self, message: str, mistakes: list[Mistake]) -> None:
         super().__init__(message)

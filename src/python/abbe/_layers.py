@@ -1,4 +1,4 @@
-"""What rendered images and image files have in common: layers, found by name."""
+"""The base class of rendered images and image files: access to layers by name."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ BEAUTY = "beauty"
 
 
 class Layers:
-    """The layers of an image by their names, as arrays: rows from the top, columns, and channels if there are several.
+    """Layers of an image, indexed by name, as arrays of shape height x width, or height x width x channels.
 
-    Where numpy expects an array, the image stands for its `rgb`.
+    Row 0 is at the top. Where numpy expects an array, the image is converted to its `rgb`.
     """
 
     _core: Any
@@ -28,26 +28,35 @@ class Layers:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """The names of all layers; `"beauty"` is the image itself: in files, red, green and blue without a name."""
+        """The names of all layers.
+
+        `"beauty"` is the image itself. A file stores it as the channels R, G and B, without a layer name.
+        """
         return tuple(self._core.layers)
 
     @property
     def width(self) -> int:
-        """Pixels in each row of the arrays: of the format and its overscan, or of a part of it."""
+        """The width of the arrays in pixels. With overscan or a crop, it is not that of the format."""
         return self._core.size[0]
 
     @property
     def height(self) -> int:
-        """Rows of the arrays."""
+        """The height of the arrays in pixels. With overscan or a crop, it is not that of the format."""
         return self._core.size[1]
 
     @property
     def corner(self) -> tuple[int, int]:
-        """Column and row of the first pixel, counted from the top left of the format: negative in the overscan."""
+        """Column and row of the first pixel, relative to the top left of the format. Negative in the overscan."""
         return self._core.corner
 
     def to_png(self, path: Path, exposure: float = 0.0) -> None:
-        """Writes an 8-bit sRGB picture for viewing, brightened by 2^`exposure`, whatever color space the image has."""
+        """Writes an 8-bit sRGB PNG for viewing, brightened by 2^`exposure`.
+
+        Colors are converted from the color space of the image. Creates the folder of the file if it is missing.
+
+        Raises `OptionsError` if `path` does not end in `.png` or `exposure` is not finite, and `OSError` if the file
+        cannot be written.
+        """
         self._core.write_png(_arguments.path("path", path), _arguments.number("exposure", exposure))
 
     def _repr_png_(self) -> bytes:
@@ -65,7 +74,7 @@ class Layers:
         return list(self.layers)
 
     def __contains__(self, name: object) -> bool:
-        """Whether `image[name]` finds a layer, or a channel of this name in the file."""
+        """Returns whether `image[name]` is a layer or a channel."""
         if not isinstance(name, str):
             return False
         try:
@@ -82,8 +91,8 @@ class Layers:
 
     @property
     def rgb(self) -> npt.NDArray[np.float32]:
-        """Linear red, green and blue, float32, height x width x 3: the radiance in the film's color space.
+        """The image in linear red, green and blue: float32, height x width x 3, in the color space of the film.
 
-        Raises `KeyError` if a file has no `"beauty"`, only named layers.
+        Raises `KeyError` if the image is a file with named layers only, without `"beauty"`.
         """
         return self[BEAUTY]

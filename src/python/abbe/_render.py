@@ -22,19 +22,19 @@ Time = Union[Real, str]
 
 
 class Progress(NamedTuple):
-    """How far a render has got."""
+    """The progress of a render."""
 
     done: int
-    """Camera samples that were taken, and photons, each of which counts as the samples that take as long."""
+    """Work done so far, in camera samples. A photon counts as the number of samples that take as long."""
     total: int
-    """All that are to be taken. Where an error or a time ends the render, this is a guess; before the first look at the
-    error, after 64 samples of each pixel, it is the most that may be taken."""
+    """All work, in camera samples. If an error or a time ends the render, this is an estimate. With an error alone, it
+    is the maximum until the error is first estimated, after 64 samples per pixel."""
     seconds: float
-    """Since it began."""
+    """Seconds since the render began, or was resumed."""
 
     @property
     def share(self) -> float:
-        """The share that is done, 0 to 1."""
+        """The fraction of the work that is done, 0 to 1."""
         return min(self.done / max(self.total, 1), 1.0)
 
     def __str__(self) -> str:
@@ -42,26 +42,26 @@ class Progress(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """How a scene will be rendered, and why."""
+    """How a scene will be rendered, and why. `print(plan)` shows the reasons."""
 
     model: str
-    """How spectra are carried."""
+    """How spectra are represented."""
     transport: str
-    """How light is followed."""
+    """The light transport algorithm."""
     samples: int
-    """Camera samples per pixel, or the most."""
+    """Camera samples per pixel, or the maximum if an error or a time ends the render."""
     photons: int | None
-    """Photons of all passes, where it is known how many there will be."""
+    """Photons in all passes. None if an error or a time ends the render."""
     processor_seconds: float | None
-    """Time of all processors together, where it is known how many samples there will be."""
+    """Estimated time of all processors together, in seconds. None if an error or a time ends the render."""
     seconds: float | None
-    """Time on this machine, if nothing else keeps its processors busy."""
+    """Estimated time on this machine, in seconds, if its processors are otherwise idle. None if unknown."""
     model_error: float
-    """How far colors may be off, relative to the strongest channel, because spectra are carried in so few lanes."""
+    """How far colors may be off because few values represent a spectrum, relative to the strongest channel."""
     left_out: list[str]
-    """What light is left out."""
+    """Descriptions of the light that is left out."""
     words: list[str]
-    """The plan in words, a decision each."""
+    """The plan in words, one decision per entry."""
 
     def __repr__(self) -> str:
         return f"<abbe.Plan: model {self.model}, transport {self.transport}, {self.samples} samples per pixel>"
@@ -71,16 +71,17 @@ class Plan(NamedTuple):
 
 
 class Scene:
-    """A scene that was read and checked, to be rendered several times, or only checked.
+    """A scene that was read and checked. It can be rendered several times.
 
-    `source` is the path of a scene file, or a dict with the keys of one. A dict may hold numbers, texts, dicts, lists,
-    tuples, paths, numbers and arrays of numpy, and entries of the catalog, which stand for their names. Files that it
-    names are looked up in `folder`. An image has to be a file, not an array. `set` replaces values of the scene by the
-    paths of their keys, such as `{"film.width": 320, "object.ball.material": "gold"}`. Entries of lists are found by
-    their name or by their number, counted from 1. A single word sets a variable of the scene: `{"frame": 7}` does what
-    `--frame 7` does.
+    - `source`: the path of a scene file, or a dict with the keys of one. A dict may contain numbers, strings, booleans,
+      dicts, lists, tuples, paths, numbers and arrays of numpy, and entries of the catalog, which stand for their names.
+      Images are given by the path of a file, not as arrays.
+    - `set`: values that replace those of the scene, by the paths of their keys, such as
+      `{"film.width": 320, "object.ball.material": "gold"}`. Entries of lists are found by name, or by number from 1. A
+      single word sets a variable of the scene: `{"frame": 7}` corresponds to `--frame 7` of the command.
+    - `folder`: where to look for the files named in a dict.
 
-    Raises `SceneError` with all its mistakes, and `FileNotFoundError` if there is no such file.
+    Raises `SceneError` if the scene contains mistakes, and `FileNotFoundError` if there is no such file.
     """
 
     def __init__(
@@ -102,7 +103,7 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """What the scene's author should know but need not change."""
+        """Warnings about the scene, in sentences. They do not prevent a render."""
         return self._core.warnings
 
 
@@ -141,7 +142,7 @@ def plan(
 ) -> Plan:
     """Plans a render without rendering: how it would be done, why, and how long it would take.
 
-    The arguments are those of `render` that describe the image. The errors are the same too.
+    Takes the arguments of `render` that describe the image, and raises the same errors.
     """
     account, on = _abbe.plan(_scene(scene, set, folder), locals())
     found = json.loads(account)
@@ -169,37 +170,42 @@ def render(
     every: Time = 60.0,
     resume: bool = False,
 ) -> Image:
-    """Renders a scene: a file, a dict with the keys of one, or a `Scene`.
+    """Renders a scene, and returns its image. The arguments from `samples` to `layers` replace settings of the scene.
 
-    The image is identical to the last bit to that of the command, for any number of threads. Other Python threads keep
-    running meanwhile, and may render as well.
-
+    - `scene`: the path of a scene file, a dict with the keys of one, or a `Scene`.
     - `set`, `folder`: as for `Scene`. They cannot be given with a `Scene`, which has its own.
-    - `samples`: camera samples per pixel, 1 or more, instead of the scene's; with `error` or `time`, the maximum.
-    - `error`: relative error of the image at which to stop, 0.000001 to 1. 0.01 is one percent.
-    - `time`: how long it may take, in seconds, or with a unit: `"10m"`.
-    - `seed`: chooses another set of random numbers.
-    - `overscan`: pixels around the format: one number, or those to the left, above, to the right and below.
-    - `crop`: the part of the image to render: first column, first row, width and height in pixels.
-    - `layers`: names of layers to make beside the image, or `"all"`; `LAYERS` lists them. The layers of `film.stokes`
-      are kept beside them, and `"all"` does not include polarization.
-    - `spectral`: whether to make spectra, for `Image.spectrum`.
-    - `threads`: processor threads; all of them by default.
-    - `stamp`: whether the file says when it was made and how long that took.
-    - `progress`: is called twice a second, and at the end, with a `Progress`. An exception that it raises stops the
-      render.
-    - `checkpoint`: a file that keeps the work done so far, written `every` so many seconds, when the render is stopped,
-      and at the end.
-    - `resume`: continues from the checkpoint, if there is one, to the same image or to more samples.
+    - `samples`: camera samples per pixel, 1 or more. With `error` or `time`, this is the maximum, and the scene's own
+      number is ignored.
+    - `error`: take samples until the relative error of the image is at most this in 95 of 100 renders, 0.000001 to 1.
+      0.01 is one percent.
+    - `time`: how long the render may take, in seconds, or a string with a unit (`ms`, `s`, `m` or `h`): `"10m"`.
+    - `seed`: selects another set of random numbers, 0 to 2**64 - 1.
+    - `overscan`: extra pixels around the format: one number for all sides, or left, top, right and bottom.
+    - `crop`: the part of the image to render: first column, first row, width and height in pixels. In the overscan,
+      the first column and row may be negative.
+    - `layers`: a list of names of layers to render in addition to the image, or `"all"`. `LAYERS` has all names. S1, S2
+      and S3 stay if the scene sets `film.stokes`. `"all"` does not include the layers of polarization.
+    - `spectral`: whether to render spectra, even if the scene does not request them.
+    - `threads`: the number of threads, 1 to 1024. By default, one for each processor.
+    - `stamp`: whether files written by `Image.write_exr` record when the image was rendered, how long that took, and on
+      how many threads.
+    - `progress`: a function that is called with a `Progress`, twice a second and at the end. If it raises an exception,
+      the render stops.
+    - `checkpoint`: a file in which to save the work done so far. It is written at intervals, when the render is
+      stopped, and at the end. An existing checkpoint is refused without `resume`.
+    - `every`: the time between two writes of the checkpoint, in seconds, or a string such as `"10m"`.
+    - `resume`: whether to continue from the checkpoint, if it exists, to the same image or to more samples.
 
-    Ctrl-C stops a render within a second, or once its checkpoint is written, by `KeyboardInterrupt`. Other processes
-    may render as well, including those that are forked while nothing is rendered. Let them return arrays or write
-    files, because an image cannot be pickled.
+    The image has the same bits as that of the command, for any number of threads. Other Python threads keep running
+    during a render, and may render as well. So may other processes, including those that are forked while nothing is
+    being rendered. They should return arrays or write files, because an image cannot be pickled.
 
-    `Image.stats["warnings"]` lists, in sentences, what the author should know about the scene and the image.
+    Ctrl-C raises `KeyboardInterrupt` within a second, or once the checkpoint is written.
 
-    Raises `SceneError` if the scene is wrong, `OptionsError` if something impossible is asked for, and `OSError` or
-    `RenderError` if reading or writing a file fails.
+    `Image.stats["warnings"]` lists warnings about the scene and the image, in sentences.
+
+    Raises `SceneError` if the scene contains mistakes, `OptionsError` if an argument has a value that is not allowed,
+    and `OSError` or `RenderError` if a file cannot be read or written.
     """
     asked = locals()
     tell = None

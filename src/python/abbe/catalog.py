@@ -1,6 +1,7 @@
-"""Glasses, metals, illuminants and reflectances, by the names that scenes use for them.
+"""Optical data of glasses, metals, illuminants and reflectances, by the names that scenes use.
 
-Wavelengths are in nm, as single numbers or arrays of any shape. The result has the same shape, and the same mask.
+Wavelengths `nm` are in nanometers: a number, or an array of any shape. Results have the same shape. If the array
+is masked, they have the same mask.
 """
 
 from __future__ import annotations
@@ -46,17 +47,17 @@ class _Entry:
 
     @property
     def name(self) -> str:
-        """Its full name."""
+        """The full name, such as `"schott/N-BK7"`."""
         return self._core.entry.name
 
     @property
     def source(self) -> str:
-        """Who published it."""
+        """Who published the data."""
         return self._core.entry.source
 
     @property
     def range_nm(self) -> tuple[float, float]:
-        """The range of wavelengths in nm that its data covers."""
+        """The first and the last wavelength of the data, in nm."""
         return self._core.entry.range_nm
 
     def __eq__(self, other: object) -> bool:
@@ -87,15 +88,15 @@ class Glass(_Entry):
 
     @property
     def v_d(self) -> float:
-        """The Abbe number (n_d - 1) / (n_F - n_C); NaN if the index is not known at these lines."""
+        """The Abbe number (n_d - 1) / (n_F - n_C). NaN if the index is not known at these lines."""
         return self._core.v_d
 
     def index(self, nm: npt.ArrayLike) -> Any:
-        """Returns the refractive index; beyond the known wavelengths, its value at the end of their range."""
+        """Returns the refractive index. Beyond `range_nm`, it is constant."""
         return _at(nm, self._core.index)
 
     def extinction(self, nm: npt.ArrayLike) -> Any:
-        """Returns the extinction coefficient k; NaN if it is not known."""
+        """Returns the extinction coefficient k: linear between samples, constant beyond the ends. NaN if not known."""
         return _at(nm, self._core.extinction)
 
 
@@ -108,12 +109,12 @@ class Metal(_Entry):
         self._core = _abbe.Metal(_arguments.text("the name of a metal", name))
 
     def index(self, nm: npt.ArrayLike) -> Any:
-        """Returns the complex index n + ik; linear between measured wavelengths, constant beyond their ends."""
+        """Returns the complex index n + ik: linear between the measured wavelengths, constant beyond `range_nm`."""
         return _at(nm, self._core.n) + 1j * _at(nm, self._core.k)
 
 
 class Illuminant(_Entry):
-    """The spectrum of a light."""
+    """The spectrum of a light source."""
 
     _core: _abbe.Tabulated
 
@@ -121,7 +122,7 @@ class Illuminant(_Entry):
         self._core = _abbe.Tabulated("illuminant", _arguments.text("the name of an illuminant", name))
 
     def power(self, nm: npt.ArrayLike) -> Any:
-        """Returns relative power per nm, in its own unit; linear between tabulated wavelengths, 0 beyond them."""
+        """Returns the relative power per nm, on an arbitrary scale: linear between tabulated wavelengths, 0 beyond."""
         return _at(nm, self._core.at)
 
 
@@ -134,27 +135,39 @@ class Reflectance(_Entry):
         self._core = _abbe.Tabulated("reflectance", _arguments.text("the name of a reflectance", name))
 
     def reflectance(self, nm: npt.ArrayLike) -> Any:
-        """Returns the share of light that it reflects, 0 to 1; linear between tabulated wavelengths, flat beyond."""
+        """Returns the reflectance, 0 to 1: linear between the tabulated wavelengths, constant beyond."""
         return _at(nm, self._core.at)
 
 
 def glass(name: str) -> Glass:
-    """Returns the glass with a name such as `"N-BK7"` or `"schott/N-BK7"`. Raises `KeyError` with the nearest name."""
+    """Returns the glass with a name such as `"N-BK7"` or `"schott/N-BK7"`, ignoring case.
+
+    Raises `KeyError` if there is none. The message suggests a similar name, if there is one.
+    """
     return Glass(name)
 
 
 def metal(name: str) -> Metal:
-    """Returns the metal with a name such as `"Au"` or `"gold"`. Raises `KeyError` with the nearest name."""
+    """Returns the metal with a name such as `"Au"` or `"gold"`, ignoring case.
+
+    Raises `KeyError` if there is none. The message suggests a similar name, if there is one.
+    """
     return Metal(name)
 
 
 def illuminant(name: str) -> Illuminant:
-    """Returns the illuminant with a name such as `"D65"`. Raises `KeyError` with the nearest name."""
+    """Returns the illuminant with a name such as `"D65"`, ignoring case.
+
+    Raises `KeyError` if there is none. The message suggests a similar name, if there is one.
+    """
     return Illuminant(name)
 
 
 def reflectance(name: str) -> Reflectance:
-    """Returns the reflectance with a name such as `"dark skin"`. Raises `KeyError` with the nearest name."""
+    """Returns the reflectance with a name such as `"dark skin"`, ignoring case.
+
+    Raises `KeyError` if there is none. The message suggests a similar name, if there is one.
+    """
     return Reflectance(name)
 
 

@@ -110,12 +110,12 @@ fn objection(world: &World, progress: &Progress, end_of_pass: Option<u32>, sampl
     let is_on_the_way = progress.is_on_the_way_of(world);
     if !is_on_the_way || end_of_pass.is_some_and(|end| end != progress.end_of_pass(world)) {
         return Some(format!(
-            "it has {taken} samples per pixel of {samples}{}, where a render of {asked} has no pass that ends there",
-            if begun { ", and more of some pixels" } else { "" }
+            "it has {taken} of {samples} samples per pixel{}, but a render with {asked} has no pass that ends there",
+            if begun { ", and more in some pixels" } else { "" }
         ));
     }
     let halves = [Layer::HalfA, Layer::HalfB].iter().any(|&half| world.layers.at(half).is_some());
     (halves && asked != samples && (taken > 0 || begun)).then(|| {
-        format!("half_a and half_b are halves of {samples} samples, and those of {asked} cannot be made of them")
+        format!("half_a and half_b are halves of {samples} samples, and those of {asked} cannot be made from them")
     })
 }

@@ -72,15 +72,20 @@ pub fn for_each_light<const N: usize, P: Polarization<N>>(
     let photons = photons::<N, P>(world, &Pass::of_photons_alone(world, 0));
     let mut tracer = PathTracer::<N, P>::new(world).with_photons(photons.as_ref());
     let mut samples = 0;
+    // In an image of fewer pixels than cells, each pixel is visited several times, with other random numbers each time.
+    let mut looks = [0; (SIDE * SIDE) as usize];
     for [x, y] in window.middles_of_cells(SIDE) {
+        let pixel = [(x - window.left) as u32, (y - window.top) as u32];
+        let look = &mut looks[window.cell_of(SIDE, pixel)];
         for copy in 0..copies {
             let before = tracer.walker.stats;
-            tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], 0), [x, y]);
+            tracer.sample(&Sampler::of_pixel(world.method.seed.wrapping_add(copy as u64), [x, y], *look), [x, y]);
             let after = tracer.walker.stats;
             let found = Amount { light: after.light - before.light, change: after.polarization - before.polarization };
-            take([(x - window.left) as u32, (y - window.top) as u32], copy, found);
+            take(pixel, copy, found);
             samples += 1;
         }
+        *look += 1;
         if tracer.walker.stats.rays > RAYS_OF_A_LOOK {
             break;
         }
