@@ -195,7 +195,7 @@ fn a_scene_that_cannot_be_read_is_refused_with_the_nearest_file() {
     let byte = "line 1 has the byte 0xE9 in column 6\nhelp: save it as UTF-8\n";
     answer.assert_refused(2, &format!("error: latin.toml is not text in UTF-8: {byte}"));
     folder.write("wide.toml", b"\xff\xfe[\0");
-    let byte = "line 1 has the byte 0xFF in column 1\nhelp: it begins as UTF-16 does: save it as UTF-8\n";
+    let byte = "line 1 has the byte 0xFF in column 1\nhelp: it begins like UTF-16: save it as UTF-8\n";
     render(&folder, &["wide.toml"]).assert_refused(2, &format!("error: wide.toml is not text in UTF-8: {byte}"));
     folder.write("image.toml", b"\x89PNG\r\n\x1a\n\0");
     let byte = format!("line 1 has the byte 0x89 in column 1\n{example}");

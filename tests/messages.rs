@@ -227,7 +227,7 @@ error: paint.csv is not text in UTF-8: line 1 has the byte 0xFF in column 1
 14 | diffuse = { reflectance = { file = \"paint.csv\" } }
    |                                    ^^^^^^^^^^^
    |
-   = help: it begins as UTF-16 does: save it as UTF-8
+   = help: it begins like UTF-16: save it as UTF-8
 ";
     let answer = render(&folder, &["--check", "scene.toml"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));
@@ -237,15 +237,16 @@ error: paint.csv is not text in UTF-8: line 1 has the byte 0xFF in column 1
 fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
     let export = "export its meshes as PLY, OBJ or glTF, and write a scene in TOML around them";
     let kinds = [
-        ("room.pbrt", "WorldBegin\nLightSource \"infinite\"\n", "a scene of pbrt", export),
-        ("room.XML", "<?xml version='1.0'?>\n<scene version='3.0.0'/>\n", "XML, as scenes of Mitsuba are", export),
-        ("room.blend", "BLENDER-v300\u{0}", "a file of Blender", export),
-        ("room.usda", "#usda 1.0\ndef Xform \"room\" {}\n", "a scene in USD", export),
+        ("room.pbrt", "WorldBegin\nLightSource \"infinite\"\n", "a pbrt scene", export),
+        ("room.XML", "<?xml version='1.0'?>\n<scene version='3.0.0'/>\n", "XML, as Mitsuba scenes are", export),
+        ("room.blend", "BLENDER-v300\u{0}", "a Blender file", export),
+        ("room.usda", "#usda 1.0\ndef Xform \"room\" {}\n", "a USD scene", export),
         (
             "cup.obj",
             "v 0 0 0\nf 1 1 1\n",
             "a mesh",
-            "in a scene, which is a TOML file, write it as shape.mesh = { file = \"cup.obj\" }; README.md begins with one",
+            "in a scene, which is a TOML file, write it as shape.mesh = { file = \"cup.obj\" }; README.md begins with \
+             an example",
         ),
         (
             "wood.png",
@@ -258,7 +259,7 @@ fn a_file_of_another_kind_that_is_given_as_a_scene_is_called_what_it_is() {
             "scene.json",
             "{ \"camera\": {} }",
             "JSON or YAML",
-            "a scene is a TOML file: keys = values, below headings such as [camera]",
+            "a scene is a TOML file: key = value lines below headings such as [camera]",
         ),
     ];
     for (name, text, what, help) in kinds {
@@ -285,7 +286,7 @@ fn an_image_without_any_light_is_told_once_and_not_where_it_is_meant() {
     assert!(!told(&dim.replace("max_bounces = 0", "max_bounces = 1"), &[]));
     let dark = BASE.replace("radiance = 10 }", "radiance = 0 }").replace("radiance = 1 }", "radiance = 0 }");
     let dark = Folder::with("scene.toml", dark.replace("intensity = 10 }", "intensity = 0 }"));
-    let warned = "warning: nothing shines, so the image will be black\nscene.toml is a valid scene: 7 objects\n";
+    let warned = "warning: nothing emits light, so the image will be black\nscene.toml is a valid scene: 7 objects\n";
     render(&dark, &["scene.toml", "--check"]).assert_refused(0, warned);
     assert_eq!(render(&dark, &["scene.toml"]).stderr.matches("warning: ").count(), 1);
 }
@@ -382,10 +383,7 @@ fn materials_that_are_made_of_too_many_others_are_refused() {
     };
     for (text, expected) in [
         (made(30, &|i| format!("x{}", i + 1)), "error: material \"x0\" is made of more than 1000 others\n"),
-        (
-            made(3000, &|_| "white".into()),
-            "error: material \"x0\" is made of others that lie more than 64 deep in one another\n",
-        ),
+        (made(3000, &|_| "white".into()), "error: material \"x0\" is made of others nested more than 64 deep\n"),
     ] {
         let folder = Folder::with("scene.toml", &text);
         let answer = render(&folder, &["--check", "scene.toml"]);
@@ -407,7 +405,7 @@ error: the scene has no [camera] and no [film]
 1 |
   | ^
   |
-  = help: every scene has [camera] and [film]
+  = help: every scene needs [camera] and [film]
 ";
     let answer = render(&folder, &["--check", "scene.toml"]);
     assert_eq!((answer.code, &*answer.stderr), (Some(2), expected));
@@ -431,12 +429,8 @@ error: a radius is a length above 0, not 0
 fn lines_that_end_as_on_old_macintoshes_are_refused_in_plain_words() {
     let folder = Folder::with("scene.toml", "[camera]\rposition = [0, 1, 6]\r");
     let answer = render(&folder, &["--check", "scene.toml"]);
-    assert!(answer.stderr.starts_with("error: a carriage return alone ends no line\n --> scene.toml:1:10\n"));
-    assert!(
-        answer.stderr.contains("= help: save the file with the line ends of Unix or Windows\n"),
-        "{}",
-        answer.stderr
-    );
+    assert!(answer.stderr.starts_with("error: a carriage return alone does not end a line\n --> scene.toml:1:10\n"));
+    assert!(answer.stderr.contains("= help: save the file with Unix or Windows line endings\n"), "{}", answer.stderr);
 }
 
 #[test]
@@ -463,7 +457,7 @@ fn mistakes_in_a_table_that_a_program_has_built_are_told_by_their_keys() {
     ];
     assert_eq!(mistakes, expected);
     scene.remove("film");
-    assert!(told(&scene).starts_with("the scene has no [film] (every scene has [camera] and [film])\n"));
+    assert!(told(&scene).starts_with("the scene has no [film] (every scene needs [camera] and [film])\n"));
 }
 
 #[test]
@@ -492,6 +486,6 @@ fn a_device_in_place_of_a_file_is_refused() {
         let folder = Folder::with("scene.toml", BASE.replace(whole, device));
         let answer = render(&folder, &["--check", "scene.toml"]);
         assert_eq!(answer.code, Some(2));
-        assert!(answer.stderr.starts_with("error: /dev/zero is no file but a device\n"), "{}", answer.stderr);
+        assert!(answer.stderr.starts_with("error: /dev/zero is a device, not a file\n"), "{}", answer.stderr);
     }
 }

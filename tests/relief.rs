@@ -358,8 +358,8 @@ fn images_that_are_no_relief_are_refused_in_words() {
         source.compile().err().map(|error| error.to_string())
     };
     for (shape, map, words) in [
-        (sphere, "normal_map = { image = \"gray.png\" }", "gray.png is gray, and a normal map has red, green and blue"),
-        (sphere, "normal_map = { image = \"dark.png\" }", "its mean normal looks into the surface"),
+        (sphere, "normal_map = { image = \"gray.png\" }", "gray.png is gray, but a normal map has red, green and blue"),
+        (sphere, "normal_map = { image = \"dark.png\" }", "its mean normal points into the surface"),
         (sphere, "normal_map = { image = \"signed.exr\" }", "pixel (0, 0) is [0.0, -0.25, 1.0]"),
         (bare, "normal_map = { image = \"flat.png\" }", "this mesh has no texture coordinates"),
         (bare, "bump_map = { image = \"gray.png\", depth = 1 }", "this mesh has no texture coordinates"),

@@ -58,7 +58,7 @@ impl FilmSettings {
             return Some(format!("an image with its overscan has at most {most} pixels along each side, not {size}"));
         }
         let all = width * height;
-        (all > fit).then(|| format!("{width} x {height} pixels with the overscan are {all}; at most {fit} fit"))
+        (all > fit).then(|| format!("{width} x {height} with the overscan is {all} pixels; at most {fit} fit"))
     }
 
     /// Returns what is wrong with the crop, if anything. The overscan must be valid.

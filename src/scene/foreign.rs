@@ -18,18 +18,19 @@ const KINDS: [(&[&str], &str, &str); 11] = [
     (
         &["ply", "obj", "gltf", "glb"],
         "a mesh",
-        "in a scene, which is a TOML file, write it as shape.mesh = { file = \"FILE\" }; README.md begins with one",
+        "in a scene, which is a TOML file, write it as shape.mesh = { file = \"FILE\" }; README.md begins with an \
+         example",
     ),
-    (&["stl", "fbx", "dae", "3ds", "abc"], "a mesh or a scene of another program", EXPORT),
-    (&["pbrt"], "a scene of pbrt", EXPORT),
-    (&["blend"], "a file of Blender", EXPORT),
-    (&["usd", "usda", "usdc", "usdz"], "a scene in USD", EXPORT),
-    (&["pov"], "a scene of POV-Ray", EXPORT),
-    (&["xml"], "XML, as scenes of Mitsuba are", EXPORT),
+    (&["stl", "fbx", "dae", "3ds", "abc"], "a mesh or a scene from another program", EXPORT),
+    (&["pbrt"], "a pbrt scene", EXPORT),
+    (&["blend"], "a Blender file", EXPORT),
+    (&["usd", "usda", "usdc", "usdz"], "a USD scene", EXPORT),
+    (&["pov"], "a POV-Ray scene", EXPORT),
+    (&["xml"], "XML, as Mitsuba scenes are", EXPORT),
     (
         &["json", "yaml", "yml"],
         "JSON or YAML",
-        "a scene is a TOML file: keys = values, below headings such as [camera]",
+        "a scene is a TOML file: key = value lines below headings such as [camera]",
     ),
     (&["py"], "a program", "`python3 FILE` runs it; a scene is a TOML file"),
 ];

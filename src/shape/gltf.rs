@@ -104,7 +104,7 @@ pub(super) fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
         false => (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes), None),
     };
     let document: Document =
-        serde_json::from_slice(json).map_err(|error| format!("its JSON is not that of glTF: {error}"))?;
+        serde_json::from_slice(json).map_err(|error| format!("its JSON is not valid glTF: {error}"))?;
     if !document.asset.version.starts_with("2.") {
         return Err(format!("it is glTF {:?}, not 2.0", document.asset.version));
     }
@@ -142,10 +142,10 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if number(4) != Some(2) {
         return Err("it is not version 2 of a binary glTF".into());
     }
-    let json = chunk(12, b"JSON").ok_or("its first chunk is not whole, or not JSON")?;
+    let json = chunk(12, b"JSON").ok_or("its first chunk is incomplete, or not JSON")?;
     let after = 20 + json.len().next_multiple_of(4);
     match bytes.len() > after {
-        true => Ok((json, Some(chunk(after, b"BIN\0").ok_or("its second chunk is not whole, or not BIN")?))),
+        true => Ok((json, Some(chunk(after, b"BIN\0").ok_or("its second chunk is incomplete, or not BIN")?))),
         false => Ok((json, None)),
     }
 }
@@ -254,7 +254,9 @@ impl Document {
             own.coordinates = self.accessor(coordinates, store)?.floats()?.into_iter().map(flipped).collect();
         }
         if [own.normals.len(), own.coordinates.len()].iter().any(|&own| own != 0 && own != count) {
-            return Err(format!("a primitive has {count} places, but not as many normals or coordinates"));
+            return Err(format!(
+                "a primitive has {count} positions, but a different number of normals or texture coordinates"
+            ));
         }
         own.normals.resize(count, [0.0; 3]);
         own.coordinates.resize(count, [0.0; 2]);

@@ -87,7 +87,7 @@ impl Store {
                     Some(data) => {
                         let text = data.split_once(";base64,").map(|(_, text)| text);
                         text.and_then(|text| BASE_64.decode(text).ok())
-                            .ok_or_else(|| format!("buffer {number} is not text in base 64"))?
+                            .ok_or_else(|| format!("buffer {number} is not base64 text"))?
                     }
                     None => {
                         let path = folder.join(unescaped(uri));
@@ -190,7 +190,7 @@ impl<'a> Data<'a> {
         };
         if let Some(Sparse { count, indices, values }) = sparse {
             let index = whole_number(indices.component_type)
-                .ok_or_else(|| format!("accessor {} has no whole indices", self.number))?;
+                .ok_or_else(|| format!("accessor {} has no integer indices", self.number))?;
             let places = self.view(indices.buffer_view, indices.byte_offset, *count, size(indices.component_type))?;
             for (place, value) in places.zip(self.view(values.buffer_view, values.byte_offset, *count, width)?) {
                 let place = index(place) as usize;

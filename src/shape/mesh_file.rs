@@ -14,7 +14,7 @@ use super::mesh_data::{MeshFile, check_finite, no_such_vertex};
 pub fn read(path: &Path, smooth: bool) -> Result<MeshFile, String> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     if is_packed(path) {
-        return Err("it is compressed by gzip: unpack it first".into());
+        return Err("it is compressed with gzip: unpack it first".into());
     }
     let file = match ending.as_str() {
         "ply" => super::ply::read(path, smooth)?,

@@ -120,7 +120,7 @@ const NONE: u32 = u32::MAX;
 const NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
 fn no_such(kind: usize) -> String {
-    format!("asks for a {} that the file does not have", NAMES[kind])
+    format!("refers to a {} that the file does not have", NAMES[kind])
 }
 
 /// What has been read from a file so far.

@@ -29,7 +29,7 @@ impl Body {
         // Otherwise the end of the first line would be searched for, however far away it is.
         let first = file.fill_buf().map_err(|error| error.to_string())?;
         if !first.starts_with(b"ply") {
-            return Err("a PLY file begins with a line `ply`, and this one does not".into());
+            return Err("a PLY file begins with a line `ply`, but this one does not".into());
         }
         let end = end_of_lines(first);
         let (mut bytes, mut lines, mut is_whole) = (Vec::new(), 0, false);

@@ -52,7 +52,8 @@ pub fn imitation(curve: &Curve) -> Option<String> {
         .max_by(|x, y| x.1.total_cmp(&y.1))?;
     (worst > TOLERATED_DEGREES).then(|| {
         format!(
-            "two terms miss {} by {worst:.2} degrees at {nm:.0} nm in a prism of {apex} degrees: index = \"{}\" is exact",
+            "two terms deviate from {} by {worst:.2} degrees at {nm:.0} nm in a prism of {apex} degrees: index = \
+             \"{}\" is exact",
             nearest.key, nearest.key
         )
     })

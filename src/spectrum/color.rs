@@ -86,7 +86,7 @@ pub fn matrix_of_file(interop_id: Option<&str>, primaries: Option<Primaries>) ->
         return Ok(space.to_rec709());
     }
     match (primaries, interop_id.filter(|id| *id != "unknown")) {
-        (Some(primaries), _) => primaries.to_rec709().ok_or_else(|| "its chromaticities mean no colors".into()),
+        (Some(primaries), _) => primaries.to_rec709().ok_or_else(|| "its chromaticities define no color space".into()),
         (None, Some("data")) => Err("it says that it holds data, not colors".into()),
         (None, Some(id)) => Err(format!("the color space {id:?} is not known")),
         (None, None) => Ok(IDENTITY),

@@ -139,5 +139,5 @@ fn a_dye_under_an_image_is_refused_where_a_texel_leaves_no_room_for_it() {
     };
     // The lightest dots reflect 0.7 of ultraviolet light.
     assert_eq!(refused(0.25), None);
-    assert!(refused(0.5).is_some_and(|told| told.contains("reflectance and absorption are")));
+    assert!(refused(0.5).is_some_and(|told| told.contains("reflectance and absorption add up to")));
 }

@@ -48,7 +48,7 @@ fn corners_far_outside_of_their_lists_are_refused() {
         ("9223372036854775807/1/1", "vertex"),
     ] {
         for refusal in refusals(&obj, file(corner).as_bytes()) {
-            assert_eq!(refusal, format!("case.obj: the face in line 6 asks for a {what} that the file does not have"));
+            assert_eq!(refusal, format!("case.obj: the face in line 6 refers to a {what} that the file does not have"));
         }
     }
     assert_eq!(read(&obj, file("-1/-1/-1").as_bytes(), 1, "regression").outcome, Ok(()));
@@ -63,7 +63,7 @@ fn a_header_alone_gets_no_memory() {
     for refusal in refusals(&hdr, &bytes) {
         let length = bytes.len();
         let said = format!("its {length} bytes cannot hold 16384 x 8192 pixels");
-        assert_eq!(refusal, format!("case.hdr is no Radiance image ({said})"));
+        assert_eq!(refusal, format!("case.hdr is not a valid Radiance image ({said})"));
     }
     let exr = kind("exr");
     for whole in corpus::exr() {
@@ -75,7 +75,7 @@ fn a_header_alone_gets_no_memory() {
         for at in [at, second] {
             bytes[at..at + 16].copy_from_slice(&window(16383, 8191));
         }
-        assert!(refusals(&exr, &bytes)[0].starts_with("case.exr is no OpenEXR image"));
+        assert!(refusals(&exr, &bytes)[0].starts_with("case.exr is not a valid OpenEXR image"));
     }
 }
 
@@ -86,7 +86,7 @@ fn an_image_without_texels_is_refused() {
     for (from, to) in [("-Y 2", "-Y 0"), ("+X 6", "+X 0")] {
         let bytes = replaced(corpus::hdr().last().expect("a file"), from, to);
         for refusal in refusals(&kind("hdr"), &bytes) {
-            assert!(refusal.starts_with("case.hdr is no Radiance image ("), "{refusal}");
+            assert!(refusal.starts_with("case.hdr is not a valid Radiance image ("), "{refusal}");
         }
     }
 }

@@ -155,7 +155,7 @@ fn colors_of_any_space_are_brought_to_rec709() {
     assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
     let none = Chromaticities { green: Vec2(0.708, 0.292), ..rec2020 };
     Exr { chromaticities: Some(none), ..green }.write(&path);
-    let said = "its chromaticities mean no colors: it is shown as linear Rec.709\n";
+    let said = "its chromaticities define no color space: it is shown as linear Rec.709\n";
     assert_eq!(pixels(&folder, &[]), (vec![[0, 124, 0]], said.to_owned()));
 }
 

@@ -164,7 +164,7 @@ fn what_a_ply_cannot_say_with_its_faces_is_told() {
     assert_eq!(told.as_deref(), Some("its bytes do not fit a PLY file with this header"));
     for name in ["a.ply", "a.obj", "a.glb"] {
         let (_folder, path) = file(name, b"\x1f\x8b\x08\0\0\0\0\0");
-        assert_eq!(read_mesh(&path, false).err().as_deref(), Some("it is compressed by gzip: unpack it first"));
+        assert_eq!(read_mesh(&path, false).err().as_deref(), Some("it is compressed with gzip: unpack it first"));
     }
 }
 
@@ -248,10 +248,10 @@ fn broken_obj_files_are_refused_with_the_line() {
         ("f 1/", "f one/", "the face in line 6 is not made of whole numbers"),
         ("f 1/", "f /", "the face in line 6 is not made of whole numbers"),
         ("f 1/1/1", "f 1/1/1/1", "the face in line 6 is not made of whole numbers"),
-        ("f 1/", "f 0/", "the face in line 6 asks for a vertex that the file does not have"),
-        ("f 1/", "f 4/", "the face in line 6 asks for a vertex that the file does not have"),
-        ("f 1/1/", "f 1/2/", "the face in line 6 asks for a texture coordinate that the file does not have"),
-        ("f 1/1/1", "f 1/1/-2", "the face in line 6 asks for a normal that the file does not have"),
+        ("f 1/", "f 0/", "the face in line 6 refers to a vertex that the file does not have"),
+        ("f 1/", "f 4/", "the face in line 6 refers to a vertex that the file does not have"),
+        ("f 1/1/", "f 1/2/", "the face in line 6 refers to a texture coordinate that the file does not have"),
+        ("f 1/1/1", "f 1/1/-2", "the face in line 6 refers to a normal that the file does not have"),
     ] {
         let (_folder, path) = file("a.obj", good.replace(old, new));
         assert_eq!(read_mesh(&path, true).err().unwrap_or_default(), message, "{new}");
@@ -326,9 +326,9 @@ fn materials_of_an_obj_are_ignored_with_a_warning() {
     let with_library = format!("mtllib absent.mtl\n{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
     assert_eq!(read("a.obj", with_library.as_bytes()), (triangles(true), true));
     let said = warnings("a.obj", with_library.as_bytes(), "mirror = {}");
-    assert_eq!(said, ["pyramid: the materials of a.obj are ignored; the scene gives them"]);
+    assert_eq!(said, ["pyramid: the materials of a.obj are ignored; the scene defines them"]);
     let said = warnings("a.obj", (with_library.clone() + "usemtl blue\nusemtl red\n").as_bytes(), "mirror = {}");
-    let why = "the scene gives it one: save parts that look different as files of their own";
+    let why = "the scene gives it one: save parts that look different as separate files";
     assert_eq!(said, [format!("pyramid: the 2 materials of a.obj are ignored; {why}")]);
     let without_library = format!("{body}usemtl red\nf 3 4 5\nf 4 1 5\n");
     assert_eq!(read("a.obj", without_library.as_bytes()).0, triangles(true));
@@ -358,12 +358,12 @@ fn a_dielectric_on_an_open_mesh_is_warned_of_and_on_a_closed_one_is_not() {
     assert_eq!(said, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);
     assert!(warnings("a.obj", open.as_bytes(), "mirror = {}").is_empty());
     let turned = closed.replace("f 1 2 5\n", "f 2 1 5\n");
-    let reverse = "reverse the order of the corners, or recalculate the normals where it was made";
+    let reverse = "reverse the order of the corners, or recalculate the normals in the program that made it";
     let said = warnings("a.obj", turned.as_bytes(), glass);
-    assert_eq!(said, [format!("pyramid: 1 triangle of this closed mesh is turned over: {reverse}")]);
+    assert_eq!(said, [format!("pyramid: 1 triangle of this closed mesh is flipped: {reverse}")]);
     let more = turned.replace("f 1 4 3 2\n", "f 1 2 3 4\n");
     let said = warnings("a.obj", more.as_bytes(), glass);
-    assert_eq!(said, [format!("pyramid: 3 triangles of this closed mesh are turned over: {reverse}")]);
+    assert_eq!(said, [format!("pyramid: 3 triangles of this closed mesh are flipped: {reverse}")]);
     let torn = turned.replace("f 3 4 5\n", "");
     let said = warnings("a.obj", torn.as_bytes(), glass);
     assert_eq!(said, ["pyramid: a dielectric on an open mesh: light may enter it and never leave"]);

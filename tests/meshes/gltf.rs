@@ -242,7 +242,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
         (r#""mesh":0"#, r#""mesh":0,"scale":[1e308,1e308,1e308],"translation":[1e308,0,0]"#, ""),
         (r#""scene":0"#, r#""scene":3"#, "there is no scene 3"),
         (r#""version":"2.0""#, r#""version":"1.0""#, "it is glTF \"1.0\", not 2.0"),
-        ("base64,", "base64,?", "buffer 0 is not text in base 64"),
+        ("base64,", "base64,?", "buffer 0 is not base64 text"),
         (
             r#""scene":0"#,
             r#""scene":0,"extensionsRequired":["KHR_materials_ior","KHR_draco_mesh_compression"]"#,
@@ -258,7 +258,7 @@ fn broken_gltf_files_are_refused_with_the_reason() {
         }
     }
     for (text, start) in
-        [("", "its JSON is not that of glTF: EOF"), ("[1]", "it is glTF"), ("glTF", "it is not version 2")]
+        [("", "its JSON is not valid glTF: EOF"), ("[1]", "it is glTF"), ("glTF", "it is not version 2")]
     {
         let (_folder, path) = file("a.glb", text);
         let message = read_mesh(&path, false).err().expect("no glTF");

@@ -132,5 +132,5 @@ fn instances_that_touch_are_refused_by_their_names() {
         + &object("ball.obj", "glass", "{ scale = 0.5 }").replace("[[object]]", "[[object]]\nname = \"bead\"")
         + "instances = [[], [{ translate = [3, 0, 0] }], [{ translate = [3, 0, 0] }]]\n";
     let error = refusal_in(folder().path(), &text).message;
-    assert!(error.contains("bead [2] and bead [3] lies in one place"), "{error}");
+    assert!(error.contains("bead [2] and bead [3] partly coincide"), "{error}");
 }

@@ -51,7 +51,7 @@ fn h11_a_scene_with_nothing_in_it_is_planned_and_black() {
     }
     for radiance in ["0", "{ rgb = [0, 0, 0] }", "{ samples = [[400, 0], [700, 0]] }", "{ lines = [[589, 0]] }"] {
         let scene = scene(&(view(4, 4, 10.0) + &lamp.replace("radiance = 0", &format!("radiance = {radiance}"))));
-        let is_told = scene.warnings.iter().any(|warning| warning.starts_with("nothing shines"));
+        let is_told = scene.warnings.iter().any(|warning| warning.starts_with("nothing emits light"));
         assert!(scene.lights.is_empty() && is_told, "{radiance}: {:?}", scene.warnings);
     }
 }

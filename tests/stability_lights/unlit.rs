@@ -144,7 +144,7 @@ fn m6_a_clear_mesh_that_is_inside_out_is_told_of_and_a_bubble_is_not() {
     let glass = |shapes: &[&str]| body("glass", "dielectric = { index = 1.5 }", shapes) + &environment(1.0);
     let larger = "sphere = { center = [2.2, 2.7, 0.2], radius = 2.5 }";
     assert_warns(&stage(&glass(&[&tetrahedron(true)])), &[]);
-    assert_warns(&stage(&glass(&[&tetrahedron(false)])), &["look inward"]);
+    assert_warns(&stage(&glass(&[&tetrahedron(false)])), &["point inward"]);
     assert_warns(&stage(&glass(&[&tetrahedron(false), larger])), &[]);
     let many =
         format!("{}\ninstances = [[{{ translate = [0, 0, 0] }}], [{{ translate = [0, 3, 0] }}]]", tetrahedron(false));
@@ -162,7 +162,7 @@ fn flat_glass_that_nothing_closes_is_told_of() {
     let front = quad("[3, 2, 0.5]", "[0.5, 0, 0]", "[0, 0.5, 0]");
     assert_warns(
         &stage(&glass(&[&front])),
-        &["light that enters this dielectric by a flat surface may never leave it"],
+        &["light that enters this dielectric through a flat surface may never leave it"],
     );
     let pond = quad("[3, 0.1, 0]", "[0, 0, 0.5]", "[0.5, 0, 0]");
     assert_warns(&stage(&glass(&[&pond])), &[]);
@@ -187,10 +187,10 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
     let flat = "quad = { center = [0, 5, 0], u = [3, 0, 0], v = [0, 0, 3] }";
     for shape in [flat, "plane = { point = [0, 5, 0], normal = [0, -1, 0] }", "cube = { center = [0, 6, 0], size = 2 }"]
     {
-        let told = "light 1 (point) lies exactly in the surface of object 3";
+        let told = "light 1 (point) lies exactly on the surface of object 3";
         assert_warns(&stage(&(ceiling(shape) + &point(5.0))), &[told]);
         assert_warns(&stage(&(ceiling(shape) + &point(5.0 - 1e-9))), &[]);
-        assert_warns(&stage(&(ceiling(shape) + spot)), &["light 1 (spot) lies exactly in the surface of object 3"]);
+        assert_warns(&stage(&(ceiling(shape) + spot)), &["light 1 (spot) lies exactly on the surface of object 3"]);
     }
     let lamp =
         |y: f64| body("lamp", LAMP, &[&format!("quad = {{ center = [0, {y:?}, 0], u = [1, 0, 0], v = [0, 0, 1] }}")]);
@@ -199,7 +199,7 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
             + &body("white", "diffuse = { reflectance = 0.7 }", &[GROUND, BALL])
             + &both;
         let warnings = scene(&text).warnings;
-        let told = "which shines, lies exactly in object";
+        let told = "which emits light, lies exactly on object";
         assert!(warnings.iter().any(|warning| warning.contains(told)), "{warnings:?}");
     }
     assert_warns(&stage(&(ceiling(flat) + &lamp(4.999))), &[]);
@@ -207,7 +207,7 @@ fn l9_lights_and_cameras_that_stand_exactly_in_a_surface_are_told_of() {
         let size = 2.0 * y;
         body("water", "dielectric = { index = 1.33 }", &[&format!("cube = {{ center = [0, 0, 8], size = {size:?} }}")])
     };
-    let told = "the camera lies exactly in the surface of object 3, neither inside nor outside";
+    let told = "the camera lies exactly on the surface of object 3, neither inside nor outside";
     assert_warns(&stage(&(water(2.0) + &environment(1.0))), &[told]);
     assert_warns(&stage(&(water(2.0 + 1e-9) + &environment(1.0))), &[]);
 }

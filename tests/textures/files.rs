@@ -102,7 +102,7 @@ fn what_the_color_profile_of_a_jpeg_says_is_told() {
         encoder.add_icc_profile(&profile).unwrap();
         encoder.encode(&[9, 8, 7], 1, 1, jpeg_encoder::ColorType::Rgb).unwrap();
         let told = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
-        let said = |told: &String| told.contains("a color profile (ICC) of other primaries, which is ignored");
+        let said = |told: &String| told.contains("a color profile (ICC) with other primaries, which is ignored");
         assert!(told.len() == usize::from(is_told) && told.iter().all(said), "{} bytes: {told:?}", profile.len());
     }
 }
@@ -144,7 +144,10 @@ fn what_a_png_says_of_colors_that_are_not_srgb_is_told() {
         (|info| info.source_gamma = Some(png::ScaledFloat::new(0.45455)), None),
         (|info| info.srgb = Some(png::SrgbRenderingIntent::Perceptual), None),
         (|_| (), Some("other primaries (cHRM)")),
-        (|info| info.icc_profile = Some(profile(DISPLAY_P3).into()), Some("a color profile (ICC) of other primaries")),
+        (
+            |info| info.icc_profile = Some(profile(DISPLAY_P3).into()),
+            Some("a color profile (ICC) with other primaries"),
+        ),
         (|info| info.icc_profile = Some(profile(SRGB).into()), None),
     ];
     for (number, (mark, expected)) in marks.into_iter().enumerate() {
@@ -241,7 +244,7 @@ fn impossible_thicknesses_are_refused_with_their_place() {
         ] {
             let found = refusal_of(folder.path(), &material);
             assert_eq!(found.message, format!("{name}: pixel (2, 1) is [{told}, {told}, {told}]"), "{material}");
-            let save = if bad < 0.0 { ": save the image with 0 for all that lies below" } else { "" };
+            let save = if bad < 0.0 { ": save the image with its negative values set to 0" } else { "" };
             let help = format!("thicknesses are finite and not negative{save}");
             assert_eq!(found.help.as_deref(), Some(help.as_str()), "{material}");
         }
@@ -261,7 +264,7 @@ fn impossible_texels_are_refused_with_their_place() {
     let refused = |reflectance| refusal(folder.path(), reflectance);
     assert_eq!(refused("{ image = \"hole.exr\" }"), "hole.exr: pixel (2, 1) is [0.5, NaN, 0.1]");
     assert_eq!(refused("{ image = \"dark.exr\", channel = \"green\" }"), "dark.exr: pixel (2, 1) is [-0.25]");
-    let more = "and no surface gives back more than 1";
+    let more = "and no surface returns more than 1";
     assert_eq!(refused("{ image = \"bright.exr\" }"), format!("bright.exr: pixel (2, 1) is 1.5, {more}"));
     let scaled = refused("{ image = \"bright.exr\", scale = 0.7 }");
     assert_eq!(scaled, format!("bright.exr: pixel (2, 1) is 1.5 times its scale of 0.7, {more}"));
@@ -281,7 +284,7 @@ fn impossible_texels_are_refused_with_their_place() {
     huge[29..33].copy_from_slice(&sum.to_be_bytes());
     std::fs::write(folder.path().join("huge.png"), huge).unwrap();
     let told = refused("{ image = \"huge.png\" }");
-    assert_eq!(told, "huge.png is not read: its 65536 x 65536 pixels are more than 134217728");
+    assert_eq!(told, "cannot read huge.png: its 65536 x 65536 pixels are more than 134217728");
 }
 
 #[test]
@@ -294,15 +297,15 @@ fn an_image_of_another_kind_than_its_name_says_is_told() {
     let png = std::fs::read(folder.join("png")).unwrap();
     let joint = jpeg([8, 8], 75, false, &[100; 64]);
     for (name, bytes, told, help) in [
-        ("a.b.jpg", &png[..], "JPEG image: it is a PNG image", "call it a.b.png"),
-        ("a.png", &joint, "PNG image: it is a JPEG image", "call it a.jpg"),
-        ("a.hdr", &open_exr, "Radiance image: it is an OpenEXR image", "call it a.exr"),
-        ("a.exr", b"#?RADIANCE\n", "OpenEXR image: it is a Radiance image", "call it a.hdr"),
-        ("a.jpeg", b"II*\0", "JPEG image: it is a TIFF image", "save it as JPEG"),
+        ("a.b.jpg", &png[..], "JPEG format: it is a PNG image", "rename it to a.b.png"),
+        ("a.png", &joint, "PNG format: it is a JPEG image", "rename it to a.jpg"),
+        ("a.hdr", &open_exr, "Radiance format: it is an OpenEXR image", "rename it to a.exr"),
+        ("a.exr", b"#?RADIANCE\n", "OpenEXR format: it is a Radiance image", "rename it to a.hdr"),
+        ("a.jpeg", b"II*\0", "JPEG format: it is a TIFF image", "save it as JPEG"),
     ] {
         std::fs::write(folder.join(name), bytes).unwrap();
         let found = refusal_of(folder, &format!("diffuse = {{ reflectance = {{ image = \"{name}\" }} }}"));
-        assert_eq!(found.message, format!("{name} is no {told}"));
+        assert_eq!(found.message, format!("{name} is not in {told}"));
         assert_eq!(found.help.as_deref(), Some(help));
     }
     write_png(folder, "a.png", 1, L8, &[7]);
@@ -334,7 +337,7 @@ fn a_jpeg_that_ends_too_early_is_refused() {
             let ends = ends.map(|share| (share * bytes.len() as f64) as usize);
             for end in [ends[0], ends[1], bytes.len() - 1] {
                 write(&bytes[..end]);
-                assert_eq!(refusal(folder.path(), image), "a.jpg is no JPEG image (it ends too early)");
+                assert_eq!(refusal(folder.path(), image), "a.jpg is not a valid JPEG image (it ends too early)");
             }
         }
     }

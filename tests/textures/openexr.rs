@@ -77,8 +77,8 @@ fn compressions_that_are_not_known_are_told() {
         bytes[at + attribute.len()] = compression;
         std::fs::write(folder.join("a.exr"), &bytes).unwrap();
         let found = refusal_of(folder, "diffuse = { reflectance = { image = \"a.exr\" } }");
-        assert_eq!(found.message, "a.exr is not read: Abbe does not know its compression", "{compression}");
-        assert_eq!(found.help.as_deref(), Some("save it by ZIP"));
+        assert_eq!(found.message, "cannot read a.exr: Abbe does not support its compression", "{compression}");
+        assert_eq!(found.help.as_deref(), Some("save it with ZIP compression"));
     }
 }
 
@@ -98,7 +98,7 @@ fn channels_that_are_no_image_are_told() {
         assert_eq!(found.message, format!("a.exr has no channels R, G and B: it has the channels {told}"));
         let help = match names.contains(&"RY") {
             true => "save it as red, green and blue",
-            false => "save one of them alone, and it is a gray",
+            false => "save one of them alone to use it as a gray",
         };
         assert_eq!(found.help.as_deref(), Some(help));
     }
@@ -107,7 +107,7 @@ fn channels_that_are_no_image_are_told() {
     let bent = "[[object]]\nshape.sphere = { center = [3, 0, 0], radius = 1 }\nmaterial = \"a\"\n\
                 normal_map = { image = \"a.exr\" }";
     let found = refusal_of(folder, &format!("diffuse = {{ reflectance = 1 }}\n{bent}"));
-    assert_eq!(found.message, "a.exr is gray, and a normal map has red, green and blue");
+    assert_eq!(found.message, "a.exr is gray, but a normal map has red, green and blue");
 }
 
 /// The data window lies in the display window wherever a crop, an overscan or another program put it.
@@ -216,7 +216,7 @@ fn colors_outside_of_rec709_are_told() {
         warnings.into_iter().map(behind_its_place).collect()
     };
     let told = |others: &str| {
-        vec![format!("a.exr: pixel (0, 0) lies outside of Rec.709{others}: what is negative there counts as 0")]
+        vec![format!("a.exr: pixel (0, 0) lies outside Rec.709{others}: negative values there count as 0")]
     };
     write_colors(folder, ACESCG, [[0.0, 0.5, 0.0], [0.5; 3]]);
     assert_eq!(warnings(), told(""));
@@ -228,13 +228,13 @@ fn colors_outside_of_rec709_are_told() {
     write_colors(folder, ACESCG, [green; 2]);
     assert_eq!(warnings(), Vec::<String>::new());
     write_colors(folder, [[0.2, 0.2], [0.3, 0.3], [0.4, 0.4], [0.3, 0.3]], [[0.5; 3]; 2]);
-    let none = "a.exr: its chromaticities mean no colors: it is read as linear Rec.709";
+    let none = "a.exr: its chromaticities define no color space: it is read as linear Rec.709";
     assert_eq!(warnings(), [none]);
     // An image of the sky warns as well.
     write_colors(folder, ACESCG, [[0.0, 9.0, 0.0], [0.5; 3]]);
     let text = format!("{}[[light]]\nenvironment.radiance.image = \"a.exr\"\n", view([9.0; 3], [0.0; 3], 30.0, 4));
     let sky = scene_in(folder, &text).warnings;
-    assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside of Rec.709")), "{sky:?}");
+    assert!(sky.iter().any(|told| told.contains("a.exr: pixel (0, 0) lies outside Rec.709")), "{sky:?}");
 }
 
 /// Lossy compression leaves numbers below 0 where the image is black.
@@ -263,7 +263,7 @@ fn noise_below_0_is_black_and_all_else_there_is_refused() {
     // The limit is the rounding of halves at the mean, which is 0.0348.
     write(Compression::ZIP16, false, -0.034 / 2048.0);
     assert_eq!(darkest(), 0.0);
-    let light = "light is finite and not negative: save the image with 0 for all that lies below";
+    let light = "light is finite and not negative: save the image with its negative values set to 0";
     for (compression, half, dark) in [
         (Compression::ZIP16, false, -0.036 / 2048.0),
         (Compression::PIZ, true, -0.5),

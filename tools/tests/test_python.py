@@ -498,7 +498,7 @@ def test_masked_arrays_are_refused_and_long_doubles_taken():
 
 def test_a_key_that_an_included_file_gives_as_well_is_told_without_a_file_that_is_not_there(tmp_path):
     (tmp_path / "more.toml").write_text("film.width = 3\n")
-    with pytest.raises(abbe.SceneError, match="it stands in the scene itself as well: keep one of them"):
+    with pytest.raises(abbe.SceneError, match="it is also given in the scene itself: keep one of them"):
         abbe.Scene(SCENE | {"include": ["more.toml"]}, folder=tmp_path)
 
 
@@ -755,9 +755,9 @@ def test_views_and_other_orders_of_arrays_are_the_same():
         ),
         ({"faces": np.array([[0, 1, -2]])}, "faces[0][2]: an entry of `faces` is a whole number of 0 or more, not -2"),
         ({"faces": np.array([[0.0, 1.0, 2.0]])}, "faces[0][0]: an entry of `faces` is a whole number"),
-        ({"faces": np.array([[0, 1]])}, "faces: `faces` has rows of 3 whole numbers or more"),
+        ({"faces": np.array([[0, 1]])}, "faces: each row of `faces` has 3 or more whole numbers"),
         ({"normals": np.zeros((528, 3))}, "normals: row 0: a direction needs a length above 0"),
-        ({"uv": np.zeros((3, 2))}, "uv: 528 points have 528 entries of `uv`, not 3"),
+        ({"uv": np.zeros((3, 2))}, "uv: 528 points need 528 entries of `uv`, not 3"),
         ({"points": np.zeros(9)}, "points[0]"),
         ({"points": np.zeros((0, 3))}, "mesh"),
     ],

@@ -15,7 +15,7 @@ pub(super) use probe::{met_from_outside, ray_into};
 /// Adds warnings about what is most likely not intended.
 pub(super) fn check(scene: &mut Scene<Curve>) {
     let dark = match scene.lights.iter().all(|light| light.emission().is_dark()) {
-        true => vec!["nothing shines, so the image will be black".into()],
+        true => vec!["nothing emits light, so the image will be black".into()],
         false => unlit::unlit(scene),
     };
     scene.is_dark_told = !dark.is_empty();
@@ -33,7 +33,10 @@ fn black_catchers(scene: &Scene<Curve>) -> Vec<String> {
     let catchers =
         scene.objects.iter().filter(|object| object.visibility == Visibility::ShadowCatcher).filter(is_black);
     let told = |object: &Object| {
-        format!("{} is black and catches no shadow: give it the reflectance of what it stands for", object.name)
+        format!(
+            "{} is black and catches no shadow: give it the reflectance of the surface that it stands in for",
+            object.name
+        )
     };
     catchers.map(told).collect()
 }

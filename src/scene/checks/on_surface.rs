@@ -30,13 +30,13 @@ pub(super) fn on_surface(scene: &Scene<Curve>) -> Vec<String> {
     let size = around.min.abs().max(around.max.abs()).max_element();
     let camera = surface_at(scene, camera, size).filter(|&object| scene.is_clear(object)).map(|object| {
         let body = &scene.objects[object as usize].name;
-        format!("the camera lies exactly in the surface of {body}, neither inside nor outside: move it a little")
+        format!("the camera lies exactly on the surface of {body}, neither inside nor outside: move it a little")
     });
     let lights = places.into_iter().filter_map(|(id, place)| {
         let object = &scene.objects[surface_at(scene, place, size)? as usize].name;
         let name = name(scene, id);
         Some(format!(
-            "{name} lies exactly in the surface of {object}, where rounding decides what it lights: move it a little"
+            "{name} lies exactly on the surface of {object}, where rounding decides what it lights: move it a little"
         ))
     });
     camera.into_iter().chain(lights).collect()

@@ -23,8 +23,8 @@ pub(super) fn open_glass(scene: &Scene<Curve>) -> Option<String> {
     let mut open = flat.take(MOST).map(|(_, object)| object).filter(|object| is_open(scene, &object.shape));
     let first = open.next()?;
     Some(format!(
-        "{}: light that enters this dielectric by a flat surface may never leave it, as nothing closes the body \
-         behind; a pane is thin = {{ index = 1.5 }}, or a cube",
+        "{}: light that enters this dielectric through a flat surface may never leave it, as nothing closes the body \
+         behind it; for a pane use thin = {{ index = 1.5 }}, or a cube",
         and_more(&first.name, open.count())
     ))
 }

@@ -28,8 +28,8 @@ pub(super) fn out_of_focus(scene: &Scene<Curve>) -> Option<String> {
     is_blurred.then(|| {
         let middle = shown(format!("{middle:.2e}").parse().unwrap_or(middle));
         format!(
-            "nearly nothing that the camera sees is in focus: `radius` and `focus_distance` of its lens are in scene units, \
-             in which half of what it sees is nearer than {middle}"
+            "almost nothing that the camera sees is in focus: `radius` and `focus_distance` of its lens are in scene \
+             units, and half of what it sees is nearer than {middle}"
         )
     })
 }

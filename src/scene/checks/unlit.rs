@@ -62,7 +62,7 @@ fn empty_view(view: &View) -> Option<String> {
     let is_empty =
         !lights.is_empty() && !shows_sky && view.first_met().all(|met| met.is_none()) && !view.may_miss_an_object();
     is_empty
-        .then(|| "the camera sees no object: none of 576 rays meets one; `look_at` is a point that it looks at".into())
+        .then(|| "the camera sees no object: none of 576 rays hits one; `look_at` is the point that it looks at".into())
 }
 
 /// Returns the name of the object that the camera is inside of, if it sees nothing but the inside of one object. That
@@ -232,21 +232,24 @@ fn past_everything(light: &Light<Curve>) -> &'static str {
             "shines away from every object: turn its front around (swap u and v of a quad, reverse a normal), or write sides = \"both\""
         }
         Light::Spot(_) => "shines past every object: aim it at one, or widen its cone_angle",
-        _ => "shines past every object: move it to where its light meets one",
+        _ => "shines past every object: move it to where its light hits one",
     }
 }
 
 fn unseen(light: &Light<Curve>) -> &'static str {
     match light {
         Light::Area(area) if area.sides == Sides::Front => {
-            "lights nothing that the camera sees: turn its front around, write sides = \"both\", or move it from behind what hides it"
+            "lights nothing that the camera sees: turn its front around, write sides = \"both\", or move it out from \
+             behind what hides it"
         }
         Light::Sun(_) => {
-            "lights nothing that the camera sees: `toward` points from the scene to the sun, and nothing opaque may stand between"
+            "lights nothing that the camera sees: `toward` points from the scene to the sun, and nothing opaque may \
+             block it"
         }
         Light::Environment(_) => {
-            "lights nothing that the camera sees: opaque surfaces shut it out on all sides, or all but a hole that no ray found; open them, or leave it out"
+            "lights nothing that the camera sees: opaque surfaces block it on all sides, except perhaps for a hole \
+             that no ray found; open them, or leave it out"
         }
-        _ => "lights nothing that the camera sees: turn it, or move it from behind what hides it",
+        _ => "lights nothing that the camera sees: turn it, or move it out from behind what hides it",
     }
 }

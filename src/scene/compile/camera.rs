@@ -52,7 +52,7 @@ pub(super) fn camera(context: &mut Context, value: Value, film: Option<&FilmSett
         let (view, parallel) = Camera::new(position, target.it, up.map_or(DVec3::Y, |up| up.it), projection, size);
         if parallel {
             let place = up.map_or(target.place, |up| up.place);
-            context.warn_at(place, "`up` is parallel to the viewing direction; another direction is taken");
+            context.warn_at(place, "`up` is parallel to the viewing direction; another direction is used");
         }
         if let Some(named) = named.filter(|_| projection == Projection::Equirectangular && size[0] != 2 * size[1]) {
             let [width, height] = size;
@@ -93,7 +93,7 @@ fn projection(context: &mut Context, camera: &mut Fields, kind: Option<Projectio
             let between = (Bound::Excluded(0.0), Bound::Excluded(180.0));
             let vertical_fov = value.within(between, "a field of view lies between 0 and 180 degrees", None)?;
             if let Some(radians) = narrow(vertical_fov) {
-                context.warn_at(value, format!("{vertical_fov} degrees see very little{radians}"));
+                context.warn_at(value, format!("a field of view of {vertical_fov} degrees is very narrow{radians}"));
             }
             Some(Projection::Perspective { vertical_fov })
         }
@@ -122,7 +122,7 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
             let help = "in millimeters: 36 for a full-frame camera, 24.9 for Super 35";
             value.within(
                 above_0_to(WIDEST_SENSOR),
-                &format!("a sensor is above 0 to {WIDEST_SENSOR:e} mm wide"),
+                &format!("a sensor width is above 0 and at most {WIDEST_SENSOR:e} mm"),
                 Some(help),
             )
         }
@@ -133,10 +133,11 @@ fn sensor_width(value: Value, kind: ProjectionKind) -> Option<f64> {
 const HEIGHT: &str = "give the height of the view in scene units: height = 2";
 
 fn shift(value: Value) -> Option<[f64; 2]> {
-    let shift: [f64; 2] = value.as_list("", "write [right, up] in heights of the image").numbers()?;
+    let shift: [f64; 2] = value.as_list("", "write [right, up] in image heights").numbers()?;
     match shift.iter().position(|part| !(-MAX_SHIFT..=MAX_SHIFT).contains(part)) {
         Some(axis) => {
-            let message = format!("a shift is -{MAX_SHIFT} to {MAX_SHIFT} heights of the image, not {}", shift[axis]);
+            let message =
+                format!("a shift lies between -{MAX_SHIFT} and {MAX_SHIFT} image heights, not {}", shift[axis]);
             value.entry(axis).refuse(message)
         }
         None => Some(shift),
@@ -152,11 +153,11 @@ fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
             value.within(0.0..=MAX_LENGTH, &format!("the radius of a lens is a length from 0 to {MAX_LENGTH:e}"), None)
         });
         let Some(focus) = lens.get("focus_distance") else {
-            let help = far.map(|far| format!("`look_at` is {} away, in scene units", shown(far)));
+            let help = far.map(|far| format!("`look_at` is {} scene units away", shown(far)));
             return lens.lack("focus_distance", help.as_deref());
         };
-        let help = "write inf to see sharply what is far away";
-        let what = format!("a focus lies at least {NEAREST_FOCUS:e} away");
+        let help = "write inf to focus at infinity";
+        let what = format!("a focus distance is at least {NEAREST_FOCUS:e}");
         let focus = focus.within(NEAREST_FOCUS..=f64::INFINITY, &what, Some(help));
         Some(Lens::new(radius?, focus?))
     })
@@ -167,7 +168,7 @@ fn lens(value: Value, far: Option<f64>) -> Option<Lens> {
 fn filter(value: Value) -> Option<PolarizingFilter> {
     Fields::read(value, |filter| {
         let axis = filter.need("axis", |value| {
-            let help = "in degrees: 0 is the image's right, 90 its top";
+            let help = "in degrees: 0 points to the right of the image, 90 to its top";
             value.within(-360.0..=360.0, "an axis lies between -360 and 360 degrees", Some(help))
         });
         let extinction = filter.or("extinction", 0.0, extinction);

@@ -34,8 +34,7 @@ fn layer_of<'d>(fields: &mut Fields<'d>) -> Option<CoatingLayer<Asked<'d>>> {
         }
         (None, Some(n)) if index.is_none() => (Asked::There(n), spectrum(fields, "k")),
         (Some(given), _) | (None, Some(given)) => {
-            return given
-                .refuse("a layer has an `index` and its `k`, or it is of metal: a `metal`, or its `n` and `k`");
+            return given.refuse("a layer has an `index` with an optional `k`, or a `metal`, or both `n` and `k`");
         }
     };
     Some(CoatingLayer { index, k, is_metal: metal.or(n).is_some(), thickness })
@@ -50,15 +49,15 @@ pub(super) fn thin<'d>(fields: &mut Fields<'d>) -> Option<Thin<Asked<'d>>> {
     if thickness.is_none()
         && let Some(k) = k.filter(|_| index.is_some() || n.is_none())
     {
-        let help = "a pane without one absorbs by its `transmittance`";
-        return k.refuse_key("`k` goes with `thickness_nm`", Some(help.into()));
+        let help = "a pane without a thickness absorbs through its `transmittance`";
+        return k.refuse_key("`k` needs `thickness_nm`", Some(help.into()));
     }
     if thickness.or(metal).or(n).is_none() {
         let transmittance = spectrum_or(fields, "transmittance", 1.0);
         return Some(Thin::Pane { index: spectrum(fields, "index"), transmittance });
     }
     if let Some(transmittance) = transmittance {
-        let help = "a film absorbs by its extinction coefficient: write `k`";
+        let help = "a film absorbs through its extinction coefficient: write `k`";
         return transmittance
             .refuse_key("a film has a `thickness_nm` or a `transmittance`, not both", Some(help.into()));
     }

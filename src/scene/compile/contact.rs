@@ -21,18 +21,21 @@ pub(super) fn contacts(context: &mut Context, placed: &Placed) {
         let [body, other] = [first, second].map(|number| &placed.objects[number]);
         let (name, other_name) = (&body.name, &other.name);
         if placed.is_clear(body) && placed.is_clear(other) {
-            let message = format!("a part of the surfaces of {name} and {other_name} lies in one place");
-            let help = "let one reach a little into the other: there the one of higher `priority` is; or leave a gap";
+            let message = format!("the surfaces of {name} and {other_name} partly coincide");
+            let help = "let one reach a little into the other, where the higher `priority` decides, or leave a gap";
             placed.shapes[first.max(second)].advise::<()>(message, help);
             continue;
         }
         context.warn(match is_flat_lamp(placed, body) {
             true => {
-                format!("a part of {name}, which shines, lies exactly in {other_name}, which may hide it: move it a little")
+                format!(
+                    "a part of {name}, which emits light, lies exactly on {other_name}, which may hide it: move \
+                     it a little"
+                )
             }
             false => format!(
-                "a part of the surface of {name} lies exactly in {other_name}, where light may pass by it: move it a little, \
-                 apart or into the other"
+                "a part of the surface of {name} lies exactly on {other_name}, where light may miss it: move it a \
+                 little, apart from the other or into it"
             ),
         });
     }

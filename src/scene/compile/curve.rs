@@ -71,10 +71,12 @@ fn unfit<T>(text: &CurveText, quantity: Quantity) -> Option<T> {
 /// Returns why a quantity cannot vary over a surface.
 fn even(quantity: Quantity) -> &'static str {
     match quantity {
-        Quantity::Emission => "only a surface can show it: give an object an `emissive` material",
-        Quantity::Index | Quantity::Absorption => "it belongs to the whole body, not to places on its surface",
-        Quantity::Excitation | Quantity::Fluorescence => "a dye is the same all over: `mix` it with what has none",
-        _ => "a metal is the same all over: give its parts materials of their own",
+        Quantity::Emission => "only a surface can show a pattern: give an object an `emissive` material",
+        Quantity::Index | Quantity::Absorption => "it applies to the whole body, not to points on its surface",
+        Quantity::Excitation | Quantity::Fluorescence => {
+            "a dye is uniform: to vary it, `mix` its material with one that has none"
+        }
+        _ => "a metal is uniform: use separate materials for parts that differ",
     }
 }
 
@@ -85,7 +87,8 @@ fn forms(quantity: Quantity) -> &'static str {
         Quantity::Index => "write a number, a glass such as \"N-BK7\" or { samples = [[nm, n], ..] }",
         Quantity::MetalIndex | Quantity::MetalExtinction => "write a number or { samples = [[nm, value], ..] }",
         Quantity::Thickness => {
-            "write a number of nm, or an image of grays and the nm of its white: { image = \"thickness.png\", scale = 600 }"
+            "write a number in nm, or a grayscale image and the nm that its white stands for: { image = \
+             \"thickness.png\", scale = 600 }"
         }
         Quantity::Excitation | Quantity::Fluorescence => {
             "write { samples = [[nm, value], ..] } or { file = \"dye.csv\" }"
@@ -182,21 +185,20 @@ fn samples_fit(samples: &[[f64; 2]], quantity: Quantity, scale: f64) -> Result<(
     }
     ascending(samples)?;
     if let ([[nm, power]], Quantity::Emission) = (samples, quantity) {
-        let refusal = CurveError::new("an emission of one sample is dark: it is 0 beyond its ends");
+        let refusal = CurveError::new("an emission with one sample gives no light: it is 0 outside its samples");
         return Err(refusal.help(format!("for one wavelength write {{ lines = [[{nm}, {power}]] }}")).at(0));
     }
     if let (Some([last, _]), Quantity::Emission) = (samples.last(), quantity)
         && *last <= START_NM
     {
-        let refusal = CurveError::new(format!("an emission that ends at {last} nm is dark: it is 0 beyond its ends"));
-        return Err(refusal
-            .help("light is visible from 360 nm on, and excites dyes from 300 nm on")
-            .at(samples.len() - 1));
+        let refusal =
+            CurveError::new(format!("an emission that ends at {last} nm gives no light: it is 0 outside its samples"));
+        return Err(refusal.help("light is visible from 360 nm, and excites dyes from 300 nm").at(samples.len() - 1));
     }
     let possible = |value: f64| possible(quantity, value * scale, &with_scale(scale));
     samples.iter().enumerate().try_for_each(|(entry, pair)| {
         possible(pair[1]).map_err(|refusal| match refusal.is_percent && scale == 1.0 {
-            true => refusal.help("in percent? Then add scale = 0.01").at(entry),
+            true => refusal.help("if these are in percent, add scale = 0.01").at(entry),
             false => refusal.at(entry),
         })
     })
@@ -213,7 +215,8 @@ fn ascending(samples: &[[f64; 2]]) -> Result<(), CurveError> {
     }
     if let Some(i) = samples.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
         let [before, after] = [samples[i][0], samples[i + 1][0]];
-        let refusal = CurveError::new(format!("wavelengths increase from sample to sample ({after} after {before})"));
+        let refusal =
+            CurveError::new(format!("wavelengths must increase from sample to sample ({after} after {before})"));
         let refusal = if after < before { refusal.help("sort them, the shortest first") } else { refusal };
         return Err(refusal.at(i + 1));
     }
@@ -273,7 +276,7 @@ fn cauchy(text: &CurveText, terms: [f64; 2]) -> Option<CurveKind> {
     match bends(text.scale.it, &kind) {
         Ok(()) => Some(kind),
         Err(refusal) if (500.0..100_000.0).contains(&terms[1]) => {
-            let help = format!("B in nm^2? It is in um^2: then write {}", shown(terms[1] * 1e-6));
+            let help = format!("B is in um^2: if this is in nm^2, write {}", shown(terms[1] * 1e-6));
             refusal.help(help).tell(place.entry(1))
         }
         Err(refusal) => refusal.help(CAUCHY).tell(place),
@@ -297,7 +300,9 @@ fn sellmeier(text: &CurveText, b: &Spanned<Vec<f64>>, c: &Spanned<Vec<f64>>) -> 
     let place = text.place;
     if b.it.len() != c.it.len() || b.it.is_empty() {
         let (b, c) = (b.it.len(), c.it.len());
-        return place.refuse(format!("a Sellmeier curve has as many b as c, here {b} and {c}"));
+        return place.refuse(format!(
+            "a Sellmeier curve needs equal numbers of b and c, at least one of each, not {b} and {c}"
+        ));
     }
     if let Some(pole) = c.it.iter().position(|&c| c > 0.0 && (0.36..=0.83).contains(&c.sqrt())) {
         let nm = c.it[pole].sqrt() * 1e3;
@@ -314,7 +319,7 @@ fn sellmeier(text: &CurveText, b: &Spanned<Vec<f64>>, c: &Spanned<Vec<f64>>) -> 
     match bends(text.scale.it, &kind) {
         Ok(()) => Some(kind),
         Err(refusal) if c.it.iter().all(|&c| c > 1e3) => {
-            refusal.help("c in nm^2? It is in um^2: divide it by 1e6").tell(c.place)
+            refusal.help("c is in um^2: if this is in nm^2, divide it by 1e6").tell(c.place)
         }
         Err(refusal) => refusal.help(SELLMEIER).tell(place),
     }
@@ -336,7 +341,7 @@ fn bends(scale: f64, kind: &CurveKind) -> Result<(), CurveError> {
 
 fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
     if lines.is_empty() {
-        return text.value.refuse("a light of lines has at least one [wavelength in nm, power]");
+        return text.value.refuse("`lines` holds at least one [wavelength in nm, power]");
     }
     match lines.iter().position(|[nm, _]| !(FIRST_NM..=LAST_NM).contains(nm)) {
         Some(entry) => {
@@ -345,7 +350,7 @@ fn visible_lines(text: &CurveText, lines: &[[f64; 2]]) -> Option<()> {
                 true => ONE_OF_EACH.into(),
                 false => unit_of_wavelength(nm, FIRST_NM..=LAST_NM).unwrap_or("leave it out: it cannot be seen".into()),
             };
-            let message = format!("a line lies within 360 to 830 nm, not at {}", shown(nm));
+            let message = format!("a line lies between 360 and 830 nm, not at {}", shown(nm));
             text.place.entry(entry).advise(message, help)
         }
         None => Some(()),
@@ -356,11 +361,14 @@ fn blackbody(kelvin: f64) -> Result<(), CurveError> {
     if (100.0..=1e9).contains(&kelvin) {
         return Ok(());
     }
-    let refusal = CurveError::new(format!("a blackbody has 100 to 1e9 kelvin, not {}", shown(kelvin)));
+    let refusal =
+        CurveError::new(format!("the temperature of a blackbody is 100 to 1e9 kelvin, not {}", shown(kelvin)));
     let units = [("kK", 1e3), ("MK", 1e6)].map(|(unit, factor)| (unit, kelvin * factor));
     Err(refusal.help(match units.into_iter().find(|(_, kelvin)| (1000.0..=40_000.0).contains(kelvin)) {
-        Some((unit, kelvin)) => format!("in {unit}? Temperatures are in kelvin: then write {}", shown(kelvin)),
-        None => "a candle has 1900, the sun 5772".into(),
+        Some((unit, kelvin)) => {
+            format!("temperatures are in kelvin: if this one is in {unit}, write {}", shown(kelvin))
+        }
+        None => "a candle is at about 1900, the sun at 5772".into(),
     }))
 }
 
@@ -385,13 +393,13 @@ fn named(context: &mut Context, text: &CurveText, name: &str, quantity: Quantity
 fn absorption(context: &mut Context, place: Value, name: &str) -> Option<CurveKind> {
     let Some(glass) = data::glass(name) else { return unknown_glass(name).tell(place) };
     if glass.extinction.is_empty() {
-        let message = format!("the catalog does not know the absorption of {}", glass.key);
+        let message = format!("the catalog has no absorption for {}", glass.key);
         let help = "`render catalog glass` lists the glasses that have it; or write { samples = [[nm, per unit], ..] }";
         return place.advise(message, help);
     }
     let Some(meters) = context.meters_per_unit else {
         let message =
-            format!("the absorption of {name} is known per meter, and the scene does not say how long its unit is");
+            format!("the absorption of {name} is known per meter, but the scene does not say how long its unit is");
         return place.advise(message, "for a scene in centimeters: [render] meters_per_unit = 0.01");
     };
     reach_of_absorption(&glass).into_iter().for_each(|advice| context.warn_at(place, advice));

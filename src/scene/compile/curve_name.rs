@@ -30,7 +30,7 @@ pub(super) fn in_quotes(text: &str) -> Option<String> {
     let has_unit = || text.split_once(' ').is_some_and(|(number, unit)| number.parse::<f64>().is_ok() && is_unit(unit));
     match share(text) {
         Some(share) => Some(format!("write {share}")),
-        None if has_unit() => Some("a number is written without quotes and unit".into()),
+        None if has_unit() => Some("write the number without quotes or unit".into()),
         None if ends_in(Path::new(text), TABLES) => Some(format!("write {{ file = {text:?} }}")),
         None => image_called(text),
     }
@@ -65,7 +65,7 @@ pub(super) fn unknown_illuminant(name: &str) -> CurveError {
             CurveError::new(format!("there is no illuminant named {name:?}")).help(format!("did you mean {light:?}?"))
         }
         None if name.to_lowercase().ends_with("sodium") => {
-            let help = "write { lines = [[589.0, 2], [589.6, 1]] } at low pressure; at high pressure it is \"HP1\"";
+            let help = "write { lines = [[589.0, 2], [589.6, 1]] } for low pressure, or \"HP1\" for high pressure";
             CurveError::new(format!("there is no illuminant named {name:?}")).help(help)
         }
         None => unknown(name, "illuminant", illuminants()),

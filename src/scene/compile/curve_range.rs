@@ -84,14 +84,15 @@ pub(super) fn possible(quantity: Quantity, value: f64, place: &str) -> Result<()
         _ => format!("{name} is at most {}, not {shown_value}{place}", shown(most)),
     });
     Err(match value {
-        2.0..=100.0 if is_share => {
-            CurveError { is_percent: true, ..refusal.help(format!("in percent? Then write {}", shown(value / 100.0))) }
-        }
+        2.0..=100.0 if is_share => CurveError {
+            is_percent: true,
+            ..refusal.help(format!("if this is in percent, write {}", shown(value / 100.0)))
+        },
         100.0..=255.0 if is_share => {
             refusal.help("a color from 0 to 255 is sRGB: its linear value is about (v / 255)^2.2")
         }
         0.55..=0.8 if quantity == Quantity::Index => {
-            refusal.help(format!("the index around it over its own? Then write {}", shown(1.0 / value)))
+            refusal.help(format!("if this is the index around it divided by its own, write {}", shown(1.0 / value)))
         }
         _ => refusal,
     })
@@ -113,14 +114,14 @@ pub(super) fn possible_thickness(nm: f64, place: &str) -> Result<(), CurveError>
     let refusal = CurveError::new(format!("{name} of {value} nm{place} is less than that of an atom"));
     let in_nm = nm * 1e9;
     let help = (1.0..=MAX_THICKNESS_NM).contains(&in_nm);
-    Err(if help { refusal.help(format!("in m? It is in nm: then write {}", shown(in_nm))) } else { refusal })
+    Err(if help { refusal.help(format!("it is in nm: if this is in m, write {}", shown(in_nm))) } else { refusal })
 }
 
 /// Returns a warning about a layer so thin that um were probably meant.
 pub(super) fn hardly_a_layer(nm: f64) -> Option<String> {
     let is_thin = (LEAST_THICKNESS_NM..ONE_NM).contains(&nm);
     is_thin.then(|| {
-        format!("{} nm are a few atoms, which show nothing; if um are meant, write {}", shown(nm), shown(nm * 1e3))
+        format!("a layer of {} nm is too thin to be seen; if um are meant, write {}", shown(nm), shown(nm * 1e3))
     })
 }
 

@@ -222,7 +222,7 @@ fn curve_table<'d>(value: Value<'d>, table: &mut Fields<'d>, quantity: Quantity)
     ];
     for (key, owner, has_it) in owners {
         if let Some(stray) = table.get(key).filter(|_| !has_it) {
-            return stray.refuse_key(format!("`{key}` goes with {owner}"), None);
+            return stray.refuse_key(format!("`{key}` applies only to {owner}"), None);
         }
     }
     if let (Some(scale), Some(luminance)) = (table.get("scale"), table.get("luminance")) {
@@ -244,7 +244,7 @@ fn one_or_two(value: Value) -> Option<[f64; 2]> {
 pub(super) fn is_repeat(Spanned { place: value, it: repeat }: Spanned<[f64; 2]>) -> Option<[f64; 2]> {
     match repeat.iter().find(|x| !(1.0 / MOST_REPEAT..=MOST_REPEAT).contains(*x)) {
         Some(wrong) => value.refuse(format!(
-            "`repeat` counts copies in a unit, {:e} to {MOST_REPEAT:e}, not {wrong}",
+            "`repeat` is the number of copies in a unit, {:e} to {MOST_REPEAT:e}, not {wrong}",
             1.0 / MOST_REPEAT
         )),
         None => Some(repeat),

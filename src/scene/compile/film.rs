@@ -38,10 +38,10 @@ pub(super) fn film(value: Value) -> Option<(FilmSettings, Format)> {
         let (width, height) = (width?, height?);
         let (pixels, most) = (u64::from(width) * u64::from(height.it), FilmSettings::MAX_PIXELS);
         if pixels > most {
-            let message = format!("{width} x {} pixels are {pixels}; at most {most} fit", height.it);
+            let message = format!("{width} x {} is {pixels} pixels; at most {most} fit", height.it);
             let [across, down] = [width, height.it].map(u64::from);
             let (wide, high) = ((most * across / down).isqrt(), (most * down / across).isqrt());
-            return height.place.advise(message, format!("in this shape, {wide} x {high} pixels fit"));
+            return height.place.advise(message, format!("at this aspect ratio, {wide} x {high} pixels fit"));
         }
         let (filter, color_space, height, overscan, crop) = (filter?, color_space?, height.it, overscan?, crop?);
         let film = FilmSettings {
@@ -123,7 +123,7 @@ fn mitchell(value: Value) -> Option<Filter> {
     })
 }
 
-const CUBICS: &str = "\"mitchell\" alone has b = 1/3 and c = 1/3; b = 0 and c = 0.5 are the spline of Catmull and Rom";
+const CUBICS: &str = "\"mitchell\" alone has b = 1/3 and c = 1/3; b = 0 and c = 0.5 give the Catmull-Rom spline";
 
 fn filter(value: Value) -> Option<Filter> {
     let named = Filter::PLAIN.map(|filter| (filter.name(), filter));

@@ -33,17 +33,16 @@ pub(super) fn conserves(diffuse: &Diffuse<Curve>, [absorption, emission]: [Value
     let Diffuse { reflectance, fluorescence: Some(dye) } = diffuse else { return Some(()) };
     let dye = dye.dye();
     if dye.quantum_yield > 0.0 && dye.power_per_nm() == 0.0 {
-        return emission.refuse("the dye shines nowhere between 300 and 830 nm");
+        return emission.refuse("the dye emits no light between 300 and 830 nm");
     }
     let shades = reflectance.shades().into_iter().chain(reflectance.lightest());
     let Some(excess) = shades.into_iter().find_map(|shade| dye.excess(&shade)) else { return Some(()) };
     let nm = excess.nm;
     if excess.taken > 1.0 {
-        let message = format!("reflectance and absorption are {} together at {nm} nm", shown(excess.taken));
+        let message = format!("reflectance and absorption add up to {} at {nm} nm", shown(excess.taken));
         return absorption
-            .advise(message, "they are shares of the same light: lower one of them until they make 1 together");
+            .advise(message, "they are shares of the same light: lower one of them until they add up to at most 1");
     }
-    let message = format!("of light of {nm} nm, more power would leave than arrives: {}", shown(excess.given));
-    absorption
-        .advise(message, "a dye shines at longer wavelengths than those that it absorbs: end `absorption` below them")
+    let message = format!("at {nm} nm, more power would leave than arrives: {} times as much", shown(excess.given));
+    absorption.advise(message, "a dye emits at longer wavelengths than it absorbs: end `absorption` below them")
 }

@@ -59,15 +59,15 @@ pub(super) fn format(film: &mut Fields) -> Option<Format> {
 /// Reads the luminance of red, green and blue of 1, if the scene's light is absolute.
 fn white_luminance(film: &mut Fields) -> Option<Option<f64>> {
     let is_absolute = film.or("radiometry", false, |value| value.word(&[("absolute", true), ("relative", false)]));
-    let help = "in cd/m2: the white of a screen has about 100";
-    let what = format!("a luminance of white is above 0 to {MOST_LUMINOUS:e}");
+    let help = "in cd/m2: the white of a screen is about 100";
+    let what = format!("a luminance of white is above 0 and at most {MOST_LUMINOUS:e}");
     let white =
         film.maybe("white_luminance", at(|value: Value| value.within(above_0_to(MOST_LUMINOUS), &what, Some(help))));
     match (is_absolute?, white?) {
         (true, white) => Some(Some(white.map_or(1.0, |white| white.it))),
         (false, None) => Some(None),
         (false, Some(Spanned { place, .. })) => place.refuse_key(
-            "a luminance of white goes with radiometry = \"absolute\"",
+            "a luminance of white needs radiometry = \"absolute\"",
             Some("add that, or leave it out".into()),
         ),
     }
@@ -98,7 +98,7 @@ fn spectral(value: Value) -> Option<Option<WavelengthBands>> {
         Some(bands) => Some(Some(bands)),
         None if from > to => value.refuse(format!("the last band, at {to} nm, lies before the first, at {from} nm")),
         None => {
-            let message = format!("a step of {step} nm makes more than the {most} bands that fit");
+            let message = format!("a step of {step} nm gives more than the maximum of {most} bands");
             value.tell(message, unit_of_wavelength(step, 1.0..=50.0))
         }
     }
@@ -108,8 +108,8 @@ fn compression(value: Value) -> Option<Compression> {
     match value.node().as_str() {
         Some(name @ ("b44" | "b44a")) => {
             let message =
-                format!("the compression {name} is not written: dark pixels lose their colors beside bright ones");
-            value.advise(message, "\"dwaa\" makes smaller files; \"piz\" and \"zip\" lose nothing")
+                format!("the compression {name} is not supported: dark pixels lose their colors next to bright ones");
+            value.advise(message, "\"dwaa\" makes smaller files; \"piz\" and \"zip\" are lossless")
         }
         _ => value.word(&Compression::NAMES),
     }
@@ -139,7 +139,8 @@ const OF_TELEVISION: [u32; 5] = [24, 30, 48, 60, 120];
 /// Reads a frame rate, as a number of frames and the seconds that they take.
 fn rate(value: Value) -> Option<[u32; 2]> {
     let help = Some("for instance: 24, or 23.976");
-    let rate = value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 to 1000", help)?;
+    let rate =
+        value.within(above_0_to(1000.0), "a rate is a number of frames per second, above 0 and at most 1000", help)?;
     let is_slowed = |whole: &u32| (rate - f64::from(*whole) / 1.001).abs() < 0.005;
     Some(match OF_TELEVISION.into_iter().find(is_slowed) {
         Some(whole) => [1000 * whole, 1001],
@@ -152,7 +153,7 @@ fn rate(value: Value) -> Option<[u32; 2]> {
 fn line(value: Value) -> Option<String> {
     let text = value.text()?;
     match text.contains('\0') {
-        true => value.refuse("text of a file's header has no character 0"),
+        true => value.refuse("text for a file's header cannot contain the character 0"),
         false => Some(text.to_owned()),
     }
 }

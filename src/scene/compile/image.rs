@@ -39,7 +39,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
     };
     let image = match (text.channel, text.encoding) {
         (Some(Channel::Alpha), Some(Spanned { place, it: Encoding::Srgb })) => {
-            place.advise("alpha is a share, which no kind of file encodes as sRGB", "leave `encoding` out")
+            place.advise("alpha is a share, which is never encoded as sRGB", "leave `encoding` out")
         }
         _ => image(context, &at_file, meaning, text.channel),
     };
@@ -49,8 +49,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
         thickness_of(text, file, &image, scale)?;
     } else if quantity != Quantity::Emission && f64::from(brightest) * scale > 1.0 {
         let scaled = if scale == 1.0 { String::new() } else { format!(" times its scale of {scale}") };
-        let limit =
-            if quantity == Quantity::Share { "a share is at most 1" } else { "no surface gives back more than 1" };
+        let limit = if quantity == Quantity::Share { "a share is at most 1" } else { "no surface returns more than 1" };
         let message = format!("{file}: pixel ({x}, {y}) is {brightest}{scaled}, and {limit}");
         let help = format!("scale = {:.4} makes it 1", (1e4 / f64::from(brightest)).floor() / 1e4);
         return text.place.tell(message, (brightest < 1e4).then_some(help));
@@ -66,7 +65,7 @@ fn image_curve<'d>(context: &mut Context, text: &CurveText<'d>, file: &'d str, q
 fn thickness_of(text: &CurveText, file: &str, image: &Image, scale: f64) -> Option<()> {
     let [r, g, b] = image.most_colorful();
     if r != g || g != b {
-        let help = "a thickness is one number: save it in grays, or name its channel = \"red\"";
+        let help = "a thickness is a single number: save it in grayscale, or name its channel = \"red\"";
         return text.place.advise(format!("{file} has colors"), help);
     }
     let ([x, y], most) = image.brightest();
@@ -81,7 +80,7 @@ pub(super) fn factor_on_image(text: &CurveText) -> Option<f64> {
     }
     match text.scale.it {
         scale if is_factor(scale) => Some(scale),
-        scale => text.scale.place.refuse(format!("a factor on an image is finite and at least 0, not {scale}")),
+        scale => text.scale.place.refuse(format!("the scale of an image is finite and at least 0, not {scale}")),
     }
 }
 
@@ -113,8 +112,8 @@ fn checker<'d>(
 fn square<'d>(context: &mut Context, cell: &CurveText<'d>, quantity: Quantity) -> Option<Curve> {
     // A lamp has a single spectrum, a white that its colors filter.
     if quantity == Quantity::Emission && !matches!(cell.kind, KindText::Number(_) | KindText::Rgb(_)) {
-        let message = "the squares of a lamp are numbers or `rgb`: it shines in one white";
-        return cell.value.advise(message, "make it of several lamps");
+        let message = "the squares of a lamp are numbers or `rgb`, which filter a single white";
+        return cell.value.advise(message, "use several lamps");
     }
     if let (Quantity::Emission, Some(luminance)) = (quantity, cell.luminance) {
         return luminance.place.advise("the squares of a lamp have no luminance", "use `scale`");

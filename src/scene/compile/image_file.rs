@@ -75,8 +75,8 @@ impl TextureOf<'_> {
     fn picked(&self, channels: usize, has_alpha: bool) -> Result<Picked, Fault> {
         let picked = Picked::new(self.path, self.channel, channels, has_alpha)?;
         if self.meaning == Meaning::Directions && picked.channels() == 1 {
-            let message = format!("{} is gray, and a normal map has red, green and blue", self.path.display());
-            return Err(Fault::new(message, "heights are a `bump_map`"));
+            let message = format!("{} is gray, but a normal map has red, green and blue", self.path.display());
+            return Err(Fault::new(message, "for heights use `bump_map`"));
         }
         Ok(picked)
     }
@@ -87,7 +87,7 @@ impl TextureOf<'_> {
         let file = self.path.display();
         let alpha = ignores_alpha.then(|| format!("the alpha of {file} is ignored; channel = \"alpha\" reads it"));
         let colors = not_srgb.filter(|_| self.srgb).map(|said| {
-            format!("the colors of {file} have {said}, which is ignored: they are read as sRGB; save them as that")
+            format!("the colors of {file} have {said}, which is ignored: they are read as sRGB; save them as sRGB")
         });
         ImageFile { image, warnings: alpha.into_iter().chain(colors).collect() }
     }
@@ -230,7 +230,7 @@ fn kind_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
 }
 
 fn unknown(path: &Path, help: &str) -> Fault {
-    Fault::new(format!("the kind of image cannot be told from {:?}", path.display()), help)
+    Fault::new(format!("cannot tell the kind of image from {:?}", path.display()), help)
 }
 
 /// Decodes a file, or returns why it cannot be read.
@@ -242,25 +242,29 @@ fn decoded<T>(
 ) -> Result<T, Fault> {
     if let Some((another, ending)) = kind_of(bytes).filter(|(another, _)| *another != kind) {
         let article = if another.starts_with('O') { "an" } else { "a" };
-        let message = format!("{} is no {kind} image: it is {article} {another} image", path.display());
+        let message = format!("{} is not in {kind} format: it is {article} {another} image", path.display());
         let name = Path::new(path.file_name().unwrap_or_default()).with_extension(ending);
-        let help = if ending.is_empty() { format!("save it as {kind}") } else { format!("call it {}", name.display()) };
+        let help =
+            if ending.is_empty() { format!("save it as {kind}") } else { format!("rename it to {}", name.display()) };
         return Err(Fault::new(message, help));
     }
     let unreadable = |said: &str, help: &str| {
-        Fault::new(format!("{} is no {kind} image ({})", path.display(), said.trim_end_matches('.')), help)
+        Fault::new(format!("{} is not a valid {kind} image ({})", path.display(), said.trim_end_matches('.')), help)
     };
     match guarded(|| Ok::<_, String>(decode(bytes))) {
         Ok(Ok(read)) => Ok(read),
         Ok(Err(Unreadable::Channels(channels))) => {
             let message = format!("{} has no channels R, G and B: it has the channels {channels}", path.display());
             let has_chroma = ["RY", "BY"].iter().any(|chroma| channels.split(", ").any(|channel| channel == *chroma));
-            let help =
-                if has_chroma { "save it as red, green and blue" } else { "save one of them alone, and it is a gray" };
+            let help = if has_chroma {
+                "save it as red, green and blue"
+            } else {
+                "save one of them alone to use it as a gray"
+            };
             Err(Fault::new(message, help))
         }
         Ok(Err(other)) => Err(match other.remedy() {
-            Some(remedy) => Fault::new(format!("{} is not read: {other}", path.display()), remedy),
+            Some(remedy) => Fault::new(format!("cannot read {}: {other}", path.display()), remedy),
             None => unreadable(&other.to_string(), "is the file complete?"),
         }),
         Err(said) => Err(unreadable(&said, "is the file complete?")),

@@ -51,7 +51,9 @@ impl Texels<'_> {
             Meaning::Shares(_) => (0.0..=f32::MAX, "shares are finite and not negative"),
             Meaning::Thicknesses(_) => (0.0..=f32::MAX, "thicknesses are finite and not negative"),
             Meaning::Heights => (f32::MIN..=f32::MAX, "heights are finite"),
-            Meaning::Directions => (0.0..=1.0, "directions are written as numbers from 0 to 1, one half being none"),
+            Meaning::Directions => {
+                (0.0..=1.0, "directions are stored as numbers from 0 to 1, where one half stands for 0")
+            }
         };
         if *allowed.start() == 0.0 {
             let noise = if is_lossy { f32::MAX } else { self.noise() };
@@ -65,7 +67,7 @@ impl Texels<'_> {
         let (x, y) = (at % self.width, at / self.width);
         let message = format!("{}: pixel ({x}, {y}) is {texel:?}", self.path.display());
         let is_negative = texel.iter().filter(|x| is_wrong(x)).all(|x| x.is_finite() && *x < 0.0);
-        let save = if is_negative { ": save the image with 0 for all that lies below" } else { "" };
+        let save = if is_negative { ": save the image with its negative values set to 0" } else { "" };
         Err(Fault::new(message, format!("{help}{save}")))
     }
 
@@ -105,7 +107,7 @@ impl Texels<'_> {
             2 => ", as does 1 other".to_owned(),
             _ => format!(", as do {} others", count - 1),
         };
-        let told = format!("{}: pixel ({x}, {y}) lies outside of Rec.709{others}", self.path.display());
-        Some(format!("{told}: what is negative there counts as 0"))
+        let told = format!("{}: pixel ({x}, {y}) lies outside Rec.709{others}", self.path.display());
+        Some(format!("{told}: negative values there count as 0"))
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn inside_out(placed: &Placed) -> Option<String> {
     let mut found = (0..objects.len()).filter(|&number| is_body(&objects[number]) && looks_inward(objects, number));
     let first = found.next()?;
     Some(format!(
-        "{}: the faces of this closed mesh look inward, so its outside is taken for its inside: reverse the order of \
+        "{}: the faces of this closed mesh point inward, so its outside is taken for its inside: reverse the order of \
          each face's corners",
         and_more(&objects[first].name, found.count())
     ))

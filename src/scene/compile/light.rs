@@ -50,7 +50,7 @@ pub(super) fn light<'d>(context: &mut Context, value: Value<'d>, has_environment
         };
         let (group, seen) = (own?.or(name?), seen?);
         if let Some(seen) = seen.filter(|_| matches!(place.key(), "point" | "spot")) {
-            let message = "a point and a spot are too small to be seen";
+            let message = "point lights and spotlights are too small to be seen";
             return seen.place.advise(message, "leave `visible_to_camera` out");
         }
         let light = match place.key() {
@@ -161,14 +161,15 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
         let toward = light.maybe("toward", at(direction));
         let target = light.maybe("look_at", at(point));
         let cone_angle = light.need("cone_angle", |value| {
-            let cone_angle = value.within(above_0_to(180.0), "a cone is above 0 to 180 degrees wide", None)?;
+            let cone_angle =
+                value.within(above_0_to(180.0), "a cone angle is above 0 and at most 180 degrees", None)?;
             if let Some(radians) = narrow(cone_angle) {
                 context.warn_at(value, format!("a cone of {cone_angle} degrees lights very little{radians}"));
             }
             Some(cone_angle)
         });
         let blend =
-            light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a part of the cone, 0 to 1", None));
+            light.or("blend", 0.15, |value| value.within(0.0..=1.0, "blend is a fraction of the cone, 0 to 1", None));
         let intensity = light.need("intensity", |value| intensity(context, value));
         of_the_entry(light, "spot", &OF_A_POINT);
         let position = position?;
@@ -176,7 +177,7 @@ fn spot_light<'d>(context: &mut Context, value: Value<'d>) -> Option<Light<Curve
             (Some(toward), None) => toward.it,
             (None, Some(Spanned { place, it: target })) => match (target - position).try_normalize() {
                 Some(toward) => toward,
-                None => return place.advise("the spot looks at its own position", "name another point"),
+                None => return place.advise("the spot looks at its own position", "choose another point"),
             },
             (None, None) if light.has_unknown() => return None,
             (None, None) => {
@@ -208,7 +209,7 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let (radiance, polarization) = (radiance?, polarization?);
         let KindText::Image(file) = radiance.kind else {
             if let Some(turn) = turn?.filter(|turn| !turn.it.is_empty()) {
-                return turn.place.advise("an even environment looks the same after every turn", "leave it out");
+                return turn.place.advise("a uniform environment looks the same after any rotation", "leave it out");
             }
             let radiance = curve(context, &radiance, Quantity::Emission)?;
             return Some(Environment { radiance, image: None, polarization });
@@ -216,7 +217,7 @@ fn even_or_image<'d>(context: &mut Context, value: Value<'d>) -> Option<Environm
         let is_plain = radiance.encoding.is_none() && radiance.channel.is_none();
         if !is_plain || radiance.placement()? != Placement::default() {
             let message =
-                "the image of an environment fills all directions once, in linear light: only its `scale` is free";
+                "an environment image covers all directions once, in linear light: only its `scale` can be set";
             return radiance.value.refuse(message);
         }
         let factor = factor_on_image(&radiance);
@@ -245,7 +246,7 @@ fn sky_polarization(value: Value) -> Option<SkyPolarization> {
 fn rotation(steps: &[Spanned<Step>]) -> Option<Transform> {
     match steps.iter().find(|step| !matches!(step.it, Step::Rotate(_))) {
         Some(step) => {
-            let message = "an environment has no place and no size: it can be turned only";
+            let message = "an environment has no position and no size: it can only be rotated";
             step.place.advise(message, "write { rotate = { axis = [0, 1, 0], degrees = 90 } }")
         }
         None => map_of(steps, Transform::IDENTITY),

@@ -27,10 +27,10 @@ pub(super) enum MaterialDraft<'d, S> {
 
 /// Reads a roughness from 0, which is smooth, to 1. Returns 0 if it is wrong, which is recorded as a mistake.
 fn roughness(fields: &mut Fields) -> f64 {
-    let what = "a roughness lies between 0, smooth, and 1";
+    let what = "a roughness lies between 0 (smooth) and 1";
     let read = |value: Value| match value.number()? {
         percent if (2.0..=100.0).contains(&percent) => {
-            let help = format!("in percent? Then write {}", shown(percent / 100.0));
+            let help = format!("if this is in percent, write {}", shown(percent / 100.0));
             value.advise(format!("{what}, not {percent}"), help)
         }
         _ => value.within(0.0..=1.0, what, None),
@@ -108,7 +108,7 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
             if nm != 0.0 && nm.abs() < LEAST_AHEAD_NM {
                 let in_nm = nm * 1e9;
                 let help = match in_nm.abs() {
-                    1.0..=MOST_AHEAD_NM => format!("in m? It is in nm: then write {}", shown(in_nm)),
+                    1.0..=MOST_AHEAD_NM => format!("it is in nm: if this is in m, write {}", shown(in_nm)),
                     _ => help.to_owned(),
                 };
                 return path.advise(format!("a retardation of {} nm changes no light", shown(nm)), help);
@@ -118,7 +118,7 @@ fn retardance(context: &mut Context, fields: &mut Fields) -> Option<Retardance> 
         }
         (Some(_), Some(path)) => path.refuse_key(
             "a retarder has a `retardance` or a `retardation_nm`, not both",
-            Some("the first is the same in degrees at every wavelength, the second the same in nm".into()),
+            Some("`retardance` is the same in degrees at every wavelength, `retardation_nm` the same in nm".into()),
         ),
         (None, None) if fields.is_misspelt("retardation_nm") => None,
         (None, None) => fields.lack("retardance", Some("in degrees; or `retardation_nm`, in nm")),

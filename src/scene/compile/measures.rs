@@ -79,7 +79,7 @@ pub(super) fn narrow(degrees: f64) -> Option<String> {
 pub(super) fn unit_of_wavelength(given: f64, right_nm: RangeInclusive<f64>) -> Option<String> {
     let units = [("um", 1e3), ("Angstrom", 0.1), ("m", 1e9)].map(|(unit, nm)| (unit, given * nm));
     let (unit, nm) = units.into_iter().find(|(_, nm)| right_nm.contains(nm))?;
-    Some(format!("in {unit}? Wavelengths are in nm: then write {}", shown(nm)))
+    Some(format!("wavelengths are in nm: if this is in {unit}, write {}", shown(nm)))
 }
 
 /// Returns a warning about a retardance in degrees that seems to be in waves or in radians.

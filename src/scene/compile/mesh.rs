@@ -82,7 +82,7 @@ fn faces(value: Value) -> Option<Vec<Face>> {
         Some(Rows { width: width @ 3.., numbers: Numbers::Whole(numbers) }) => {
             Some(numbers.chunks_exact(*width).map(Face::from_slice).collect())
         }
-        Some(_) => value.refuse("`faces` has rows of 3 whole numbers or more"),
+        Some(_) => value.refuse("each row of `faces` has 3 or more whole numbers"),
         None => value.list(face),
     }
 }
@@ -118,7 +118,7 @@ fn real<const N: usize>(value: Value, rows: &Rows) -> Option<Vec<[f64; N]>> {
 fn face(value: Value) -> Option<Face> {
     let corners = value.list(Value::count)?;
     match corners.len() {
-        count @ ..3 => value.refuse(format!("a face is a list of 3 numbers or more, not one of {count}")),
+        count @ ..3 => value.refuse(format!("a face is a list of 3 or more numbers, not {count}")),
         _ => Some(Face::from_vec(corners)),
     }
 }
@@ -130,7 +130,7 @@ fn built(context: &mut Context, name: &str, value: Value, parts: Parts, smooth: 
         attributes.normals = vertex_normals(&vertices, &faces);
     }
     let Some(mesh) = Mesh::new(vertices, faces) else {
-        return value.refuse("no triangle of this mesh has an area");
+        return value.refuse("every triangle of this mesh has zero area");
     };
     match mesh.degenerate() {
         0 => {}
@@ -162,7 +162,7 @@ impl Inline<'_> {
         }
         let fits = |place: Value, what: &str, given: usize| match given == count {
             true => Some(()),
-            false => place.refuse(format!("{count} points have {count} {what}, not {given}")),
+            false => place.refuse(format!("{count} points need {count} {what}, not {given}")),
         };
         let mut attributes = Attributes::default();
         if let Some(normals) = self.normals {
@@ -216,10 +216,10 @@ fn read_file(context: &mut Context, name: &str, file: &Spanned<&str>, smooth: bo
     }
     match mesh.materials {
         0 => {}
-        1 => context.warn(format!("{name}: the materials of {file} are ignored; the scene gives them")),
+        1 => context.warn(format!("{name}: the materials of {file} are ignored; the scene defines them")),
         count => context.warn(format!(
-            "{name}: the {count} materials of {file} are ignored; the scene gives it one: save parts that look different \
-             as files of their own"
+            "{name}: the {count} materials of {file} are ignored; the scene gives it one: save parts that look \
+             different as separate files"
         )),
     }
     Some(Parts { vertices: mesh.vertices, faces: mesh.faces, attributes: mesh.attributes })

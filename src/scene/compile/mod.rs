@@ -140,7 +140,7 @@ fn needs_camera_and_film(sections: &mut Fields) {
     let missing: Vec<String> = missing.map(|key| format!("no [{key}]")).collect();
     if !missing.is_empty() {
         let message = format!("the scene has {}", missing.join(" and "));
-        sections.refuse::<()>(message, Some("every scene has [camera] and [film]"));
+        sections.refuse::<()>(message, Some("every scene needs [camera] and [film]"));
     }
 }
 
@@ -149,15 +149,15 @@ fn can_have_stokes(sections: &Fields, format: &Format, render: &RenderText) -> O
     if !format.has_stokes() || render.polarization != PolarizationText::Off {
         return Some(());
     }
-    let help = "leave `polarization` out of [render], or the layers S1, S2, S3 and polarization";
-    sections.refuse("Stokes vectors are asked for, and polarization is off", Some(help))
+    let help = "leave `polarization` out of [render], or leave out the layers S1, S2, S3 and polarization";
+    sections.refuse("Stokes vectors are requested, but polarization is off", Some(help))
 }
 
 /// Refuses dyes with the model of three bands, which has no wavelengths that a dye could absorb.
 fn can_fluoresce(sections: &Fields, materials: &[NamedMaterial<Curve>], render: &RenderText) -> Option<()> {
     let dyed = materials.iter().find(|named| !named.material.dyes().is_empty());
     let Some(NamedMaterial { name, .. }) = dyed.filter(|_| render.model == ModelText::Rgb) else { return Some(()) };
-    let message = format!("material {name} fluoresces, and the model \"rgb\" has no wavelengths for it");
+    let message = format!("material {name} fluoresces, but the model \"rgb\" has no wavelengths for it");
     sections.refuse(message, Some("leave `model` out of [render], or write { bands = 16 }"))
 }
 

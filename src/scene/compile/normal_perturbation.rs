@@ -52,8 +52,8 @@ fn normal_map<'d>(context: &mut Context, place: Value<'d>) -> Option<ReliefText<
         let file = file?;
         let image = image(context, &file, Meaning::Directions, None)?;
         if image.mean()[2] <= 0.0 {
-            let message = format!("{} is no normal map: its mean normal looks into the surface", file.it);
-            let help = "blue is out of the surface and 128 of 255 or more; heights are a `bump_map`";
+            let message = format!("{} is not a normal map: its mean normal points into the surface", file.it);
+            let help = "blue points out of the surface and is 128 of 255 or more; for heights use `bump_map`";
             return file.place.advise(message, help);
         }
         let (placement, strength) = (placement?, strength?);
@@ -92,10 +92,8 @@ fn placement(map: &mut Fields, what: &str) -> Option<Placement> {
     let wrap = map.or("wrap", Wrap::default(), |value| value.word(&WRAPS));
     let linear = map.or("encoding", (), |value| match value.word(&ENCODINGS)? {
         Encoding::Linear => Some(()),
-        Encoding::Srgb => value.advise(
-            format!("the numbers of this image are {what}, which no screen encodes: they are always linear"),
-            "leave `encoding` out",
-        ),
+        Encoding::Srgb => value
+            .advise(format!("the numbers of this image are {what}, which are always linear"), "leave `encoding` out"),
     });
     linear?;
     Some(Placement { repeat: repeat?, wrap: wrap?, filter: TexelFilter::Linear })
@@ -105,8 +103,8 @@ impl ReliefText<'_> {
     /// Puts the image on an object, if the object has texture coordinates.
     pub(super) fn on(&self, coordinates: Option<&Arc<Coordinates>>) -> Option<Arc<NormalPerturbation>> {
         let Some(coordinates) = coordinates.cloned() else {
-            let message = "this mesh has no texture coordinates, by which the image would lie on it";
-            let help = format!("leave `{}` out, or give the mesh coordinates (`uv`)", self.place.key());
+            let message = "this mesh has no texture coordinates, which the image needs";
+            let help = format!("leave `{}` out, or give the mesh texture coordinates (`uv`)", self.place.key());
             return self.place.advise(message, help);
         };
         Some(Arc::new(NormalPerturbation { coordinates, texture: self.texture.clone(), kind: self.kind }))

@@ -116,18 +116,18 @@ const SHARP: f64 = 40.0;
 fn glass_on(mesh: &Mesh, is_averaged: bool) -> Vec<String> {
     let mut found = Vec::new();
     if !mesh.is_closed() {
-        let reverse = "reverse the order of the corners, or recalculate the normals where it was made";
+        let reverse = "reverse the order of the corners, or recalculate the normals in the program that made it";
         found.push(match mesh.turned() {
             0 => "a dielectric on an open mesh: light may enter it and never leave".into(),
-            1 => format!("1 triangle of this closed mesh is turned over: {reverse}"),
-            turned => format!("{turned} triangles of this closed mesh are turned over: {reverse}"),
+            1 => format!("1 triangle of this closed mesh is flipped: {reverse}"),
+            turned => format!("{turned} triangles of this closed mesh are flipped: {reverse}"),
         });
     }
     let bend = if is_averaged { mesh.bend() } else { 0.0 };
     if bend > SHARP {
         found.push(format!(
-            "this mesh has no normals, and `smooth` bends those of its faces by up to {bend:.0} degrees, so that sharp edges look \
-             round, and glass may catch light: leave it out, or save the mesh with normals"
+            "this mesh has no normals, and `smooth` bends those of its faces by up to {bend:.0} degrees, so that \
+             sharp edges look round and glass may trap light: leave it out, or save the mesh with normals"
         ));
     }
     found
@@ -154,12 +154,12 @@ fn visibility(object: &mut Fields) -> Option<Visibility> {
 
 /// Reads the name of an object or a light.
 pub(super) fn name(value: Value<'_>) -> Option<&str> {
-    not_empty(value, "a name has a letter or more", "leave `name` out where there is none")
+    not_empty(value, "a name cannot be empty", "leave `name` out if there is none")
 }
 
 /// Reads the name of a group of lights.
 pub(super) fn group(value: Value<'_>) -> Option<&str> {
-    not_empty(value, "a group of lights has a name", "such as group = \"key\"")
+    not_empty(value, "the name of a light group cannot be empty", "such as group = \"key\"")
 }
 
 fn not_empty<'d>(value: Value<'d>, message: &str, help: &str) -> Option<&'d str> {
@@ -192,7 +192,7 @@ impl<'m, 'd> Names<'m, 'd> {
 fn maps(value: Value, first: Transform) -> Option<Vec<Spanned<Transform>>> {
     let maps = value.list(at(|value| map_of(&steps(value)?, first)))?;
     match maps.is_empty() {
-        true => value.refuse("a list without instances leaves nothing of the object"),
+        true => value.refuse("an empty list of instances leaves nothing of the object"),
         false => Some(maps),
     }
 }

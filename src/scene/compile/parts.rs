@@ -74,7 +74,7 @@ impl<'d> Search<'_, 'd> {
             self.circular.extend(&self.within[start..]);
             let way: Vec<_> = self.within[start + 1..].iter().map(|name| format!("{name:?}")).collect();
             let by = if way.is_empty() { String::new() } else { format!(", via {}", way.join(" and ")) };
-            return place.refuse(format!("material {known:?} is made of itself{by}"));
+            return place.refuse(format!("material {known:?} contains itself{by}"));
         }
         self.parts += 1;
         if self.parts > MOST_PARTS || self.within.len() > DEEPEST {
@@ -83,20 +83,20 @@ impl<'d> Search<'_, 'd> {
         match draft {
             Some(MaterialDraft::Whole(Material::Dielectric(_))) => place.advise(
                 format!(
-                    "a {kind} is made of surfaces, and {known:?} is a dielectric, which fills the space behind its own"
+                    "a {kind} is made of surfaces, but {known:?} is a dielectric, which fills the space behind its \
+                     surface"
                 ),
                 "a pane has no inside: thin = { index = 1.52 }",
             ),
             Some(MaterialDraft::Whole(Material::Emissive(_))) => place.advise(
-                format!("a {kind} is made of surfaces that reflect or let through, and {known:?} is emissive"),
-                "give what shines an object of its own",
+                format!("a {kind} is made of surfaces that reflect or transmit light, but {known:?} is emissive"),
+                "give the light source an object of its own",
             ),
             _ => {
                 let whole = self.whole(known)?;
                 if kind == "mix" && whole.has_axis() {
-                    let message =
-                        format!("a mix is made of surfaces without an axis, and {known:?} polarizes light by one");
-                    return place.advise(message, "give it an object of its own; one with holes is a mask");
+                    let message = format!("a mix is made of surfaces without an axis, but {known:?} has one");
+                    return place.advise(message, "give it an object of its own; for holes use a mask");
                 }
                 Some(Part::new(name, whole))
             }
@@ -109,9 +109,9 @@ impl<'d> Search<'_, 'd> {
         let whole = self.within.first().copied().unwrap_or_default();
         let how = match self.parts > MOST_PARTS {
             true => format!("more than {MOST_PARTS} others"),
-            false => format!("others that lie more than {DEEPEST} deep in one another"),
+            false => format!("others nested more than {DEEPEST} deep"),
         };
-        let refuse = || place.advise(format!("material {whole:?} is made of {how}"), "make it of fewer");
+        let refuse = || place.advise(format!("material {whole:?} is made of {how}"), "use fewer");
         if is_told { None } else { refuse() }
     }
 }

@@ -64,7 +64,7 @@ pub(super) fn placed<'d>(drafts: Vec<ObjectDraft<'d>>, materials: &Materials<'d>
                 let (name, material) = (name.to_owned(), material.turned(map));
                 if lies_across(&material, &object.shape) {
                     let message = format!("the axis of material {name} is along the normal of this surface");
-                    shape.advise::<()>(message, "an axis lies within the surface; both turn with the object");
+                    shape.advise::<()>(message, "an axis must lie in the surface; both turn with the object");
                     break;
                 }
                 placed.materials.push(NamedMaterial { name, material });
@@ -101,7 +101,7 @@ fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) 
     let asset = name.clone();
     let object = |name: String, shape: Shape, coordinates: Option<Coordinates>| {
         if varies && coordinates.is_none() {
-            let message = format!("this mesh has no texture coordinates, by which {material_name} would lie on it");
+            let message = format!("this mesh has no texture coordinates, which material {material_name} needs");
             return place.advise(message, "give it a material without `image` and `checker`");
         }
         let coordinates = coordinates.map(Arc::new);

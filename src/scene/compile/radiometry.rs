@@ -16,8 +16,8 @@ pub(super) fn on_film(context: &Context, text: &CurveText, curve: Curve) -> Opti
     let Some(white) = context.white_luminance else { return Some(curve) };
     let unit = match curve.kind {
         CurveKind::Illuminant(_) | CurveKind::Blackbody(_) if curve.luminance.is_none() => {
-            let message = "in absolute light, this spectrum does not say how bright it is";
-            let help = "add its `luminance`: of a radiance in cd/m2, of an intensity in cd, of an irradiance in lx";
+            let message = "in absolute light, this spectrum needs a `luminance`";
+            let help = "add it: in cd/m2 for a radiance, in cd for an intensity, in lx for an irradiance";
             return text.value.advise(message, help);
         }
         // A flat spectrum of 1 otherwise has luminance 1.
@@ -33,7 +33,8 @@ pub(super) fn intensity(context: &Context, place: Value, intensity: Curve) -> Op
         (None, _) => Some(intensity),
         (Some(_), Some(meters)) => Some(brighter(intensity, 1.0 / (meters * meters))),
         (Some(_), None) => {
-            let message = "absolute light falls off with meters, and the scene does not say how long its unit is";
+            let message =
+                "absolute light falls off with distance in meters, but the scene does not say how long its unit is";
             place.advise(message, "for a scene in meters: [render] meters_per_unit = 1")
         }
     }

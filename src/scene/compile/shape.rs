@@ -126,10 +126,10 @@ pub(super) fn fits(shape: &Shape, placed: &Shape, map: Spanned<Transform>, whole
     };
     let thin = edges.map_or(wide.max_element(), |edges| thickness(edges, &map.it));
     if !(thin >= MIN_LENGTH && far <= 2.0 * MAX_LENGTH) {
-        return map.place.refuse("this makes the shape too small, too large or too far");
+        return map.place.refuse("this makes the shape too small, too large or too far away");
     }
     if thin < RESOLVED * far {
-        return whole.refuse("this is so small or thin that the rounding of its coordinates would distort it");
+        return whole.refuse("this is so small or thin that rounding its coordinates would distort it");
     }
     Some(())
 }

@@ -59,7 +59,7 @@ fn no_number(line: usize, cell: &str, first: bool) -> TableFault {
     };
     let decimal = cell.split_once(',').is_some_and(|(whole, rest)| format!("{whole}.{rest}").parse::<f64>().is_ok());
     let help = match decimal {
-        true => Some("a decimal point is written `.`"),
+        true => Some("use `.` as the decimal point"),
         false if first => Some("one header line may come first; lines that begin with # are ignored"),
         false => None,
     };
@@ -112,7 +112,7 @@ mod tests {
         for comma in ["400;0,5", "400\t0,5", "400 0,5"] {
             let fault = read_columns(comma, 2).unwrap_err();
             assert_eq!(fault.message, ", line 1: \"0,5\" is not a number");
-            assert_eq!(fault.help.as_deref(), Some("a decimal point is written `.`"));
+            assert_eq!(fault.help.as_deref(), Some("use `.` as the decimal point"));
         }
         assert_eq!(told("\"400\",\"0,5\"", 2), ", line 1: \"\\\"0\" is not a number");
         assert_eq!(told("# nothing", 2), " holds no numbers");

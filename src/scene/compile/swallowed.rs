@@ -37,7 +37,7 @@ pub(super) fn swallowed(placed: &Placed) -> Option<String> {
     let ((body, own), (other, priority)) = found.next()?;
     let why = if priority > own { "a higher priority" } else { "the same priority that is used later" };
     Some(format!(
-        "{}: nothing is seen of this body, as {} around it has a material of {why}: give material {} priority = {}",
+        "{}: this body is invisible, as {} around it has a material of {why}: give material {} priority = {}",
         and_more(&body.name, found.count()),
         other.name,
         placed.material(body).name,

@@ -54,9 +54,10 @@ fn matrix(value: Value) -> Option<Transform> {
     let last = [0.0, 0.0, 0.0, 1.0];
     match rows[3] == last {
         true => Some(Transform::affine(DMat3::from_cols(column(0), column(1), column(2)), column(3))),
-        false if column(3) == DVec3::ZERO && rows[3][3] == 1.0 => {
-            value.advise("this matrix has its shift in the last row", "transpose it: the shift is the last column")
-        }
+        false if column(3) == DVec3::ZERO && rows[3][3] == 1.0 => value.advise(
+            "this matrix has its translation in the last row",
+            "transpose it: the translation is the last column",
+        ),
         false => value.entry(3).advise("the last row of a matrix is [0, 0, 0, 1]", help),
     }
 }

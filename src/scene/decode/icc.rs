@@ -15,7 +15,7 @@ pub(super) fn not_srgb(profile: &[u8]) -> Option<String> {
         Some(found.iter().zip(known).any(|(found, known)| (found - known).abs() > NEARLY))
     };
     let differing = SRGB.into_iter().map(differs).collect::<Option<Vec<bool>>>()?;
-    differing.contains(&true).then(|| "a color profile (ICC) of other primaries".into())
+    differing.contains(&true).then(|| "a color profile (ICC) with other primaries".into())
 }
 
 /// Returns the XYZ of a primary from its tag: section 10.31 of the standard.

@@ -67,24 +67,24 @@ pub(in crate::scene) enum Unreadable {
     Jpeg(#[from] zune_jpeg::errors::DecodeErrors),
     #[error(transparent)]
     Exr(#[from] ::exr::error::Error),
-    #[error("Abbe does not know its compression")]
+    #[error("Abbe does not support its compression")]
     Compression,
     #[error("it is a deep image, which has many values per pixel")]
     Deep,
     /// There are no red, green and blue, only these channels.
     #[error("it has the channels {0}")]
     Channels(String),
-    #[error("some of its channels do not have a number for each pixel")]
+    #[error("some of its channels do not have a number for every pixel")]
     Sparse,
-    #[error("it does not begin as one does")]
+    #[error("it does not begin like one")]
     Signature,
     #[error("it ends too early")]
     Short,
-    #[error("its format is {0:?}, and only 32-bit_rle_rgbe is read")]
+    #[error("its format is {0:?}, but only 32-bit_rle_rgbe is supported")]
     Format(String),
     #[error("its {0} is {1:?}, which it cannot be divided by")]
     Factors(String, String),
-    #[error("its size is {0:?}, and only -Y height +X width is read")]
+    #[error("its size is {0:?}, but only -Y height +X width is supported")]
     Size(String),
     #[error("row {0} (counted from 0) is not as long as the image is wide")]
     Row(usize),
@@ -95,11 +95,11 @@ impl Unreadable {
     pub(in crate::scene) fn remedy(&self) -> Option<&'static str> {
         match self {
             Self::Large(..) => Some("make it smaller"),
-            Self::Compression => Some("save it by ZIP"),
+            Self::Compression => Some("save it with ZIP compression"),
             Self::Deep => Some("flatten it"),
-            Self::Sparse => Some("save all channels in full size"),
+            Self::Sparse => Some("save all channels at full resolution"),
             Self::Format(_) => Some("save it as red, green and blue"),
-            Self::Size(_) => Some("save it with its rows from the top, each from the left"),
+            Self::Size(_) => Some("save it with rows from top to bottom, each from left to right"),
             _ => None,
         }
     }

@@ -60,7 +60,7 @@ impl<'d> Fields<'d> {
         for (span, word) in &unknown {
             let (message, help) = match *word {
                 INCLUDE => (
-                    "`include` is no key of a section".into(),
+                    "`include` is not a key of a section".into(),
                     "write it before the first section, at the top of the file".into(),
                 ),
                 word => {
@@ -212,8 +212,8 @@ impl<R: Copy> Choice<R> {
     fn is_beside(&self, stray: Value) -> bool {
         let is_beside = self.beside.contains(&stray.key());
         if is_beside {
-            let help = format!("write it beside `{0}`: above a line [object.{0}], or outside of its braces", self.word);
-            stray.refuse_key::<()>(format!("`{}` is no part of {}", stray.key(), self.name), Some(help));
+            let help = format!("write it beside `{0}`: above a line [object.{0}], or outside its braces", self.word);
+            stray.refuse_key::<()>(format!("`{}` is not part of {}", stray.key(), self.name), Some(help));
         }
         is_beside
     }
@@ -224,9 +224,8 @@ impl<R: Copy> Choice<R> {
         let is_part = !self.knows(word) && nearest(word, self.kinds.iter().map(|kind| kind.0)).is_none();
         if is_part {
             let outside = outside_of_material(kind, word).filter(|_| self.knows("mask")).map(str::to_owned);
-            let help = outside.unwrap_or_else(|| {
-                format!("what belongs to `{kind}` stands inside of it: {kind} = {{ .., {word} = .. }}")
-            });
+            let help = outside
+                .unwrap_or_else(|| format!("keys of `{kind}` go inside its braces: {kind} = {{ .., {word} = .. }}"));
             stray.refuse_key::<()>(format!("unknown key `{word}` beside `{kind}`"), Some(help));
         }
         is_part
@@ -241,8 +240,8 @@ impl<R: Copy> Choice<R> {
         let mut kinds: Vec<_> = table.iter().map(|(key, node)| Value::new(value.document, key, node)).collect();
         kinds.sort_by_key(|kind| kind.key_span().start);
         if let Some((tag, kind)) = kinds.iter().find_map(|tag| Some((tag, self.tagged(*tag)?))) {
-            let help = format!("write {kind} = {{ .. }}, with what belongs to it in the braces");
-            return tag.refuse_key(format!("the kind of {} is a key itself", self.name), Some(help));
+            let help = format!("write {kind} = {{ .. }}, with its keys inside the braces");
+            return tag.refuse_key(format!("the kind of {} is itself a key", self.name), Some(help));
         }
         kinds.retain(|kind| !self.is_beside(*kind));
         if let [kind] = kinds.iter().filter(|kind| self.knows(kind.key())).copied().collect::<Vec<_>>()[..] {

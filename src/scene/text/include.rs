@@ -82,15 +82,15 @@ impl Included {
         let file = real(&path);
         if self.within.contains(&file) {
             let message = format!("{name} includes itself via this file");
-            return Err(Fault::new(message, "what both need stands in a file of its own"));
+            return Err(Fault::new(message, "put what both need in a file of its own"));
         }
         if self.files.contains(&file) {
             return Ok(());
         }
         if self.within.len() >= DEEPEST {
-            return Err(Fault { message: format!("more than {DEEPEST} files include one another"), help: None });
+            return Err(Fault { message: format!("included files are nested more than {DEEPEST} deep"), help: None });
         }
-        let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, as a scene is");
+        let text = utf8(read_named(folder, name, &SCENE)?, name, "an included file is TOML, like a scene");
         let is_toml = || text.as_ref().is_ok_and(|text| parsed(text, 0).is_ok());
         if let Some((what, help)) = foreign(&path, name).filter(|_| !is_toml()) {
             return Err(Fault::new(format!("{name} is {what}, not a part of a scene in TOML"), help));
@@ -141,7 +141,7 @@ fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistake
                     match keys.get_key_value(word(&key)) {
                         Some((known, _)) => {
                             let message = format!("`{name}.{}` is given twice", word(&key));
-                            let help = format!("it stands {} as well: keep one of them", texts.placed(known.span()));
+                            let help = format!("it is also given {}: keep one of them", texts.placed(known.span()));
                             mistakes.push(Mistake { span: key.span(), message, help: Some(help) });
                         }
                         None => drop(keys.insert(key, value)),
@@ -151,7 +151,7 @@ fn merge<'d>(whole: &mut DeTable<'d>, table: DeTable<'d>, texts: &Texts, mistake
             }
             (found, _) => {
                 let message = format!("`{name}` is given twice");
-                let help = format!("it stands {} as well, in another form", texts.placed(first.span()));
+                let help = format!("it is also given {}, in another form", texts.placed(first.span()));
                 mistakes.push(Mistake { span: section.span(), message, help: Some(help) });
                 found
             }

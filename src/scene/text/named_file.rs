@@ -40,7 +40,7 @@ pub(super) fn read_named(folder: &Path, file: &str, kind: &FileKind) -> Result<V
             return refuse(format!("{file} has {} bytes, more than {}", found.len(), kind.most_bytes));
         }
         // Reading a device may never end.
-        Ok(found) if !found.is_file() && !found.is_dir() => return refuse(format!("{file} is no file but a device")),
+        Ok(found) if !found.is_file() && !found.is_dir() => return refuse(format!("{file} is a device, not a file")),
         _ => {}
     }
     match std::fs::read(&path) {
@@ -63,8 +63,8 @@ pub(super) fn missing(folder: &Path, file: &str, endings: &[&str]) -> Fault {
             "write / between folders, not \\".into()
         }
         Some(near) => format!("did you mean \"{}\"?", near.display()),
-        None if folder.as_os_str().is_empty() => "the path starts at the current folder".into(),
-        None => format!("the path starts at {}", folder.display()),
+        None if folder.as_os_str().is_empty() => "relative paths start at the current folder".into(),
+        None => format!("relative paths start at {}", folder.display()),
     };
     Fault::new(format!("there is no file {file}"), help)
 }

@@ -53,7 +53,7 @@ pub(in crate::scene) fn set<'d>(
             let message = format!("there is no material named {:?}", word(name));
             let help = match nearest(word(name), known) {
                 Some(near) => format!("did you mean {near:?}?"),
-                None => format!("a new material is given whole: material.{}={{ .. }}", word(name)),
+                None => format!("a new material is set as a whole: material.{}={{ .. }}", word(name)),
             };
             return Err(Mistake { span: name.span(), message, help: Some(help) });
         }
@@ -74,7 +74,7 @@ fn no_variable(name: &Key, known: &[&str], sections: &[&str]) -> Mistake {
     let help = match nearest(word, known.iter().chain(sections).copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => {
-            "a scene gives its variables in [set]; other values have a path: film.width=320".into()
+            "a scene defines its variables in [set]; other values have a path: film.width=320".into()
         }
         None => format!("known here: {}", known.join(", ")),
     };
@@ -101,8 +101,8 @@ fn setting(text: &str, start: usize) -> Result<Setting<'_>, Mistake> {
             (Some(path), last)
         }
         (Err(_), None) => {
-            let message = format!("`{}` is no path of a key", text[..equals].trim());
-            let help = Some("it is words with dots between, such as film.width".into());
+            let message = format!("`{}` is not the path of a key", text[..equals].trim());
+            let help = Some("a path is words joined by dots, such as film.width".into());
             return Err(Mistake { span: start..start + equals, message, help });
         }
     };
@@ -218,7 +218,7 @@ fn put_into<'d>(node: &mut Node<'d>, key: &Key, path: &[Key<'d>], value: Node<'d
             put_into(&mut entries.as_mut()[number], next, rest, value)
         }
         _ => {
-            let message = format!("`{}` is no table here, so it has no `{}`", word(key), word(next));
+            let message = format!("`{}` is not a table here, so it has no `{}`", word(key), word(next));
             let help = format!("set `{}` itself", word(key));
             Err(Mistake { span: next.span(), message, help: Some(help) })
         }
@@ -238,7 +238,7 @@ fn position(list: &str, entries: &[Node], key: &Key) -> Result<usize, Mistake> {
         several => {
             let numbers: Vec<String> = several.iter().map(|number| format!("{list}.{}", number + 1)).collect();
             let message = format!("{} entries of `{list}` are named {word:?}", several.len());
-            return refuse(key.span(), message, format!("name each by its number: {}", numbers.join(", ")));
+            return refuse(key.span(), message, format!("refer to each by its number: {}", numbers.join(", ")));
         }
     }
     if let Some(number) = word.parse::<usize>().ok().and_then(|number| number.checked_sub(1))

@@ -74,7 +74,7 @@ fn color_as_comment(text: &str) -> Option<Mistake> {
                 false => format!("write {{ rgb = {color} }}, in linear light"),
             };
             let span = start + bare.len()..start + bare.len() + written.len();
-            return Some(Mistake { span, message: "what follows # is a comment".into(), help: Some(help) });
+            return Some(Mistake { span, message: "everything after # is a comment".into(), help: Some(help) });
         }
         start += line.len();
     }
@@ -114,7 +114,7 @@ fn strange_space(line: &str, start: usize) -> Option<Mistake> {
     let is_strange = |c: char| c.is_whitespace() && !c.is_ascii() || "\u{200b}\u{2060}\u{feff}".contains(c);
     let (at, space) = bare.char_indices().find(|(_, c)| is_strange(*c))?;
     let span = start + at..start + at + space.len_utf8();
-    let message = format!("this is no plain space but the character U+{:04X}", u32::from(space));
+    let message = format!("this is not a plain space but the character U+{:04X}", u32::from(space));
     Some(Mistake { span, message, help: Some("write a plain space, or nothing".into()) })
 }
 
@@ -129,8 +129,8 @@ fn heading_of_words(line: &str, start: usize) -> Option<Mistake> {
     }
     let at = start + bare.find(inner)?;
     let (message, help) = match is_bare(name) {
-        true => ("a heading joins its words by a point", format!("write [material.{name}]")),
-        false => ("a name with a space stands in quotes", format!("write [material.\"{name}\"]")),
+        true => ("a heading joins its words with a dot", format!("write [material.{name}]")),
+        false => ("a name with a space needs quotes", format!("write [material.\"{name}\"]")),
     };
     let is_one = !name.contains(['"', '\'', '[', ']', '.']);
     is_one.then(|| Mistake { span: at..at + inner.len(), message: message.into(), help: Some(help) })
@@ -162,7 +162,7 @@ pub(super) fn loose_list(line: &str, place: usize) -> Option<String> {
     let parts = inner.split(',').map(|part| part.trim_start().trim_end_matches([')', '}', ' ']));
     let numbers: Vec<&str> = parts.take_while(|part| part.parse::<f64>().is_ok()).collect();
     let is_list = numbers.len() > 2 || numbers.len() == 2 && inner.contains(", ");
-    is_list.then(|| format!("a list stands in brackets: [{}]", numbers.join(", ")))
+    is_list.then(|| format!("a list needs brackets: [{}]", numbers.join(", ")))
 }
 
 /// Explains a key inside the brackets of a list, before the `=` at a place: the list is not closed, or its entry is a
@@ -177,8 +177,8 @@ fn key_in_list(text: &str, place: usize) -> Option<Mistake> {
         return Some(Mistake { span: at..at, message: "the closing `]` is missing here".into(), help });
     }
     let at = before.len() - key.len();
-    let help = Some(format!("a key and its value stand in braces: {{ {key} = .. }}"));
-    Some(Mistake { span: at..before.len(), message: "a list holds no keys".into(), help })
+    let help = Some(format!("a key and its value need braces: {{ {key} = .. }}"));
+    Some(Mistake { span: at..before.len(), message: "a list cannot hold keys".into(), help })
 }
 
 /// Finds a section that should be an entry of a list, above the line that begins the list correctly.

@@ -38,7 +38,7 @@ pub(super) fn suggested_key(word: &str, known: &[&str], beside: &DeTable) -> Str
     match meant(word, word, known).filter(|_| !is_another) {
         None => suggestion(word, word, known),
         Some(near) if BRIGHTNESS.contains(&word) => format!("multiply `{near}` by it"),
-        Some(near) => format!("`{near}` stands here already: leave one of them out"),
+        Some(near) => format!("`{near}` is already given here: leave one of them out"),
     }
 }
 
@@ -110,15 +110,15 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         DeValue::String(text) if number => match share(text) {
             Some(share) => Some(format!("write {share}")),
             _ if key == "column" => Some("columns are counted from 1".into()),
-            _ if text.starts_with('$') => Some("a variable stands alone, and there is no arithmetic".into()),
-            _ if key == "retardance" => Some("it is in degrees: a quarter of a wave is 90".into()),
+            _ if text.starts_with('$') => Some("a variable must be the whole value: there is no arithmetic".into()),
+            _ if key == "retardance" => Some("it is in degrees: a quarter wave is 90".into()),
             _ if key == "meters_per_unit" && matches!(&**text, "m" | "cm" | "mm") => {
                 let meters = [("m", "1"), ("cm", "0.01"), ("mm", "0.001")].into_iter().find(|unit| unit.0 == &**text);
                 meters.map(|(_, meters)| format!("write {meters}"))
             }
             _ if text == "inf" && key == "focus_distance" => Some("write it without quotes: inf".into()),
             _ if text.starts_with(|first: char| first.is_ascii_digit()) => {
-                Some("a number is written without quotes and unit".into())
+                Some("write the number without quotes or unit".into())
             }
             _ if key == "blackbody" => Some(format!("write {{ illuminant = {written} }} for a light by name")),
             _ => None,
@@ -190,7 +190,7 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         }
         _ if wanted == TABLE && key == "rotate" => Some("write { axis = [0, 1, 0], degrees = 30 }".into()),
         DeValue::Array(_) if key == "axis" && wanted == "a number" => {
-            Some("in degrees: 0 is the image's right, 90 its top".into())
+            Some("in degrees: 0 points to the right of the image, 90 to its top".into())
         }
         DeValue::Integer(_) | DeValue::Float(_) if wanted == TABLE && key == "polarizer" => {
             Some(format!("write {{ axis = {written} }}"))
@@ -200,7 +200,7 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
         }
         DeValue::Array(_) if key == "image" => Some("write the name of its file, such as \"wood.png\"".into()),
         DeValue::Table(_) if key == "roughness" => {
-            Some("it is the same all over: two materials `mix` by an image".into())
+            Some("it is uniform: to vary it, `mix` two materials by an image".into())
         }
         DeValue::Array(entries) if wanted.starts_with("a number, a catalog name") => spectrum_of(entries, written),
         DeValue::Table(_) if key == "material" => Some("define it as [material.NAME] and write \"NAME\" here".into()),
@@ -212,7 +212,7 @@ pub(super) fn remedy(key: &str, value: &DeValue, wanted: &str, written: &str) ->
 
 /// Returns how to write one number in place of three.
 fn without_braces(written: &str) -> String {
-    format!("one number for all three stands without braces: {written}")
+    format!("for the same number in all three, write it without braces: {written}")
 }
 
 /// Returns how to write what a list in place of a spectrum seems to mean.
@@ -234,5 +234,5 @@ pub(super) fn with_points(written: &str, count: usize) -> Option<String> {
     let parts: Vec<String> =
         parts.into_iter().filter(|part| !part.is_empty()).map(|part| part.replace(',', ".")).collect();
     let are_numbers = parts.iter().all(|part| part.parse::<f64>().is_ok());
-    (parts.len() == count && are_numbers).then(|| format!("a decimal point is written `.`: [{}]", parts.join(", ")))
+    (parts.len() == count && are_numbers).then(|| format!("use `.` as the decimal point: [{}]", parts.join(", ")))
 }

@@ -24,7 +24,7 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         }
         _ if said.starts_with("missing escaped value") || said.contains("unicode hexadecimal value") => {
             let help = "write / in the path of a file, or put the text in single quotes";
-            ("in double quotes, `\\` does not stand for itself".into(), Some(help.into()))
+            ("in double quotes, `\\` starts an escape sequence".into(), Some(help.into()))
         }
         "missing comma between array elements" => return unclosed(before, ']'),
         "missing comma between key-value pairs" | "missing key for inline table element" => {
@@ -39,18 +39,18 @@ pub(in crate::scene) fn explain(text: &str, error: &toml::de::Error) -> Mistake 
         "unexpected key or value" => ("the line should end after its value".into(), after_value(line, rest)),
         "invalid mantissa" => ("a number starts with a digit, as in 0.5".into(), None),
         "invalid fraction" => ("a number ends with a digit, as in 1.0".into(), None),
-        "unexpected leading zero" => ("a number starts with no needless 0".into(), None),
+        "unexpected leading zero" => ("a number has no leading zero".into(), None),
         // For a value without quotes, the parser goes by the first letter.
         "invalid float" | "invalid integer number" | "invalid boolean" if is_word(written) => word(written),
-        "invalid float" | "invalid integer number" => ("this is no number".into(), None),
+        "invalid float" | "invalid integer number" => ("this is not a number".into(), None),
         "missing assignment between key-value pairs" => {
             ("a key is followed by `=` and its value".into(), before_sign(line, rest))
         }
         "carriage return must be followed by newline" => {
-            let help = "save the file with the line ends of Unix or Windows";
-            ("a carriage return alone ends no line".into(), Some(help.into()))
+            let help = "save the file with Unix or Windows line endings";
+            ("a carriage return alone does not end a line".into(), Some(help.into()))
         }
-        "missing opening quote" => ("quotes are straight in TOML".into(), Some("write \"..\"".into())),
+        "missing opening quote" => ("TOML needs straight quotes".into(), Some("write \"..\"".into())),
         "invalid unquoted key" => unquoted_key(said, line, rest),
         "duplicate key" => duplicate(written, before, line),
         _ => (said.to_owned(), None),
@@ -64,7 +64,7 @@ fn without_value(span: Range<usize>, line: &str, rest: &str) -> Mistake {
     let (span, help) = if key.starts_with("//") {
         (start..start + 2, Some("a comment starts with #"))
     } else if let Some(help) = heading(&whole_line(line, rest)) {
-        let message = "a heading stands in brackets".into();
+        let message = "a heading needs brackets".into();
         return Mistake { span: start..start + key.len(), message, help: Some(help) };
     } else if let Some(key) = key.strip_suffix(':') {
         (start + key.len()..start + key.len() + 1, Some("write `=` instead of `:`"))
@@ -87,7 +87,7 @@ fn before_sign(line: &str, rest: &str) -> Option<String> {
         return Some("write `=` instead of `:`".into());
     }
     let whole = whole_line(line, rest);
-    let of_heading = heading(&whole).map(|help| format!("a heading stands in brackets: {}", &help["write ".len()..]));
+    let of_heading = heading(&whole).map(|help| format!("a heading needs brackets: {}", &help["write ".len()..]));
     of_heading.or_else(|| loose_list(&whole, line.len()))
 }
 
@@ -97,7 +97,7 @@ fn unquoted_key(said: &str, line: &str, rest: &str) -> (String, Option<String>) 
     let first = line.rsplit(is_end).next().unwrap_or_default();
     let word = format!("{first}{}", rest.split(is_end).next().unwrap_or_default());
     match word.chars().all(|c| c.is_alphanumeric() || "-_".contains(c)) && !word.is_ascii() {
-        true => ("a name with letters beyond a to z stands in quotes".into(), Some(format!("write \"{word}\""))),
+        true => ("a name with letters beyond a to z needs quotes".into(), Some(format!("write \"{word}\""))),
         false => (said.to_owned(), None),
     }
 }
@@ -118,9 +118,9 @@ fn of_inline_table(before: &str, rest: &str) -> Mistake {
     let are_digits = |text: &str| !text.is_empty() && text.chars().all(is_digit);
     let (start, message, help) = match before.rsplit_once(',') {
         Some((first, last)) if first.ends_with(is_digit) && are_digits(last) => {
-            (first.len(), "a number has no comma", Some("a decimal point is written `.`".into()))
+            (first.len(), "a number has no comma", Some("use `.` as the decimal point".into()))
         }
-        Some((first, "")) => (first.len(), "there is a comma too many here", None),
+        Some((first, "")) => (first.len(), "there is an extra comma here", None),
         Some((_, last)) if !last.contains(['=', '{']) => (before.len(), "a key is followed by `=` and its value", None),
         _ => (before.len(), "a value is missing here", None),
     };
@@ -140,7 +140,7 @@ fn word(written: &str) -> (String, Option<String>) {
         "false" | "no" | "off" => "false",
         other => {
             let or_truth = nearest(other, ["true", "false"]).map(|near| format!(", or {near}")).unwrap_or_default();
-            return ("a text stands in quotes".into(), Some(format!("write {written:?}{or_truth}")));
+            return ("text needs quotes".into(), Some(format!("write {written:?}{or_truth}")));
         }
     };
     ("this is neither true nor false".into(), Some(format!("write {truth}")))
@@ -151,19 +151,19 @@ fn unquoted(written: &str) -> (String, Option<String>) {
     if parts.is_empty() {
         ("a value is missing here".into(), None)
     } else if written.contains(['“', '”', '„', '‘', '’', '‚', '«', '»', '`', '´']) {
-        ("quotes are straight in TOML".into(), Some("write \"..\"".into()))
+        ("TOML needs straight quotes".into(), Some("write \"..\"".into()))
     } else if parts.iter().all(|part| part.parse::<f64>().is_ok()) {
         ("numbers in a list are separated by commas".into(), Some(format!("write {}", parts.join(", "))))
     } else if let Some(number) = after_minus(written) {
-        ("this is no number".into(), Some(format!("a minus is the one of the keyboard: write -{number}")))
+        ("this is not a number".into(), Some(format!("use a plain minus sign: write -{number}")))
     } else if let Some(number) = written.strip_suffix(';').filter(|number| number.parse::<f64>().is_ok()) {
-        ("this is no number".into(), Some(format!("write {number}, without `;`")))
+        ("this is not a number".into(), Some(format!("write {number}, without `;`")))
     } else if written.contains(" /*") {
         ("a comment starts with #".into(), Some("write # in place of /*".into()))
     } else if written.contains(" //") {
         ("a comment starts with #".into(), Some("write # in place of //".into()))
     } else if written.starts_with(|first: char| first.is_ascii_digit() || "+-.".contains(first)) || is_call(written) {
-        ("this is no number".into(), Some("a number stands alone, without a unit or a calculation".into()))
+        ("this is not a number".into(), Some("write a number alone, without a unit or arithmetic".into()))
     } else {
         word(written)
     }
@@ -192,7 +192,7 @@ fn after_value(line: &str, rest: &str) -> Option<String> {
     let value = line.split_once('=').map_or("", |(_, value)| value.trim());
     if rest.starts_with('=') {
         let is_one = value.starts_with('(') || value.split_whitespace().count() < 2;
-        let help = if is_one { "keys within a value stand in braces: { .. }" } else { OWN_LINE };
+        let help = if is_one { "keys within a value need braces: { .. }" } else { OWN_LINE };
         return Some(help.into());
     }
     if let Some(help) = heading(&whole) {
@@ -200,10 +200,10 @@ fn after_value(line: &str, rest: &str) -> Option<String> {
     }
     let digits = rest.strip_prefix(',')?;
     let decimal = line.ends_with(|c: char| c.is_ascii_digit()) && digits.starts_with(|c: char| c.is_ascii_digit());
-    Some(if decimal { "a decimal point is written `.`" } else { OWN_LINE }.to_owned())
+    Some(if decimal { "use `.` as the decimal point" } else { OWN_LINE }.to_owned())
 }
 
-const OWN_LINE: &str = "each key stands on a line of its own";
+const OWN_LINE: &str = "each key goes on a line of its own";
 
 fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     if line.starts_with('[') && matches!(key, "object" | "light") {
@@ -212,8 +212,7 @@ fn duplicate(key: &str, before: &str, line: &str) -> (String, Option<String>) {
     if line.starts_with("[[") && key == "material" {
         return ("`material` is a table, not a list".into(), Some("write [material.NAME] for each".into()));
     }
-    let help =
-        first_line(key, before, line).map(|first| format!("it stands in line {first} as well: keep one of them"));
+    let help = first_line(key, before, line).map(|first| format!("it is also given in line {first}: keep one of them"));
     (format!("`{key}` is given twice"), help)
 }
 

@@ -16,7 +16,7 @@ pub(in crate::scene) fn utf8(bytes: Vec<u8>, shown: &str, help: &str) -> Result<
     let column = before[start..].chars().count() + 1;
     let byte = format!("line {line} has the byte 0x{:02X} in column {column}", bytes[at]);
     let help = match bytes {
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it begins as UTF-16 does: save it as UTF-8".into(),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it begins like UTF-16: save it as UTF-8".into(),
         _ if bytes.contains(&0) => help.to_owned(),
         _ => "save it as UTF-8".into(),
     };

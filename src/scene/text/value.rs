@@ -114,7 +114,7 @@ impl<'d> Value<'d> {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
             DeValue::Datetime(_) => "a date".into(),
-            DeValue::String(_) if written.len() > 40 || written.contains('\n') => "a text".into(),
+            DeValue::String(_) if written.len() > 40 || written.contains('\n') => "text".into(),
             DeValue::String(_) => format!("the text {written}"),
             _ => written.to_owned(),
         };
@@ -180,7 +180,7 @@ impl<'d> Value<'d> {
     }
 
     pub(in crate::scene) fn text(self) -> Option<&'d str> {
-        self.node().as_str().or_else(|| self.wanted("a text in quotes"))
+        self.node().as_str().or_else(|| self.wanted("text in quotes"))
     }
 
     pub(in crate::scene) fn yes_or_no(self) -> Option<bool> {
@@ -264,7 +264,7 @@ impl<'d> Value<'d> {
                 let help = self.list.map(|list| list.1.to_owned()).filter(|help| !help.is_empty());
                 let written = self.document.texts.whole.get(self.span()).unwrap_or_default();
                 let help = with_points(written, N).filter(|_| count > N).or(help);
-                self.tell(format!("{name} is a list of {N} numbers, not one of {count}"), help)
+                self.tell(format!("{name} is a list of {N} numbers, not {count}"), help)
             }
             Some(_) => self.list(read)?.try_into().ok(),
         }

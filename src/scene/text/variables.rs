@@ -34,9 +34,11 @@ pub(in crate::scene) fn fill(root: &mut DeTable, sections: &[&str]) -> Result<Ve
             DeValue::Table(table) => {
                 table.into_iter().for_each(|(name, value)| variables.define(&name, value, sections));
             }
-            _ => {
-                variables.tell(&key, "`set` is the table of variables".into(), "write [set], and them below it".into())
-            }
+            _ => variables.tell(
+                &key,
+                "`set` is the table of variables".into(),
+                "write [set], with the variables below it".into(),
+            ),
         }
     }
     variables.fill_table(root);
@@ -61,10 +63,9 @@ impl<'d> Variables<'d> {
             self.tell(key, message, "give the variable another name".into());
         } else if !is_name(name) {
             let message = format!("{name:?} cannot name a variable");
-            self.tell(key, message, "its name is a letter or _, then letters, digits, _ and -".into());
+            self.tell(key, message, "a name starts with a letter or _, followed by letters, digits, _ and -".into());
         } else if let Some(other) = used_in(&value) {
-            let message =
-                format!("the variable `{name}` is made of another, `{}`", variable(other).unwrap_or_default());
+            let message = format!("the variable `{name}` refers to another, `{}`", variable(other).unwrap_or_default());
             self.tell(&value, message, "give each variable a value of its own".into());
         } else {
             self.fill_value(&mut value);
