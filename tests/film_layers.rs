@@ -233,7 +233,7 @@ fn layers_that_would_fill_all_memory_are_refused() {
 #[test]
 fn names_of_lights_that_no_file_can_tell_apart_are_refused() {
     for (from, to, told) in [
-        ("\"key lamp\"", "\"a lamp with quite a long name\"", "it is too long"),
+        ("\"key lamp\"", "\"a lamp with quite a long name\"", "is too long for some programs"),
         ("\"rim\"", "\"key-lamp\"", "the lights key lamp and key-lamp would share the layer light_key_lamp"),
     ] {
         let scene = Scene::parse(&ROOM.replace(from, to), "").expect("the scene is valid");

@@ -230,7 +230,7 @@ fn w7_where_light_has_too_many_ways_the_plan_leaves_them_to_chance_and_says_so()
         for count in 2..=10 {
             let scene = scene(&ways(kind, count));
             let mut plan = plan(&scene);
-            let says = plan.because.iter().any(|line| line.contains("light has too many ways"));
+            let says = plan.because.iter().any(|line| line.contains("light has too many paths"));
             let random = matches!(plan.method.transport, Transport::Random { .. });
             assert_eq!(says, random, "{count} {kind}: {:?}", plan.because);
             by_chance += u32::from(random);

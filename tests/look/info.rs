@@ -115,7 +115,7 @@ fn of_a_file_whose_values_are_not_read_all_else_is_told() {
     let told = lines(&folder, "chroma.exr");
     let why = "channel subsampling, by which several pixels share a value";
     assert!(told[0].ends_with(&format!("; its values are not read: {why}")), "{told:?}");
-    assert_says(&told, &["size 4 x 2 pixels", "beauty B float - - - a value for 2 x 2 pixels"]);
+    assert_says(&told, &["size 4 x 2 pixels", "beauty B float - - - one value per 2 x 2 pixels"]);
     let refusal = "error: cannot read chroma.exr: OpenEXR images of this kind are not supported: ";
     let viewed = render(&folder, &["view", "chroma.exr"]);
     assert_eq!((viewed.code, viewed.stderr), (Some(1), format!("{refusal}{why}\n")));

@@ -128,7 +128,7 @@ fn a_photo_of_a_turned_camera_is_told() {
         std::fs::write(folder.path().join("a.jpg"), bytes).unwrap();
         let told = materials(folder.path(), &["{ image = \"a.jpg\" }"]).warnings.clone();
         let said =
-            |told: &String| told.contains("the EXIF orientation of a.jpg is ignored: save it upright if it lies");
+            |told: &String| told.contains("the EXIF orientation of a.jpg is ignored: save it upright if it looks");
         assert!(told.len() == usize::from(is_told) && told.iter().all(said), "{exif:?}: {told:?}");
     }
 }

@@ -748,7 +748,7 @@ def test_views_and_other_orders_of_arrays_are_the_same():
     [
         ({"points": np.zeros((5, 2))}, "points: `points` has rows of 3 numbers, not 2"),
         ({"points": np.full((600, 3), np.nan)}, "points: row 0: a coordinate is a finite number, not NaN"),
-        ({"points": np.full((600, 3), 1e31)}, "points: row 0: a coordinate is at most 1e30"),
+        ({"points": np.full((600, 3), 1e31)}, "points: row 0: a coordinate lies between -1e30 and 1e30"),
         (
             {"faces": np.array([[0, 1, 2], [0, 9999, 1]])},
             "faces: row 1: there is no point 9999: the 528 points are numbered from 0",

@@ -4,7 +4,7 @@ use crate::scene::text::{Fault, Value, shown};
 use crate::spectrum::Quantity;
 
 /// Largest emission: far within f32, which stores film and lanes.
-const MAX_EMISSION: f64 = 1e30;
+pub(super) const MAX_EMISSION: f64 = 1e30;
 /// Largest n and k: several times those of any metal in visible light.
 const MAX_METAL: f64 = 100.0;
 /// Largest thickness of an interference layer, in nm: 100 um.

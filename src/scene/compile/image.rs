@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::context::Context;
 use super::curve::curve;
-use super::curve_range::{is_factor, possible_thickness};
+use super::curve_range::{MAX_EMISSION, is_factor, possible_thickness};
 use super::curve_text::{CurveText, KindText, is_repeat};
 use super::image_file::{ImageFile, read_texture};
 use super::image_numbers::Meaning;
@@ -80,7 +80,9 @@ pub(super) fn factor_on_image(text: &CurveText) -> Option<f64> {
     }
     match text.scale.it {
         scale if is_factor(scale) => Some(scale),
-        scale => text.scale.place.refuse(format!("the scale of an image is finite and at least 0, not {scale}")),
+        scale => {
+            text.scale.place.refuse(format!("the scale of an image lies between 0 and {MAX_EMISSION:e}, not {scale}"))
+        }
     }
 }
 

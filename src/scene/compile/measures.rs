@@ -36,7 +36,7 @@ pub(super) fn is_near(number: f64) -> bool {
 /// Returns what is wrong with a number that cannot be a coordinate. `what` is its name in the message.
 pub(super) fn far(what: &str, number: f64) -> String {
     match number.is_finite() {
-        true => format!("{what} is at most {MAX_LENGTH:e}"),
+        true => format!("{what} lies between -{MAX_LENGTH:e} and {MAX_LENGTH:e}"),
         false => format!("{what} is a finite number, not {number}"),
     }
 }
