@@ -510,7 +510,7 @@ def test_files_that_fail_raise_what_python_raises(tmp_path):
     with pytest.raises(FileNotFoundError, match="there is no image file"):
         abbe.read_exr(tmp_path / "a.exr")
     (tmp_path / "a.exr").write_text("no image")
-    with pytest.raises(abbe.RenderError, match="no complete OpenEXR image"):
+    with pytest.raises(abbe.RenderError, match="not a complete OpenEXR image"):
         abbe.read_exr(tmp_path / "a.exr")
     with pytest.raises(abbe.OptionsError, match="turntable.toml is a scene, not an image .*render --plan"):
         abbe.read_exr(TURNTABLE)
