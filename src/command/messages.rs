@@ -103,7 +103,7 @@ pub fn answer(text: &str) -> Result<()> {
 /// Prints lines as an answer on stdout.
 ///
 /// # Errors
-/// Those of [`answer`].
+/// The errors of [`answer`].
 pub fn answer_lines(lines: &[String]) -> Result<()> {
     answer(&lines.iter().flat_map(|line| [line, "\n"]).collect::<String>())
 }
@@ -243,7 +243,7 @@ pub fn print_checked(scene: &Path, objects: usize) -> Result<()> {
 /// Prints on stdout how a scene would be rendered.
 ///
 /// # Errors
-/// Those of [`answer`].
+/// The errors of [`answer`].
 pub fn answer_plan(plan: &Plan) -> Result<()> {
     match listener() {
         Listener::Program => answer_event(&Event::plan(plan)),

@@ -95,7 +95,7 @@ impl ExrFile {
     /// read. The channels have no values. Returns none for a supported file.
     ///
     /// # Errors
-    /// Those of [`read`](Self::read).
+    /// The errors of [`read`](Self::read).
     pub fn outline(path: &Path) -> Result<Option<(Self, String)>> {
         let bytes = bytes(path)?;
         let described = guarded(|| MetaData::read_from_buffered(Cursor::new(&bytes), false));

@@ -34,7 +34,7 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<()> {
 /// bytes are collected in memory before the first is written. Returns what `write` returns.
 ///
 /// # Errors
-/// Those of [`replace_file`], and those of `write`.
+/// The errors of [`replace_file`], and those of `write`.
 pub(super) fn replace_by<T>(path: &Path, write: impl FnOnce(&mut dyn Place) -> Result<T>) -> Result<T> {
     let failed = |source| cannot_write(path, source);
     let target = match Target::of(path).map_err(failed)? {

@@ -168,7 +168,7 @@ impl Image {
     /// nothing if they were not requested.
     ///
     /// # Errors
-    /// Those of [`write_exr`](Self::write_exr).
+    /// The errors of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<()> {
         write_spectral_exr(self.heading(), &mut &self.film, path.as_ref())
     }

@@ -53,7 +53,7 @@ struct Tiles {
 /// Merges the parts of an image in memory. Returns the same image, to the last bit, as a single render.
 ///
 /// # Errors
-/// Those of [`Parts::open`]; [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+/// The errors of [`Parts::open`]; [`Error::Decode`](crate::Error::Decode) if a part is damaged.
 pub fn merge(parts: &[PathBuf]) -> Result<Image> {
     Parts::open(parts)?.image()
 }
@@ -111,7 +111,7 @@ impl Parts {
     /// some rows of the image, whatever the number of parts.
     ///
     /// # Errors
-    /// Those of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
+    /// The errors of [`Image::write_exr`], and [`Error::Decode`](crate::Error::Decode) if a part is damaged.
     pub fn write_exr(&self, path: impl AsRef<Path>) -> Result<u64> {
         write_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())
     }
@@ -119,7 +119,7 @@ impl Parts {
     /// Writes the spectra like [`Image::write_spectral_exr`] does, in as little memory. Returns whether there are any.
     ///
     /// # Errors
-    /// Those of [`write_exr`](Self::write_exr).
+    /// The errors of [`write_exr`](Self::write_exr).
     pub fn write_spectral_exr(&self, path: impl AsRef<Path>) -> Result<bool> {
         write_spectral_exr(self.image.heading(), &mut Strip::new(self, Some(AT_ONCE)), path.as_ref())?;
         Ok(self.image.film.spectral.is_some())

@@ -24,7 +24,7 @@ use crate::trace::{self, Advance, Measured, Method, bytes_of_film, prepare, run_
 /// Renders a scene.
 ///
 /// # Errors
-/// Those of [`Rendering::new`].
+/// The errors of [`Rendering::new`].
 pub fn render(scene: &Scene, options: &Options) -> Result<Image> {
     Ok(Rendering::new(scene, options)?.run(&|_| ()))
 }
@@ -238,7 +238,7 @@ impl Rendering {
     /// for example with which exposure.
     ///
     /// # Errors
-    /// Those of [`save`](Self::save).
+    /// The errors of [`save`](Self::save).
     pub fn save_finished(&self, path: impl AsRef<Path>, files: &[&Path], way: &str) -> Result<()> {
         let written: Vec<Written> = files.iter().filter_map(|file| Written::of(file, way)).collect();
         checkpoint::save(path.as_ref(), &self.identity, &Finished::new(&self.render, written), &self.passes)

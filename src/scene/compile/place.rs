@@ -86,7 +86,7 @@ fn lies_across(material: &Material<Curve>, shape: &Shape) -> bool {
 /// Sine of the angle that rounding in a few rotations can leave in place of 0.
 const ALONG: f64 = 1e-9;
 
-/// Returns the object, or each of its instances. `is_shared` says that its mesh stands in other places as well.
+/// Returns the object, or each of its instances. `is_shared` says that its mesh is placed elsewhere, too.
 fn objects_of(draft: ObjectDraft, is_shared: bool, material: u32, varies: bool) -> Option<Vec<Object>> {
     let ObjectDraft {
         name,
