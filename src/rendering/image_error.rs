@@ -27,8 +27,8 @@ impl ImageError {
     /// plan finds, nor light so rare that none of it was found.
     ///
     /// The bound is at least the requested error if that was reached at a later look than the first: a render that ends
-    /// as soon as the measured error is small enough tends to end when the measurement is too small. It is also at least
-    /// the requested error if rare light was found, as there may be some that is rarer still.
+    /// as soon as the measured error is small enough tends to end when the measurement is too small. It is also at
+    /// least the requested error if rare light was found, as there may be some that is rarer still.
     pub fn at_most(&self) -> f64 {
         let of_alpha = self.alpha.map_or(0.0, |alpha| alpha.at_most);
         let measured = self.noise.at_most.hypot(self.blur.at_most).hypot(self.model).max(of_alpha);
