@@ -20,6 +20,7 @@ mod film_layers;
 mod films;
 mod floors;
 mod fluorescence;
+mod highlights;
 mod lanes;
 mod layers;
 mod light_vertices;

@@ -34,4 +34,4 @@ pub use warp::{
 };
 
 /// Points and directions are 64-bit everywhere: see the rows S1 to X7 of `tests/stability_shapes.rs`.
-pub use glam::{DMat3, DVec2, DVec3};
+pub use glam::{DMat2, DMat3, DVec2, DVec3};

@@ -27,7 +27,8 @@ use crate::light::Light;
 use crate::scene::Scene;
 use crate::spectrum::{Basis, Curve};
 use crate::trace::{
-    FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided, probe,
+    FIRST_LOOK, Method, PhotonCost, PhotonTimes, Probe, Transport, bytes_of_film, photon_times, prepare_unguided,
+    probe, small_highlights,
 };
 use caustics::left_of_points;
 use lit::LitWorld;
@@ -76,6 +77,9 @@ pub fn plan(scene: &Scene<Curve>) -> Plan {
     let (method, reason) = before_light(scene, basis, model_error);
     decisions.push(reason);
     let unlit = prepare_unguided(scene, method);
+    let highlights = small_highlights(&unlit);
+    decisions.extend(words::highlights(&highlights));
+    let unlit = unlit.with_highlights(highlights);
     let LitWorld { world, because, guided } = LitWorld::new(scene, &unlit);
     decisions.extend(because);
     let polarization = polarization::decide(scene, &world);

@@ -1,6 +1,6 @@
 //! Numbers as people say them.
 
-use crate::trace::Effort;
+use crate::trace::{Effort, Highlight};
 
 /// Formats a share as people say it.
 pub(super) fn percent(share: f64) -> String {
@@ -49,6 +49,16 @@ pub(super) fn as_long(times: Effort) -> String {
             format!("the same error would take about {of_whole} times as long, that of each pixel {of_pixels} times")
         }
     }
+}
+
+/// Describes the highlights at which samples are aimed, if there are any.
+pub(super) fn highlights(found: &[Highlight]) -> Option<String> {
+    let what = match found.len() {
+        0 => return None,
+        1 => "1 mirror image of a light is".into(),
+        many => format!("{many} mirror images of lights are"),
+    };
+    Some(format!("{what} smaller than a pixel: some samples of its pixels are aimed there"))
 }
 
 /// Formats a time as people say it.

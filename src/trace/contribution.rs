@@ -22,6 +22,13 @@ pub(super) struct Contribution {
     pub(super) dispersed: bool,
 }
 
+impl Contribution {
+    /// Returns it with this factor on its light.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { rgb: self.rgb.map(|x| factor * x), moved: factor * self.moved, ..self }
+    }
+}
+
 /// The technique by which light was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FoundBy {

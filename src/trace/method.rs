@@ -2,7 +2,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BrightPlaces, SampleDensity, SkyOpenings, Smoothness, SunlitPlaces};
+use super::{BrightPlaces, Highlight, SampleDensity, SkyOpenings, Smoothness, SunlitPlaces};
 use crate::light::{LightId, Opening};
 use crate::spectrum::Basis;
 
@@ -37,6 +37,8 @@ pub struct Method {
     pub sunlit: Vec<SunlitPlaces>,
     /// Openings through which light paths of skies start.
     pub openings: SkyOpenings,
+    /// Small highlights at which some samples of their pixels are aimed.
+    pub highlights: Vec<Highlight>,
     /// Whether polarization is traced.
     pub polarization: Polarizing,
 }
@@ -75,6 +77,7 @@ impl Method {
             light_vertices: false,
             sunlit: Vec::new(),
             openings: SkyOpenings::default(),
+            highlights: Vec::new(),
             polarization: Polarizing::Averaged,
         }
     }

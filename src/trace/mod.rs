@@ -38,6 +38,7 @@ mod dispersion;
 mod dyes;
 mod first_lobe;
 mod guide;
+mod highlight;
 mod image;
 mod layers;
 mod look;
@@ -62,6 +63,7 @@ mod world;
 pub use bright::{BrightPlace, BrightPlaces};
 pub use density::SampleDensity;
 pub use dispersion::{COLORS_NM, Dispersion, ROUTES_NM, Route, RouteEvent, SEEN_PIXELS, Step, dispersion, routes};
+pub use highlight::Highlight;
 pub use image::{
     Advance, Estimate, FIRST_LOOK, Measured, Noise, Outlier, PhotonCost, RareLight, Rendering, Report, Restored,
     Stopped, TileNoise, bytes_of_film, render,
@@ -77,7 +79,7 @@ pub use probe::{
     Adaptive, Branching, Effort, GatheredWorth, PhotonTimes, PhotonWorth, PilotNoise, Probe, RoomLight, SampleWorth,
     adaptive, branching, gathered_worth, most_changed, photon_times, photons_within, photons_worth, pilot_noise,
     piloted, polarization_error, prepare, prepare_unguided, probe, reached_places, room_light, seen_photons,
-    with_light_vertices,
+    small_highlights, with_light_vertices,
 };
 pub use replicates::REPLICATES;
 pub use world::World;

@@ -3,6 +3,7 @@ use std::sync::{Arc, OnceLock};
 use super::bright::{Bright, BrightPlaces};
 use super::density::{Rate, SampleDensity};
 use super::dyes::Dyes;
+use super::highlight::{Highlight, Highlights};
 use super::layers::Layers;
 use super::media::{Media, media_of_lights};
 use super::path_start::{PathStart, SkyOpenings, SunlitPlaces};
@@ -56,6 +57,8 @@ pub struct World {
     pub(super) bright: Option<Bright>,
     /// How light paths of each light start, for light vertices.
     pub(super) path_starts: Arc<[PathStart]>,
+    /// The highlights at which samples of each pixel are aimed.
+    pub(super) highlights: Arc<Highlights>,
     /// Where photons are sent, if the method has a light pass.
     pub(super) photon_targets: Option<PhotonTargets>,
     /// Where each pass of the light pass's map sends photons.
@@ -92,6 +95,7 @@ impl World {
         let sampled_lights = light_sampler.lights();
         let bright = method.bright.as_ref().map(Bright::new);
         let path_starts = if method.light_vertices { path_starts(&scene, &method) } else { Arc::new([]) };
+        let highlights = Arc::new(Highlights::new(&method.highlights, scene.film.filter));
         let mut world = Self {
             waves: method.basis.waves(),
             layers,
@@ -112,6 +116,7 @@ impl World {
             see_through,
             bright,
             path_starts,
+            highlights,
             photon_targets: None,
             map_targets: None,
             light_media: Arc::default(),
@@ -148,6 +153,13 @@ impl World {
         world.bright = bright.as_ref().map(Bright::new);
         world.method.bright = bright;
         world
+    }
+
+    /// Returns this world with some samples aimed at highlights.
+    pub fn with_highlights(mut self, highlights: Vec<Highlight>) -> Self {
+        self.highlights = Arc::new(Highlights::new(&highlights, self.scene.film.filter));
+        self.method.highlights = highlights;
+        self
     }
 
     /// Returns this world with light vertices: paths of suns start toward sunlit places, those of skies through

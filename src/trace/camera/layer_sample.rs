@@ -27,6 +27,8 @@ pub struct LayerSample<'a, const N: usize> {
     /// The object that the camera ray hit.
     object: Option<u32>,
     branches: Vec<Branch<N>>,
+    /// Whether the path was aimed at a highlight, so that only its light belongs to the sample.
+    pub is_aimed: bool,
 }
 
 /// The contribution of a camera sample to the layers.
@@ -42,7 +44,8 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         let Layers { numbers, .. } = world.layers;
         let (row, spectrum) = (vec![0.0; numbers], world.layers.spectrum.as_ref().map(SpectrumSample::new));
         let (share, chance, object, branches) = (0.0, 1.0, None, Vec::new());
-        (!world.layers.is_empty()).then_some(Self { world, row, spectrum, share, chance, object, branches })
+        let is_aimed = false;
+        (!world.layers.is_empty()).then_some(Self { world, row, spectrum, share, chance, object, branches, is_aimed })
     }
 
     /// Begins another sample.
@@ -66,6 +69,9 @@ impl<'a, const N: usize> LayerSample<'a, N> {
 
     /// Stores the object that the camera ray hit, `None` if it went through a hole of one, and its share of the weight.
     pub fn choose(&mut self, met: Option<u32>, chance: f64) {
+        if self.is_aimed {
+            return;
+        }
         self.object = met;
         self.chance *= chance;
     }
@@ -78,15 +84,22 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         }
     }
 
-    /// Receives light that has reached the sensor, and the lanes by which it arrived.
-    pub fn receive(&mut self, contribution: &Contribution, received: &ReceivedLight<N>, stokes: Option<[Lanes<N>; 3]>) {
+    /// Receives light that has reached the sensor, and the lanes by which it arrived. `factor` is that on the lanes: the
+    /// contribution has it already.
+    pub fn receive(
+        &mut self,
+        contribution: &Contribution,
+        received: &ReceivedLight<N>,
+        stokes: Option<[Lanes<N>; 3]>,
+        factor: f64,
+    ) {
         self.world.layers.add(&mut self.row, contribution);
         if let Some(stokes) = &stokes {
             let stokes = stokes.map(|part| received.times(part, &self.world.responses));
-            self.world.layers.add_stokes(&mut self.row, stokes, 1.0);
+            self.world.layers.add_stokes(&mut self.row, stokes, factor);
         }
         if let Some(spectrum) = &mut self.spectrum {
-            spectrum.receive(received, stokes.as_ref(), 1.0);
+            spectrum.receive(received, stokes.as_ref(), factor);
         }
     }
 
@@ -137,7 +150,7 @@ impl<'a, const N: usize> LayerSample<'a, N> {
         sampler: &Sampler,
     ) {
         let layers = &self.world.layers;
-        if path.among == Among::Plate {
+        if path.among == Among::Plate || self.is_aimed {
             return;
         }
         // A filter in front of the camera is not a property of a surface.

@@ -1,6 +1,8 @@
 //! Paths from the camera. They pass direct light, gathered photons and light vertices to the sensor.
 
 mod aimed;
+mod aimed_samples;
+mod catcher;
 mod direct;
 mod emitter_hit;
 mod layer_sample;

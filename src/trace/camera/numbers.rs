@@ -19,6 +19,8 @@ pub const VERTEX: u32 = 5;
 pub const COMPLEMENT: u32 = 6;
 /// Use of the numbers for the directions by which the albedo is estimated.
 pub const ALBEDO: u32 = 7;
+/// Use of the numbers for the points of samples that are aimed at highlights.
+pub const HIGHLIGHT: u32 = 8;
 /// Use of the numbers that add digits to the choice of a light. They are plain numbers, unlike those of the lens.
 pub const MORE_DIGITS: u32 = 3;
 /// Use of the numbers for directions to further lights, from this one on: two lights for each use.

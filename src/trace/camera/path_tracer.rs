@@ -3,6 +3,8 @@
 use std::rc::Rc;
 
 use super::aimed::{albedo, may_aim, scatter_aimed};
+use super::aimed_samples::add_aimed;
+use super::catcher;
 use super::direct::DirectLighting;
 use super::emitter_hit::EmitterHit;
 use super::layer_sample::LayerSample;
@@ -18,7 +20,7 @@ use crate::scene::Visibility;
 use crate::shape::SurfacePoint;
 use crate::spectrum::{Draw, Lanes};
 use crate::trace::contribution::{Contribution, FoundBy};
-use crate::trace::media::Media;
+use crate::trace::highlight::Counted;
 use crate::trace::photon::{GatherPoint, LightVertices, PhotonMap, gather, holds_vertices};
 use crate::trace::received_light::ReceivedLight;
 use crate::trace::walk::{
@@ -30,7 +32,7 @@ use crate::trace::{Method, Polarizing, Transport, World};
 /// Traces the rays of camera samples back to the light, and samples the lights on the way.
 pub struct PathTracer<'a, const N: usize, P: Polarization<N> = Polarized> {
     pub walker: Walker<'a, N, P>,
-    sensor: Sensor<'a, N>,
+    pub sensor: Sensor<'a, N>,
     /// The photons to gather, if any.
     photons: Option<&'a PhotonMap<N, P>>,
     /// Vertices of light paths, if light is estimated there.
@@ -101,13 +103,18 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         if let Some(audit) = &mut self.walker.audit {
             audit.begin(&path, &draw);
         }
+        let (filter, highlights) = (world.scene.film.filter, world.highlights.of_pixel([x, y]));
+        self.sensor.counted = Counted::ordinary(filter, film, place - 0.5, highlights);
         let first = self.trace(&path, &draw, sampler);
         if let (Some(audit), Some(layers)) = (&self.walker.audit, &mut self.sensor.layers) {
             layers.keep_audit(audit, &draw);
         }
-        if self.sees_shadow_catcher() {
-            let rgb = self.catch(&path, &draw, sampler);
+        if catcher::is_seen(self) {
+            let rgb = catcher::catch(self, &path, &draw, sampler);
             return Sample { rgb, depth: None, is_subtracted };
+        }
+        if !highlights.is_empty() {
+            add_aimed(self, highlights, &draw, sampler, [x, y]);
         }
         let rgb = self.sensor.read_out(world, &mut self.walker.stats);
         Sample { rgb, depth: first.map(|point| camera.depth(point.position)), is_subtracted }
@@ -118,30 +125,8 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
         std::mem::take(&mut self.sensor.blur)
     }
 
-    /// Returns whether the camera ray has hit a shadow catcher.
-    fn sees_shadow_catcher(&self) -> bool {
-        let object = self.sensor.layers.as_ref().and_then(|layers| layers.left().object);
-        object.is_some_and(|object| self.walker.world.visibility(object) == Visibility::ShadowCatcher)
-    }
-
-    /// Compares the light of a path that hit a shadow catcher with that of the same path among only the objects of the
-    /// plate. The image receives neither: it gets 0, or NaN if one is not finite.
-    #[cold]
-    fn catch(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> [f64; 3] {
-        let with = std::mem::take(&mut self.sensor.rgb);
-        let (media, before) = (Media::default(), self.walker.stats);
-        self.trace(&Path { among: Among::Plate, media, ..*path }, draw, sampler);
-        self.walker.stats.count_once(&before);
-        let without = std::mem::take(&mut self.sensor.rgb);
-        self.sensor.forget();
-        if let Some(layers) = &mut self.sensor.layers {
-            layers.catch([with, without]);
-        }
-        std::array::from_fn(|i| if (with[i] + without[i]).is_finite() { 0.0 } else { f64::NAN })
-    }
-
     /// Passes all light along the path of a camera ray to the sensor, and returns what the ray hit first.
-    fn trace(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
+    pub fn trace(&mut self, path: &Path<N, P>, draw: &Draw<N>, sampler: &Sampler) -> Option<SurfacePoint> {
         let mut first = None;
         self.walker.started = self.walker.stats.rays;
         self.excitations.clear();
@@ -474,7 +459,7 @@ impl<'a, const N: usize, P: Polarization<N>> PathTracer<'a, N, P> {
             let draw = excitation.map_or(at.context.draw, |dye| &dye.seen_by);
             self.sensor.receive_gathered(&gathered, draw);
         }
-        if let Some(observer) = self.sensor.observer {
+        if let Some(observer) = self.sensor.observer.filter(|_| !self.sensor.counted.is_aimed()) {
             observer(SensorEvent::Place(at.point.position));
         }
     }

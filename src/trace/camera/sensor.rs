@@ -5,6 +5,7 @@ use crate::math::DVec3;
 use crate::spectrum::Draw;
 use crate::trace::World;
 use crate::trace::contribution::{Contribution, add};
+use crate::trace::highlight::Counted;
 use crate::trace::photon::Gathered;
 use crate::trace::stats::Stats;
 use crate::trace::walk::{FoundLight, Path, Polarization, ScatterSample};
@@ -36,6 +37,8 @@ pub enum SensorEvent<'a> {
 pub struct Sensor<'a, const N: usize> {
     /// Whether it ignores what arrives.
     pub is_deaf: bool,
+    /// Which light counts, and how much.
+    pub counted: Counted<'a>,
     /// What the current sample has received.
     pub rgb: [f64; 3],
     /// The amount of the received light that polarization may change.
@@ -47,24 +50,33 @@ pub struct Sensor<'a, const N: usize> {
     pub layers: Option<LayerSample<'a, N>>,
 }
 
-impl<const N: usize> Sensor<'_, N> {
+impl<'a, const N: usize> Sensor<'a, N> {
     pub fn new() -> Self {
-        Self { is_deaf: false, rgb: [0.0; 3], moved: 0.0, blur: [0.0; 3], observer: None, layers: None }
+        let (rgb, moved, blur) = ([0.0; 3], 0.0, [0.0; 3]);
+        Self { is_deaf: false, counted: Counted::ALL, rgb, moved, blur, observer: None, layers: None }
+    }
+
+    /// Decides which light of the next paths counts.
+    pub fn count(&mut self, counted: Counted<'a>) {
+        self.counted = counted;
+        self.layers.iter_mut().for_each(|layers| layers.is_aimed = counted.is_aimed());
     }
 
     /// Receives light, the lanes by which it arrives, and the polarization of the path where it hits the light.
     #[inline]
     pub fn receive<P: Polarization<N>>(&mut self, contribution: Contribution, light: &FoundLight<N, P>, polarized: &P) {
-        if self.is_deaf {
+        let factor = self.counted.factor(contribution.light, contribution.bounces);
+        if self.is_deaf || factor == 0.0 {
             return;
         }
+        let contribution = if factor == 1.0 { contribution } else { contribution.scaled(factor) };
         if let Some(layers) = &mut self.layers {
             let FoundLight { world, received, excitation, .. } = *light;
             match excitation {
-                None => layers.receive(&contribution, received, polarized.stokes()),
+                None => layers.receive(&contribution, received, polarized.stokes(), factor),
                 Some(dye) => {
                     let stokes = dye.polarization.stokes();
-                    dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes));
+                    dye.seen(world, received, |seen| layers.receive(&contribution, seen, stokes, factor));
                 }
             }
         }
@@ -73,7 +85,7 @@ impl<const N: usize> Sensor<'_, N> {
 
     /// Receives the light of gathered photons.
     pub fn receive_gathered(&mut self, gathered: &Gathered<N>, draw: &Draw<N>) {
-        if self.is_deaf {
+        if self.is_deaf || self.counted.is_aimed() {
             return;
         }
         if let Some(layers) = &mut self.layers {
@@ -84,7 +96,7 @@ impl<const N: usize> Sensor<'_, N> {
 
     /// Estimates the blur of gathered light, by comparison with a kernel that blurs half as much.
     pub fn blur_by(&mut self, gathered: [f64; 3], by_half: [f64; 3]) {
-        if self.is_deaf {
+        if self.is_deaf || self.counted.is_aimed() {
             return;
         }
         add(&mut self.blur, std::array::from_fn(|i| 2.0 * (gathered[i] - by_half[i])));
@@ -109,7 +121,9 @@ impl<const N: usize> Sensor<'_, N> {
         distance: f64,
         before: [f64; 3],
     ) {
-        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.observer, path.scatter) {
+        if let (Some(observer), Some(ScatterSample { from, normal, .. })) = (self.observer, path.scatter)
+            && !self.counted.is_aimed()
+        {
             let light = world.amount(std::array::from_fn(|i| self.rgb[i] - before[i]));
             let (direction, distance) = (path.ray.direction, distance + (path.ray.origin - from).length());
             let weight = path.weight(draw) * f64::from(path.aimed);

@@ -1,0 +1,149 @@
+//! Small highlights: mirror images of small lights, which the samples of a pixel seldom hit.
+//!
+//! Some samples of a pixel are aimed at them. Both kinds of samples find the same light, and the balance heuristic
+//! weighs them (Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*).
+
+use std::collections::HashMap;
+use std::f64::consts::FRAC_1_PI;
+
+use serde::{Deserialize, Serialize};
+
+use crate::film::Filter;
+use crate::light::LightId;
+use crate::math::{DMat2, DVec2, disk};
+
+/// A part of the film on which a surface mirrors a small light: an ellipse in which samples are drawn, most densely at
+/// its center.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Highlight {
+    /// The light that is mirrored.
+    pub light: LightId,
+    /// The center of the ellipse, in pixels from the top left corner of the format.
+    pub center: [f64; 2],
+    /// Two conjugate radii of the ellipse, in pixels: a circle's radii after the linear map that makes it the ellipse.
+    pub radii: [[f64; 2]; 2],
+    /// How much the density falls toward the rim: at the share r of a radius it is proportional to 1 / (1 + peak r^2)^2.
+    /// That is how the light of a rough surface falls (Walter et al. 2007, *Microfacet Models for Refraction through
+    /// Rough Surfaces*, equation 33). 0 draws evenly.
+    pub peak: f64,
+}
+
+impl Highlight {
+    /// Returns the map from the unit disk to the ellipse around its center.
+    fn map(&self) -> DMat2 {
+        DMat2::from_cols(self.radii[0].into(), self.radii[1].into())
+    }
+
+    /// Samples a point of the film, in pixels.
+    pub(super) fn sample(&self, u: [f64; 2]) -> DVec2 {
+        let point = disk(u);
+        // The disk has the share r^2 of its area within the radius r; the density has (1 + peak) t / (1 + peak t)
+        // within the square t of a radius.
+        let scale = 1.0 / (1.0 + self.peak * (1.0 - point.length_squared())).sqrt();
+        DVec2::from(self.center) + self.map() * (point * scale)
+    }
+
+    /// Returns the density of samples at a point of the film, per square pixel.
+    pub(super) fn pdf(&self, film: DVec2) -> f64 {
+        let map = self.map();
+        let squared = (map.inverse() * (film - DVec2::from(self.center))).length_squared();
+        if squared >= 1.0 {
+            return 0.0;
+        }
+        let falloff = 1.0 + self.peak * squared;
+        FRAC_1_PI * (1.0 + self.peak) / (falloff * falloff * map.determinant().abs())
+    }
+
+    /// Returns the first and the last column and row of the pixels whose samples may fall into the ellipse.
+    fn pixels(&self, filter: Filter) -> [[i32; 2]; 2] {
+        // Along an axis, an ellipse reaches as far as the hypotenuse of both radii there.
+        let along = |axis: usize| self.radii[0][axis].hypot(self.radii[1][axis]) + filter.reach() - 0.5;
+        let side = |axis: usize, sign: f64| (self.center[axis] + sign * along(axis)).floor() as i32;
+        [-1.0, 1.0].map(|sign| [0, 1].map(|axis| side(axis, sign)))
+    }
+}
+
+/// The highlights of each pixel that has any.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Highlights(HashMap<[i32; 2], Vec<Highlight>>);
+
+impl Highlights {
+    pub fn new(highlights: &[Highlight], filter: Filter) -> Self {
+        let mut of_pixel: HashMap<[i32; 2], Vec<Highlight>> = HashMap::new();
+        for highlight in highlights {
+            let [[left, top], [right, bottom]] = highlight.pixels(filter);
+            for [x, y] in (top..=bottom).flat_map(|y| (left..=right).map(move |x| [x, y])) {
+                of_pixel.entry([x, y]).or_default().push(highlight.clone());
+            }
+        }
+        Self(of_pixel)
+    }
+
+    /// Returns the highlights at which some samples of a pixel are aimed.
+    #[inline]
+    pub fn of_pixel(&self, pixel: [i32; 2]) -> &[Highlight] {
+        if self.0.is_empty() { &[] } else { self.0.get(&pixel).map_or(&[], Vec::as_slice) }
+    }
+}
+
+/// Which light of a camera sample counts, and how much.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Counted<'a> {
+    /// All light of a sample of the pixel, at a point of the film. `pdf` is the density of such samples there. Light
+    /// that the highlights mirror counts less.
+    Ordinary { film: DVec2, pdf: f64, highlights: &'a [Highlight] },
+    /// Light of a sample that was aimed at a highlight: only what it mirrors, by this factor.
+    Mirrored { light: LightId, factor: f64 },
+}
+
+impl<'a> Counted<'a> {
+    /// All light.
+    pub const ALL: Self = Self::Ordinary { film: DVec2::ZERO, pdf: 1.0, highlights: &[] };
+
+    /// Returns what counts of an ordinary sample. `offset` is that of its point from the middle of the pixel.
+    pub fn ordinary(filter: Filter, film: DVec2, offset: DVec2, highlights: &'a [Highlight]) -> Self {
+        if highlights.is_empty() {
+            Self::ALL
+        } else {
+            Self::Ordinary { film, pdf: density(filter, offset), highlights }
+        }
+    }
+
+    /// Returns what counts of a sample that was aimed at one of the highlights; `None` if its point is outside the
+    /// pixel's filter.
+    pub fn aimed(filter: Filter, film: DVec2, offset: DVec2, light: LightId, highlights: &[Highlight]) -> Option<Self> {
+        let value = filter.value(offset);
+        let factor = value / (density(filter, offset) + density_of(highlights, light, film));
+        (value != 0.0).then_some(Self::Mirrored { light, factor })
+    }
+
+    /// Whether the sample was aimed at a highlight.
+    pub fn is_aimed(&self) -> bool {
+        matches!(self, Self::Mirrored { .. })
+    }
+
+    /// Returns the factor on light of a source that surfaces sent on `bounces` times. It may be negative, where a filter
+    /// is.
+    #[inline]
+    pub fn factor(&self, source: Option<LightId>, bounces: u32) -> f64 {
+        match *self {
+            Self::Ordinary { highlights: [], .. } => 1.0,
+            Self::Ordinary { film, pdf, highlights } => match source {
+                Some(light) if bounces == 1 => pdf / (pdf + density_of(highlights, light, film)),
+                _ => 1.0,
+            },
+            Self::Mirrored { light, factor } if source == Some(light) && bounces == 1 => factor,
+            Self::Mirrored { .. } => 0.0,
+        }
+    }
+}
+
+/// Returns the density of a pixel's ordinary samples, per square pixel.
+fn density(filter: Filter, offset: DVec2) -> f64 {
+    filter.value(offset).abs() / filter.absolute_integral()
+}
+
+/// Returns the density of the samples that are aimed at highlights of a light, one at each, per square pixel.
+fn density_of(highlights: &[Highlight], light: LightId, film: DVec2) -> f64 {
+    highlights.iter().filter(|highlight| highlight.light == light).map(|highlight| highlight.pdf(film)).sum()
+}

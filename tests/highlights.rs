@@ -1,0 +1,150 @@
+//! Mirror images of small lights on the film: some samples of their pixels are aimed at them.
+//!
+//! ```text
+//! cargo test --test all highlights::
+//! ```
+
+use std::ops::Range;
+
+use abbe::Options;
+use abbe::film::Layer;
+use abbe::plan::plan;
+use abbe::trace::Method;
+
+use crate::support::scenes::{Mean, film_of, films_of, rendered_with, scene};
+
+/// Radius of the ball and height of the view in scene units, and pixels along each side.
+const RADIUS: f64 = 0.4;
+const HEIGHT: f64 = 2.0;
+const SIDE: u32 = 8;
+/// A small lamp beside the ball.
+const LAMP: &str = "[[object]]\nshape.sphere = { center = [1.5, 1, 2], radius = 0.2 }\nmaterial = \"lamp\"\n\
+    [material.lamp]\nemissive.radiance = { rgb = [40, 20, 60] }\n";
+/// Irradiance by the sun.
+const SUN: f64 = 3.0;
+
+/// Returns a parallel view of a ball, off the middle of the image. `rest` has whatever else the scene needs.
+fn view(film: &str, ball: &str, rest: &str) -> String {
+    format!(
+        "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0], projection = \"orthographic\", height = {HEIGHT} }}\n\
+         film = {{ width = {SIDE}, height = {SIDE}{film} }}\nrender = {{ samples = 16 }}\n{rest}\n\
+         [material.ball]\n{ball}\n\
+         [[object]]\nshape.sphere = {{ center = [0.13, -0.21, 0], radius = {RADIUS} }}\nmaterial = \"ball\"\n"
+    )
+}
+
+fn sun(toward: [f64; 3], diameter: f64) -> String {
+    let rgb = "{ rgb = [1, 2, 0.5], scale = 3 }";
+    format!("light = [{{ sun = {{ toward = {toward:?}, angular_diameter = {diameter}, irradiance = {rgb} }} }}]")
+}
+
+/// Returns what a mirroring ball makes of the mean of the film, by the light's direction or whatever else.
+///
+/// Where the normal of a ball turns by an angle, the mirrored direction turns by twice that in the plane of incidence,
+/// and by 2 cos(theta) times that across it. An area of the film is R^2 cos(theta) per steradian of normals, and so
+/// R^2 / 4 per steradian of mirrored directions, in all directions alike.
+fn mirrored(reflectance: f64) -> [f64; 3] {
+    let share = RADIUS * RADIUS / 4.0 / (HEIGHT * HEIGHT);
+    [1.0, 2.0, 0.5].map(|color| reflectance * SUN * color * share)
+}
+
+fn films(text: &str, seeds: Range<u64>) -> (Method, Mean) {
+    let scene = scene(text);
+    let method = plan(&scene).method;
+    let films = films_of(&scene, &method, seeds);
+    (method, Mean::over_seeds(&films))
+}
+
+#[test]
+fn a_mirroring_ball_shows_the_light_of_the_sun_wherever_it_stands_however_small_it_is() {
+    let suns = [([0.3, 1.0, 0.8], 0.533), ([-0.6, 0.1, 1.0], 0.05), ([1.0, 0.4, 0.2], 1e-3), ([0.9, 0.2, -0.3], 0.533)];
+    for (toward, diameter) in suns {
+        let (method, mean) = films(&view("", "mirror.reflectance = 0.8", &sun(toward, diameter)), 0..8);
+        assert_eq!(method.highlights.len(), 1, "{toward:?}");
+        mean.assert_near(mirrored(0.8), 3 * suns.len(), &format!("toward {toward:?}, {diameter} degrees"));
+        // 128 samples of each pixel: without aim, one in 3000 or fewer would hit the sun.
+        assert!(mean.worst_error(mirrored(0.8)) < 0.04, "toward {toward:?}: {:?}", mean.error);
+    }
+}
+
+#[test]
+fn every_filter_shows_all_light_of_a_highlight() {
+    let filters = ["tent", "gaussian", "blackman-harris", "mitchell"];
+    for filter in filters {
+        let film = format!(", filter = \"{filter}\"");
+        let (_, mean) = films(&view(&film, "mirror.reflectance = 0.8", &sun([0.3, 1.0, 0.8], 0.533)), 0..16);
+        mean.assert_near(mirrored(0.8), 3 * filters.len(), filter);
+        assert!(mean.worst_error(mirrored(0.8)) < 0.05, "{filter}: {:?}", mean.error);
+    }
+}
+
+/// Rough and smooth surfaces and lamps of which plain samples find enough to compare.
+#[test]
+fn aimed_samples_find_what_plain_samples_find() {
+    let point = "light = [{ point = { position = [1, 1, 3], intensity = { rgb = [4, 2, 6] } } }]";
+    let copper = "conductor = { metal = \"Cu\", roughness = 0.25 }";
+    let varnish = "plastic = { reflectance = 0.3, roughness = 0.2 }";
+    let cases = [
+        ("glass", "dielectric.index = 1.5", sun([0.3, 1.0, 0.8], 4.0)),
+        ("a coat", "plastic.reflectance = 0.3", sun([0.3, 1.0, 0.8], 4.0)),
+        ("copper", copper, sun([0.3, 1.0, 0.8], 0.533)),
+        ("copper by a point", copper, point.to_owned()),
+        ("varnish", varnish, sun([0.9, 0.3, 0.1], 0.2)),
+        ("a lamp", "mirror.reflectance = 0.8", String::new()),
+    ];
+    for (name, ball, light) in &cases {
+        let lamp = if light.is_empty() { LAMP } else { "" };
+        let text = view("", ball, light) + lamp;
+        let scene = scene(&text);
+        let method = plan(&scene).method;
+        assert_eq!(method.highlights.len(), 1, "{name}");
+        let aimed = Mean::over_seeds(&films_of(&scene, &method, 0..32));
+        let plain = Method { highlights: Vec::new(), samples: 4096, ..method };
+        let plain = Mean::over_seeds(&films_of(&scene, &plain, 100..132));
+        aimed.beside(&plain).assert_near(plain.value, 3 * cases.len(), name);
+    }
+}
+
+#[test]
+fn layers_have_the_light_of_highlights() {
+    let text = view(", filter = \"mitchell\"", "plastic.reflectance = 0.3", &sun([0.3, 1.0, 0.8], 0.533));
+    let options = Options { layers: Some(Layer::all().to_vec()), threads: Some(1), ..Options::default() };
+    let with = rendered_with(&text, &options);
+    let sum = |names: &[&str]| -> f64 {
+        let layer = |name: &&str| with.layer(&format!("{name}.G")).unwrap_or_else(|| panic!("no layer {name}"));
+        names.iter().flat_map(layer).map(f64::from).sum()
+    };
+    let all: f64 = with.rgb().iter().map(|rgb| f64::from(rgb[1])).sum();
+    for parts in [&["emission", "background", "direct", "indirect"][..], &["light_sun"]] {
+        assert!((sum(parts) / all - 1.0).abs() < 1e-5, "{parts:?}: {} of {all}", sum(parts));
+    }
+}
+
+#[test]
+fn aimed_samples_change_no_layer_that_has_no_light() {
+    let layers = ", layers = [\"residual\", \"N\", \"P\", \"albedo\"]";
+    let scene = scene(&view(layers, "plastic.reflectance = 0.3", &sun([0.3, 1.0, 0.8], 0.533)));
+    let method = plan(&scene).method;
+    let [with, without] = [method.highlights.clone(), Vec::new()]
+        .map(|highlights| film_of(&scene, Method { highlights, ..method.clone() }));
+    assert!(with.pixels.iter().zip(&without.pixels).any(|(a, b)| a.rgb != b.rgb));
+    assert!(with.layers == without.layers && with.layers.len() == 4);
+    assert!(with.pixels.iter().zip(&without.pixels).all(|(a, b)| a.alpha == b.alpha && a.depth == b.depth));
+}
+
+#[test]
+fn large_mirror_images_and_those_that_nothing_shows_are_left_to_all_samples() {
+    let left = [
+        ("a large sun", view("", "mirror.reflectance = 0.8", &sun([0.3, 1.0, 0.8], 40.0))),
+        ("a matte ball", view("", "diffuse.reflectance = 0.8", &sun([0.3, 1.0, 0.8], 0.533))),
+        ("a rough ball", view("", "conductor = { metal = \"Cu\", roughness = 0.5 }", &sun([0.3, 1.0, 0.8], 0.533))),
+        ("a sun behind", view("", "mirror.reflectance = 0.8", &sun([0.0, 0.01, -1.0], 0.533))),
+        (
+            "a sample in the middle",
+            view(", filter = \"center\"", "mirror.reflectance = 0.8", &sun([0.3, 1.0, 0.8], 0.533)),
+        ),
+    ];
+    for (name, text) in left {
+        assert_eq!(plan(&scene(&text)).method.highlights, [], "{name}");
+    }
+}
