@@ -109,6 +109,11 @@ impl Distribution2d {
         [self.columns[row.index].sample(u), row]
     }
 
+    /// Returns the sum of the weights of all cells, each times that of its row.
+    pub fn total(&self) -> f64 {
+        self.rows.total()
+    }
+
     /// Returns the probability with which `sample` draws the cell at a column and a row.
     pub fn probability(&self, [column, row]: [usize; 2]) -> f64 {
         self.rows.probability(row) * self.columns[row].probability(column)

@@ -4,13 +4,13 @@
 //! weighs them (Veach & Guibas 1995, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*).
 
 use std::collections::HashMap;
-use std::f64::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_1_PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
 use crate::film::Filter;
 use crate::light::LightId;
-use crate::math::{DMat2, DVec2, disk};
+use crate::math::{BELOW_ONE, DMat2, DVec2, Distribution2d};
 
 /// A part of the film on which a surface mirrors a small light: an ellipse in which samples are drawn, most densely at
 /// its center.
@@ -34,24 +34,30 @@ impl Highlight {
         DMat2::from_cols(self.radii[0].into(), self.radii[1].into())
     }
 
-    /// Samples a point of the film, in pixels.
-    pub(super) fn sample(&self, u: [f64; 2]) -> DVec2 {
-        let point = disk(u);
-        // The disk has the share r^2 of its area within the radius r; the density has (1 + peak) t / (1 + peak t)
-        // within the square t of a radius.
-        let scale = 1.0 / (1.0 + self.peak * (1.0 - point.length_squared())).sqrt();
-        DVec2::from(self.center) + self.map() * (point * scale)
+    /// Maps a point of the unit square to the film, in pixels, so that uniform points have this density.
+    fn point(&self, [u, v]: [f64; 2]) -> DVec2 {
+        // Of the density, (1 + peak) t / (1 + peak t) lies within the square t of a radius.
+        let radius = (u / (1.0 + self.peak * (1.0 - u))).sqrt();
+        let (sin, cos) = libm::sincos(TAU * v);
+        DVec2::from(self.center) + self.map() * (DVec2::new(cos, sin) * radius)
     }
 
-    /// Returns the density of samples at a point of the film, per square pixel.
-    pub(super) fn pdf(&self, film: DVec2) -> f64 {
+    /// Returns the density at a point of the film, per square pixel, and the point of the unit square that is mapped to
+    /// it; `None` outside of the ellipse.
+    fn density(&self, film: DVec2) -> Option<Density> {
         let map = self.map();
-        let squared = (map.inverse() * (film - DVec2::from(self.center))).length_squared();
-        if squared >= 1.0 {
-            return 0.0;
-        }
+        let point = map.inverse() * (film - DVec2::from(self.center));
+        let squared = point.length_squared();
         let falloff = 1.0 + self.peak * squared;
-        FRAC_1_PI * (1.0 + self.peak) / (falloff * falloff * map.determinant().abs())
+        let (most, turn) = (1.0 + self.peak, libm::atan2(point.y, point.x) / TAU);
+        let pdf = FRAC_1_PI * most / (falloff * falloff * map.determinant().abs());
+        let u = [squared * most / falloff, if turn < 0.0 { turn + 1.0 } else { turn }].map(|u| u.min(BELOW_ONE));
+        (squared < 1.0).then_some(Density { pdf, u })
+    }
+
+    /// Returns whether a point of the film lies in the ellipse.
+    pub(super) fn contains(&self, film: DVec2) -> bool {
+        self.density(film).is_some()
     }
 
     /// Returns the first and the last column and row of the pixels whose samples may fall into the ellipse.
@@ -63,17 +69,75 @@ impl Highlight {
     }
 }
 
+/// The density of a highlight at a point of the film, and the point of the unit square that is mapped to it.
+struct Density {
+    pdf: f64,
+    u: [f64; 2],
+}
+
+/// Cells of the unit square from the center to the rim of a highlight, and around it.
+const CELLS: [usize; 2] = [12, 16];
+/// Points along each side of a cell that tell how much of it a pixel sees.
+const POINTS: usize = 2;
+/// Share of a highlight that a pixel must see for samples to be aimed there.
+const SEEN: f64 = 1e-3;
+
+/// What a pixel sees of a highlight: samples are drawn only there.
+#[derive(Clone, Debug)]
+pub(super) struct SeenHighlight {
+    highlight: Highlight,
+    cells: Distribution2d,
+}
+
+impl SeenHighlight {
+    /// Returns `None` where the pixel sees nearly nothing of the highlight.
+    fn new(highlight: &Highlight, filter: Filter, pixel: [i32; 2]) -> Option<Self> {
+        let at = |cell: [usize; 2], point: usize| -> [f64; 2] {
+            let within = [point % POINTS, point / POINTS].map(|i| (i as f64 + 0.5) / POINTS as f64);
+            [0, 1].map(|i| (cell[i] as f64 + within[i]) / CELLS[i] as f64)
+        };
+        let value = |cell, point| filter.value(offset(highlight.point(at(cell, point)), pixel)).abs();
+        let points = POINTS * POINTS;
+        let weight = |cell: [usize; 2]| (0..points).map(|point| value(cell, point)).sum::<f64>();
+        let cells = Distribution2d::new(CELLS, weight, |_| 1.0);
+        (cells.total() > SEEN * (points * CELLS[0] * CELLS[1]) as f64)
+            .then(|| Self { highlight: highlight.clone(), cells })
+    }
+
+    /// The light that is mirrored.
+    pub fn light(&self) -> LightId {
+        self.highlight.light
+    }
+
+    /// Samples a point of the film, in pixels.
+    pub fn sample(&self, u: [f64; 2]) -> DVec2 {
+        self.highlight.point(self.cells.sample_place(u))
+    }
+
+    /// Returns the density of samples at a point of the film, per square pixel.
+    fn pdf(&self, film: DVec2) -> f64 {
+        self.highlight.density(film).map_or(0.0, |Density { pdf, u }| pdf * self.cells.density(u))
+    }
+}
+
+/// Returns the offset of a point of the film from the middle of a pixel.
+pub(super) fn offset(film: DVec2, pixel: [i32; 2]) -> DVec2 {
+    film - DVec2::from(pixel.map(f64::from)) - 0.5
+}
+
 /// The highlights of each pixel that has any.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Highlights(HashMap<[i32; 2], Vec<Highlight>>);
+pub(super) struct Highlights(HashMap<[i32; 2], Vec<SeenHighlight>>);
 
 impl Highlights {
     pub fn new(highlights: &[Highlight], filter: Filter) -> Self {
-        let mut of_pixel: HashMap<[i32; 2], Vec<Highlight>> = HashMap::new();
+        let mut of_pixel: HashMap<[i32; 2], Vec<SeenHighlight>> = HashMap::new();
         for highlight in highlights {
             let [[left, top], [right, bottom]] = highlight.pixels(filter);
-            for [x, y] in (top..=bottom).flat_map(|y| (left..=right).map(move |x| [x, y])) {
-                of_pixel.entry([x, y]).or_default().push(highlight.clone());
+            for pixel in (top..=bottom).flat_map(|y| (left..=right).map(move |x| [x, y])) {
+                if let Some(seen) = SeenHighlight::new(highlight, filter, pixel) {
+                    of_pixel.entry(pixel).or_default().push(seen);
+                }
             }
         }
         Self(of_pixel)
@@ -81,7 +145,7 @@ impl Highlights {
 
     /// Returns the highlights at which some samples of a pixel are aimed.
     #[inline]
-    pub fn of_pixel(&self, pixel: [i32; 2]) -> &[Highlight] {
+    pub fn of_pixel(&self, pixel: [i32; 2]) -> &[SeenHighlight] {
         if self.0.is_empty() { &[] } else { self.0.get(&pixel).map_or(&[], Vec::as_slice) }
     }
 }
@@ -91,7 +155,7 @@ impl Highlights {
 pub(super) enum Counted<'a> {
     /// All light of a sample of the pixel, at a point of the film. `pdf` is the density of such samples there. Light
     /// that the highlights mirror counts less.
-    Ordinary { film: DVec2, pdf: f64, highlights: &'a [Highlight] },
+    Ordinary { film: DVec2, pdf: f64, highlights: &'a [SeenHighlight] },
     /// Light of a sample that was aimed at a highlight: only what it mirrors, by this factor.
     Mirrored { light: LightId, factor: f64 },
 }
@@ -101,7 +165,7 @@ impl<'a> Counted<'a> {
     pub const ALL: Self = Self::Ordinary { film: DVec2::ZERO, pdf: 1.0, highlights: &[] };
 
     /// Returns what counts of an ordinary sample. `offset` is that of its point from the middle of the pixel.
-    pub fn ordinary(filter: Filter, film: DVec2, offset: DVec2, highlights: &'a [Highlight]) -> Self {
+    pub fn ordinary(filter: Filter, film: DVec2, offset: DVec2, highlights: &'a [SeenHighlight]) -> Self {
         if highlights.is_empty() {
             Self::ALL
         } else {
@@ -111,7 +175,13 @@ impl<'a> Counted<'a> {
 
     /// Returns what counts of a sample that was aimed at one of the highlights; `None` if its point is outside the
     /// pixel's filter.
-    pub fn aimed(filter: Filter, film: DVec2, offset: DVec2, light: LightId, highlights: &[Highlight]) -> Option<Self> {
+    pub fn aimed(
+        filter: Filter,
+        film: DVec2,
+        offset: DVec2,
+        light: LightId,
+        highlights: &[SeenHighlight],
+    ) -> Option<Self> {
         let value = filter.value(offset);
         let factor = value / (density(filter, offset) + density_of(highlights, light, film));
         (value != 0.0).then_some(Self::Mirrored { light, factor })
@@ -144,6 +214,6 @@ fn density(filter: Filter, offset: DVec2) -> f64 {
 }
 
 /// Returns the density of the samples that are aimed at highlights of a light, one at each, per square pixel.
-fn density_of(highlights: &[Highlight], light: LightId, film: DVec2) -> f64 {
-    highlights.iter().filter(|highlight| highlight.light == light).map(|highlight| highlight.pdf(film)).sum()
+fn density_of(highlights: &[SeenHighlight], light: LightId, film: DVec2) -> f64 {
+    highlights.iter().filter(|highlight| highlight.light() == light).map(|highlight| highlight.pdf(film)).sum()
 }

@@ -2,9 +2,9 @@
 
 use super::numbers;
 use super::path_tracer::PathTracer;
-use crate::math::{BranchKey, DVec2, Sampler};
+use crate::math::{BranchKey, Sampler};
 use crate::spectrum::Draw;
-use crate::trace::highlight::{Counted, Highlight};
+use crate::trace::highlight::{Counted, SeenHighlight, offset};
 use crate::trace::walk::{Path, Polarization};
 
 /// Adds the light of one sample for each highlight of a pixel to what the sensor has received.
@@ -12,7 +12,7 @@ use crate::trace::walk::{Path, Polarization};
 /// These samples tell nothing of what the pixel shows otherwise, and do not count for what paths leave out.
 pub fn add_aimed<const N: usize, P: Polarization<N>>(
     tracer: &mut PathTracer<N, P>,
-    highlights: &[Highlight],
+    highlights: &[SeenHighlight],
     draw: &Draw<N>,
     sampler: &Sampler,
     pixel: [i32; 2],
@@ -22,8 +22,8 @@ pub fn add_aimed<const N: usize, P: Polarization<N>>(
     let [u, v, ..] = sampler.four(BranchKey::CAMERA, numbers::HIGHLIGHT);
     for highlight in highlights {
         let film = highlight.sample([u, v]);
-        let offset = film - DVec2::from(pixel.map(f64::from)) - 0.5;
-        let counted = Counted::aimed(world.scene.film.filter, film, offset, highlight.light, highlights);
+        let offset = offset(film, pixel);
+        let counted = Counted::aimed(world.scene.film.filter, film, offset, highlight.light(), highlights);
         if let Some(counted) = counted {
             let path = Path::from_camera(world, draw, world.scene.camera.ray(film));
             tracer.sensor.count(counted);

@@ -39,7 +39,7 @@ const LARGEST: f64 = 1.0;
 const LONGEST: f64 = 16.0;
 /// How much wider than the mirror image of a light its ellipse may be. Film and directions are not quite in proportion,
 /// so the image is no ellipse. The first of these is taken beyond which a surface mirrors nothing of the light.
-const MARGINS: [f64; 6] = [1.02, 1.05, 1.1, 1.2, 1.4, 1.8];
+const MARGINS: [f64; 9] = [1.003, 1.006, 1.012, 1.025, 1.05, 1.1, 1.2, 1.4, 1.8];
 /// Points on the rim of an ellipse where that is looked at.
 const RIM: u32 = 16;
 /// Half width of the ellipse of a rough surface's highlight, in widths of its slopes. A share of 1 / (1 + WIDTH^2) of the
@@ -130,7 +130,6 @@ fn small_lights(world: &World) -> Vec<SmallLight> {
     lights.sort_by_key(|light| matches!(light.place, Place::Near(_)));
     lights.truncate(LIGHTS);
     lights
-}
 }
 
 /// Returns where the bright part of a sky's image is, such as the sun; `None` without one.
@@ -316,5 +315,5 @@ impl<'a> Search<'a> {
 
 /// Whether two searches ended at the same highlight.
 fn is_same(known: &Highlight, new: &Highlight) -> bool {
-    known.light == new.light && known.pdf(new.center.into()) > 0.0 && new.pdf(known.center.into()) > 0.0
+    known.light == new.light && known.contains(new.center.into()) && new.contains(known.center.into())
 }
