@@ -3,14 +3,18 @@
 //! With errors e_r of R replicates, the error of their mean is expected to be E = mean |e_r|^2 / R. The actual error is
 //! a random number, and the bound has to hold for the one that was drawn. Two things about it are unknown:
 //!
-//! - E is an estimate. Its variance is s^2 / R, from how much the |e_r|^2 differ.
-//! - The error that was drawn varies around E. With independent pixels it hardly does, since there are many; but pixels
-//!   share light vertices and photons, so that a whole image may be too bright. For normal errors, R |mean e_r|^2 has
-//!   the variance g^2 = 2 tr(C^2), where C is the covariance of all pixels. The products of two replicates estimate
-//!   that: the mean of (e_r . e_s)^2 is tr(C^2). What s^2 has beyond g^2 are rare bright samples, of which the mean has
-//!   R times as many: they add (s^2 - g^2) / R.
+//! - E is an estimate, from few replicates.
+//! - The error that was drawn varies around E. With independent pixels it hardly does, since there are many. But pixels
+//!   share light vertices and photons, so that a whole image may be too bright, and one pixel may make most of the noise.
 //!
-//! The bound is R E + t sqrt(s^2 / R + g^2 + (s^2 - g^2) / R), over R, with Student's t of R - 1 degrees of freedom.
+//! Both depend on how many numbers the errors consist of. For normal errors, |e_r|^2 has the variance g^2 = 2 tr(C^2),
+//! where C is the covariance of all pixels. The products of two replicates estimate that: the mean of (e_r . e_s)^2 is
+//! tr(C^2). How much the |e_r|^2 differ, s^2, is another estimate, and the larger counts. |e_r|^2 is then about as
+//! random as the sum of f = 2 E^2 R^2 / max(g^2, s^2) squares (Satterthwaite 1946, *An Approximate Distribution of
+//! Estimates of Variance Components*), and the actual error over its estimate as F with f and (R - 1) f degrees of
+//! freedom: the bound is its 95 % quantile, times E. What s^2 has beyond g^2 are rare bright samples, of which the mean
+//! has R times as many: Student's t of R - 1 degrees of freedom times sqrt(2 (s^2 - g^2) / R) / R is added to that, as
+//! the square root of the sum of both squares.
 //!
 //! Light that only one replicate found may be one of many rare finds, of which others were missed. Where one is found,
 //! up to 4.74 are expected, at 95 % (Garwood 1936, *Fiducial Limits for the Poisson Distribution*): that many times as
@@ -102,6 +106,23 @@ const ALONE: f64 = 0.6457;
 /// How many finds may be expected where there is one: a Poisson number with this mean is 0 or 1 in 5 of 100 cases.
 const UNSEEN: f64 = 4.743_864_518;
 
+/// The 95 % quantile of the normal distribution.
+const NORMAL: f64 = 1.644_853_627;
+
+/// Returns about the 95 % quantile of the F distribution with 1 or more degrees of freedom of both squares, the second
+/// 7 or more: too low by at most 2 %. Both cube roots are about normal.
+///
+/// Paulson 1942, *An Approximate Normalization of the Analysis of Variance Distribution*, equation 5.
+fn f_quantile(first: f64, second: f64) -> f64 {
+    let [a, b] = [first, second].map(|freedom| 2.0 / (9.0 * freedom));
+    let squared = NORMAL * NORMAL;
+    // The cube root x solves (1 - b) x - (1 - a) = NORMAL sqrt(b x^2 + a).
+    let [two, one, none] =
+        [(1.0 - b) * (1.0 - b) - squared * b, (1.0 - a) * (1.0 - b), (1.0 - a) * (1.0 - a) - squared * a];
+    let root = (one + (one * one - two * none).max(0.0).sqrt()) / two;
+    root * root * root
+}
+
 /// Sums over some pixels.
 #[derive(Default)]
 struct Spread {
@@ -168,8 +189,10 @@ impl Spread {
         let of_one = 1.0 - 1.0 / count;
         let pairs = 0.5 * count * (count - 1.0);
         let normal = 2.0 * shared / pairs / (of_one * of_one + 1.0 / (count * count));
-        let variance = spread / count + normal + (spread - normal).max(0.0) / count;
-        [mean, mean + STUDENT * variance.sqrt()]
+        let freedom = (2.0 * mean * mean / normal.max(spread)).max(1.0);
+        let drawn = mean * (f_quantile(freedom, (count - 1.0) * freedom) - 1.0);
+        let rare = STUDENT * (2.0 * (spread - normal).max(0.0) / count).sqrt();
+        [mean, mean + drawn.hypot(rare)]
     }
 
     /// Returns a mean square error as an error relative to the mean of all replicates.
@@ -270,6 +293,49 @@ mod tests {
             told[1] += f64::from(u8::from(noise.outlier.is_some())) / f64::from(RENDERS);
         }
         told
+    }
+
+    /// Quantiles by Abramowitz & Stegun 1964, *Handbook of Mathematical Functions*, table 26.9.
+    #[test]
+    fn quantiles_of_f_are_those_of_the_table() {
+        for ([first, second], quantile) in
+            [([1.0, 7.0], 5.59), ([2.0, 14.0], 3.74), ([3.0, 21.0], 3.07), ([4.0, 28.0], 2.71), ([8.0, 60.0], 2.10)]
+        {
+            let found = f_quantile(first, second);
+            assert!((found / quantile - 1.0).abs() < 0.02, "{first}, {second}: {found} for {quantile}");
+        }
+        assert!((f_quantile(1e12, 7e12) - 1.0).abs() < 1e-5);
+    }
+
+    /// Normal errors of one pixel, of several, and of one beside many dimmer ones.
+    #[test]
+    fn bounds_are_kept_by_few_pixels_as_by_many() {
+        let scales = |first: usize, others: usize, dimmer: f64| [vec![1.0; first], vec![dimmer; others]].concat();
+        for (number, sizes) in
+            [scales(1, 0, 0.0), scales(3, 0, 0.0), scales(1, 50, 0.1), scales(200, 0, 0.0)].iter().enumerate()
+        {
+            const RENDERS: u32 = 4000;
+            let mut over = 0;
+            for render in 0..RENDERS {
+                let (mut spread, mut error) = (Spread::default(), 0.0);
+                for (pixel, size) in sizes.iter().enumerate() {
+                    let normal = |replicate: usize| {
+                        let u = Sampler::new(number as u64, [render, replicate as u32], pixel as u32)
+                            .four_plain(BranchKey::CAMERA, 0);
+                        size * (-2.0 * libm::log(1.0 - u[0])).sqrt() * libm::cos(std::f64::consts::TAU * u[1])
+                    };
+                    let replicates: [[f64; 1]; REPLICATES] = std::array::from_fn(|replicate| [1e3 + normal(replicate)]);
+                    let off = replicates.iter().map(|value| value[0] - 1e3).sum::<f64>() / REPLICATES as f64;
+                    error += off * off;
+                    spread.add([pixel as i64, 0], &replicates);
+                }
+                let [_, bound] = spread.errors();
+                over += u32::from(error > bound * sizes.len() as f64 / REPLICATES as f64);
+            }
+            let share = f64::from(over) / f64::from(RENDERS);
+            // Of one pixel beside many, 8 % are off by more: its own error is known less well than that of all.
+            assert!(share < if number == 2 { 0.095 } else { 0.07 }, "{number}: {share}");
+        }
     }
 
     /// Row A7 of the stability catalog. u^-0.3 has three moments, u^-0.45 has two, and u^-0.8 has no variance.
